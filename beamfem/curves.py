@@ -1,0 +1,44 @@
+"""Stress-free shapes of a beam axis."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.validation import vector
+
+
+class Curve(Protocol):
+    """A planar curve by arc length."""
+
+    @property
+    def length(self) -> float: ...  # [m]
+    def position(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) [m]
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) unit vectors
+
+
+@dataclass(frozen=True)
+class Line:
+    """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError where they coincide."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "start", vector("start", self.start))
+        object.__setattr__(self, "end", vector("end", self.end))
+        if self.start == self.end:
+            raise InputError(f"a Line needs two different points, start and end are both {self.start}")
+
+    @property
+    def length(self) -> float:
+        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        share = np.asarray(arc_length)[:, None] / self.length
+        return (1.0 - share) * np.array(self.start) + share * np.array(self.end)
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        direction = (np.array(self.end) - np.array(self.start)) / self.length
+        return np.broadcast_to(direction, (len(arc_length), 2)).copy()

@@ -1,0 +1,72 @@
+"""An element as a user chooses it, and the named combinations of the paper."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from skfem.quadrature import get_quadrature_line
+
+from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.fields import Cubic, Field, Lagrange
+from beamfem.element.forces import ContinuumMechanics
+from beamfem.errors import InputError
+
+Integration = Literal["full", "reduced"]
+
+
+@dataclass(frozen=True)
+class Element:
+    """A field, the nodal coordinates that carry it and the elastic forces that resist it.
+
+    integration: "full" integrates the energy of a straight element exactly, "reduced" takes as many Gauss points as
+    the order of the field (cubic: 2). Raises InputError for a name that is not known.
+    """
+
+    field: Field
+    coordinates: Gradients | Rotation
+    forces: ContinuumMechanics
+    integration: Integration = "full"
+    label: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.integration not in ("full", "reduced"):
+            raise InputError(f'integration must be "full" or "reduced", got {self.integration!r}')
+        for name, kind in (("coordinates", Gradients | Rotation), ("forces", ContinuumMechanics)):
+            if not isinstance(getattr(self, name), kind):
+                raise InputError(f"{name} of an element must be one of {kind}, got {getattr(self, name)!r}")
+
+    @property
+    def name(self) -> str:
+        """Fit for a file name and a legend."""
+        return self.label or f"{self.field.name}-{self.coordinates.name}"
+
+    @property
+    def coordinates_per_node(self) -> int:
+        return len(self.coordinates.labels(self.field.vectors))
+
+    def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
+        """Gauss points (nq,) and weights (nq,) on [0, 1]."""
+        reduced = 2 if isinstance(self.field, Cubic) else self.field.degree
+        points = reduced if self.integration == "reduced" else self.forces.points(self.field.degree)
+        xi, weights = get_quadrature_line(2 * points - 1)
+        return xi[0], weights
+
+
+def ANCF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+    """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
+    return Element(Cubic(), Gradients(), forces or ContinuumMechanics(), integration, "ANCF")
+
+
+def ANCFCRBF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+    """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
+    return Element(Cubic(), Rotation(), forces or ContinuumMechanics(), integration, "ANCF-CRBF")
+
+
+def BilinearANCF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+    """Bilinear field carried by gradients, 4 coordinates a node; paper, eqs. (8) to (10)."""
+    return Element(Lagrange(1), Gradients(), forces or ContinuumMechanics(), integration, "bilinear-ANCF")
+
+
+def BilinearCRBF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+    """Bilinear field carried by rotations, 3 coordinates a node; paper, section 4."""
+    return Element(Lagrange(1), Rotation(), forces or ContinuumMechanics(), integration, "bilinear-CRBF")

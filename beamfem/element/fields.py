@@ -1,0 +1,91 @@
+"""Field bases r(x, y) = r0(x) + y d(x) on the unit interval."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+class Field(Protocol):
+    """What an element needs of a field basis; all tables are those of the unit element, xi in [0, 1]."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def nodes(self) -> np.ndarray: ...  # (nn,) xi of the nodes
+    @property
+    def vectors(self) -> tuple[str, ...]: ...  # nodal vectors, of "r", "r_x", "r_y"
+    @property
+    def degree(self) -> int: ...  # polynomial degree of r0
+    def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nr)
+    def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nd)
+
+
+def r_slots(field: Field) -> np.ndarray:
+    """Nodal vectors of an element (nr,) that carry r0, in the order of `Field.centreline`."""
+    per_node = [i for i, vector in enumerate(field.vectors) if vector != "r_y"]
+    return np.array([n * len(field.vectors) + i for n in range(len(field.nodes)) for i in per_node])
+
+
+def d_slots(field: Field) -> np.ndarray:
+    """Nodal vectors of an element (nd,) that carry d, in the order of `Field.director`."""
+    per_node = field.vectors.index("r_y")
+    return np.array([n * len(field.vectors) + per_node for n in range(len(field.nodes))])
+
+
+@dataclass(frozen=True)
+class Cubic:
+    """Hermite cubics in r and r_x, linear in r_y; paper, eqs. (2) to (4); Omar and Shabana 2001."""
+
+    name: str = "cubic"
+    vectors: tuple[str, ...] = ("r", "r_x", "r_y")
+    degree: int = 3
+
+    @property
+    def nodes(self) -> np.ndarray:
+        return np.array([0.0, 1.0])
+
+    def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
+        one = np.ones_like(xi)
+        if derivative == 0:
+            rows = (1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2)
+        elif derivative == 1:
+            rows = (6 * xi**2 - 6 * xi, 1 - 4 * xi + 3 * xi**2, 6 * xi - 6 * xi**2, 3 * xi**2 - 2 * xi)
+        else:
+            rows = (12 * xi - 6 * one, 6 * xi - 4 * one, 6 * one - 12 * xi, 6 * xi - 2 * one)
+        return np.stack(rows, axis=-1)
+
+    def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
+        return Lagrange(1).director(xi, derivative)
+
+
+@dataclass(frozen=True)
+class Lagrange:
+    """Polynomials of one order in r and in r_y through Chebyshev-Lobatto nodes; order 1: paper, eqs. (8) to (10)."""
+
+    order: int = 1
+    vectors: tuple[str, ...] = ("r", "r_y")
+
+    @property
+    def name(self) -> str:
+        return "bilinear" if self.order == 1 else f"order{self.order}"
+
+    @property
+    def degree(self) -> int:
+        return self.order
+
+    @property
+    def nodes(self) -> np.ndarray:
+        return 0.5 - 0.5 * np.cos(np.pi * np.arange(self.order + 1) / self.order)
+
+    def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
+        nodes = self.nodes
+        columns = []
+        for i, own in enumerate(nodes):
+            others = np.delete(nodes, i)
+            polynomial = np.poly1d(others, r=True) / np.prod(own - others)
+            columns.append(np.polyval(polynomial.deriv(derivative) if derivative else polynomial, xi))
+        return np.stack(columns, axis=-1)
+
+    def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
+        return self.centreline(xi, derivative)

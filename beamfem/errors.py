@@ -1,0 +1,27 @@
+"""What can go wrong, by name. Every message says what is wrong, where, and what would be right."""
+
+from typing import Any
+
+
+class BeamfemError(Exception):
+    """Any error that beamfem raises on purpose."""
+
+
+class InputError(BeamfemError, ValueError):
+    """A value that cannot describe a beam: wrong shape, not finite, negative where it must be positive."""
+
+
+class UnknownPointError(InputError):
+    """A support or load at a point of a beam that is not in the model."""
+
+
+class FreeMotionError(InputError):
+    """A static model that can move without resistance."""
+
+
+class ConvergenceError(BeamfemError, RuntimeError):
+    """A solve that could not go on; `solution` holds every state found before."""
+
+    def __init__(self, message: str, solution: Any = None) -> None:
+        super().__init__(message)
+        self.solution = solution

@@ -1,0 +1,36 @@
+"""Linear elastic, isotropic material."""
+
+from dataclasses import dataclass
+
+from beamfem.errors import InputError
+from beamfem.validation import finite, positive
+
+
+@dataclass(frozen=True)
+class Material:
+    """Hookean material.
+
+    youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]. Raises InputError.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+    def __post_init__(self) -> None:
+        positive("youngs_modulus", self.youngs_modulus)
+        positive("density", self.density)
+        ratio = finite("poisson_ratio", self.poisson_ratio)
+        if not -1.0 < ratio < 0.5:
+            raise InputError(f"poisson_ratio must lie between -1 and 0.5 (both excluded), got {ratio}")
+
+    @property
+    def shear_modulus(self) -> float:
+        """mu = E / (2 (1 + nu)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    def lame_lambda(self, plane_stress: bool = False) -> float:
+        """lambda [Pa] = E nu / ((1 + nu)(1 - 2 nu)), or E nu / (1 - nu^2) in plane stress."""
+        ratio = self.poisson_ratio
+        divisor = 1.0 - ratio**2 if plane_stress else (1.0 + ratio) * (1.0 - 2.0 * ratio)
+        return self.youngs_modulus * ratio / divisor

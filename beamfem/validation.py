@@ -1,0 +1,52 @@
+"""Checks of what a user gives; each returns the value in the type that the rest of the code expects."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+
+
+def finite(name: str, value: Any) -> float:
+    """Return `value` as a float, or raise InputError naming it."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number, got {value!r}") from None
+    if not np.isfinite(number):
+        raise InputError(f"{name} must be finite, got {number}")
+    return number
+
+
+def positive(name: str, value: Any) -> float:
+    """Return `value` as a float greater than zero, or raise InputError naming it."""
+    number = finite(name, value)
+    if number <= 0.0:
+        raise InputError(f"{name} must be greater than zero, got {number}")
+    return number
+
+
+def count(name: str, value: Any) -> int:
+    """Return `value` as an integer of at least one, or raise InputError naming it."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise InputError(f"{name} must be a whole number, got {value!r}")
+    if value < 1:
+        raise InputError(f"{name} must be at least 1, got {value}")
+    return int(value)
+
+
+def vector(name: str, value: Sequence[float]) -> tuple[float, float]:
+    """Return `value` as two finite floats, or raise InputError naming it."""
+    try:
+        numbers = tuple(float(component) for component in value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be two numbers (x, y), got {value!r}") from None
+    if len(numbers) != 2 or not np.isfinite(numbers).all():
+        raise InputError(f"{name} must be two finite numbers (x, y), got {value!r}")
+    return numbers[0], numbers[1]
+
+
+def function_value(name: str, function: Callable[[float], float], at: float) -> float:
+    """Return the finite value of a user's function, or raise InputError naming it and the argument."""
+    return finite(f"{name}({at:g})", function(at))

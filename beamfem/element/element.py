@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from skfem.quadrature import get_quadrature_line
 
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.fields import Cubic, Field, Lagrange
@@ -47,9 +46,9 @@ class Element:
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
         """Gauss points (nq,) and weights (nq,) on [0, 1]."""
         reduced = 2 if isinstance(self.field, Cubic) else self.field.degree
-        points = reduced if self.integration == "reduced" else self.forces.points(self.field.degree)
-        xi, weights = get_quadrature_line(2 * points - 1)
-        return xi[0], weights
+        full = self.forces.points(self.field.degree, self.field.director_degree)
+        xi, weights = np.polynomial.legendre.leggauss(reduced if self.integration == "reduced" else full)
+        return 0.5 * (xi + 1.0), 0.5 * weights
 
 
 def ANCF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:

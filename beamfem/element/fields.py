@@ -17,6 +17,8 @@ class Field(Protocol):
     def vectors(self) -> tuple[str, ...]: ...  # nodal vectors, of "r", "r_x", "r_y"
     @property
     def degree(self) -> int: ...  # polynomial degree of r0
+    @property
+    def director_degree(self) -> int: ...  # polynomial degree of d
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nr)
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nd)
 
@@ -40,6 +42,7 @@ class Cubic:
     name: str = "cubic"
     vectors: tuple[str, ...] = ("r", "r_x", "r_y")
     degree: int = 3
+    director_degree: int = 1
 
     @property
     def nodes(self) -> np.ndarray:
@@ -72,6 +75,10 @@ class Lagrange:
 
     @property
     def degree(self) -> int:
+        return self.order
+
+    @property
+    def director_degree(self) -> int:
         return self.order
 
     @property

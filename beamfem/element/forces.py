@@ -58,6 +58,6 @@ class ContinuumMechanics:
         matrix[5, 5] = mu * second
         return matrix
 
-    def points(self, degree: int) -> int:
-        """Gauss points that integrate the energy of a straight element exactly: degree 4 (degree - 1), or that of d."""
-        return max(2 * (degree - 1), 2 * degree if degree < 3 else 2) + 1
+    def points(self, degree: int, director_degree: int) -> int:
+        """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
+        return 2 * max(degree - 1, director_degree) + 1

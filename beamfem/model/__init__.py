@@ -1,0 +1,1 @@
+"""What is where, and which coordinate is whose; a model knows no solver."""

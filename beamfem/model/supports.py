@@ -1,0 +1,80 @@
+"""What holds a beam. Each support lists the directions and the turn it prescribes at a point."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Point
+from beamfem.validation import finite, vector
+
+Value = float | Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """Hold the position and the section direction r_y; r_x stays free, it carries stretch and shear."""
+
+    point: Point
+
+    def held(self) -> dict[str, Value]:
+        return {"ux": 0.0, "uy": 0.0, "rotation": 0.0}
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Hold the position."""
+
+    point: Point
+
+    def held(self) -> dict[str, Value]:
+        return {"ux": 0.0, "uy": 0.0}
+
+
+@dataclass(frozen=True)
+class Roller:
+    """Hold the position along `normal` (2,) only. Raises InputError for a zero normal."""
+
+    point: Point
+    normal: tuple[float, float] = (0.0, 1.0)
+
+    def __post_init__(self) -> None:
+        if not np.hypot(*vector("normal", self.normal)) > 0.0:
+            raise InputError("the normal of a Roller must not be zero")
+
+    def held(self) -> dict[str, Value]:
+        return {"normal": 0.0}
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit normal (2,)."""
+        return np.array(self.normal) / np.hypot(*self.normal)
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """Prescribe displacement ux, uy [m] and rotation [rad] from the reference; None leaves free.
+
+    A number grows with the load factor in statics and is a constant in dynamics; a function is one of time, in statics
+    of the load factor. Raises InputError.
+    """
+
+    point: Point
+    ux: Value | None = None
+    uy: Value | None = None
+    rotation: Value | None = None
+
+    def __post_init__(self) -> None:
+        if not self.held():
+            raise InputError("Prescribed needs at least one of ux, uy and rotation")
+        for name, value in self.held().items():
+            if not callable(value):
+                finite(name, value)
+
+    def held(self) -> dict[str, Value]:
+        given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
+        return {name: value for name, value in given.items() if value is not None}
+
+
+Support = Clamp | Pin | Roller | Prescribed

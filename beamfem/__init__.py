@@ -1,0 +1,12 @@
+"""Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
+
+from beamfem.curves import Line
+from beamfem.element.element import ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, Element
+from beamfem.element.forces import ContinuumMechanics
+from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
+from beamfem.material import Material
+from beamfem.model.beam import Beam, Point
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.model import Model
+from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
+from beamfem.section import Rectangle, Section

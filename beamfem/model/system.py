@@ -1,0 +1,155 @@
+"""A model in numbers: coordinates, blocks of elements, held coordinates and loads at a time."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.kernels.block import Block, Layout, PointLoads
+from beamfem.model.blocks import build_block, locate_loads
+from beamfem.model.loads import factor
+from beamfem.model.model import Model
+from beamfem.model.supports import Roller, Value
+from beamfem.validation import function_value
+
+
+@dataclass(frozen=True)
+class Held:
+    """A coordinate that a support prescribes: value = start + factor(time)."""
+
+    dof: int
+    value: Value
+    # derivatives of (r_y)^x or (r_y)^y with a rotation where the coordinates are gradients
+    turned: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Everything a solver needs of a model; made once a solve."""
+
+    model: Model
+    static: bool
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Coordinates of the stress-free state (n,)."""
+        p = np.zeros(self.model.size)
+        for mesh in self.model.meshes:
+            arc = mesh.node_arc_lengths()
+            position, tangent = mesh.beam.curve.position(arc), mesh.beam.curve.tangent(arc)
+            normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+            values = {"r": position, "r_x": tangent, "r_y": normal}
+            labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
+            table = p[mesh.first_dof : mesh.first_dof + mesh.size].reshape(mesh.nodes, -1)
+            for column, label in enumerate(labels):
+                if label != "theta":
+                    name, axis = label.split("^")
+                    table[:, column] = values[name][:, "xy".index(axis)]
+        return p
+
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        numbered = list(enumerate(self.model.meshes))
+        return tuple(
+            build_block(element, [(i, mesh) for i, mesh in numbered if mesh.block == number])
+            for number, element in enumerate(self.model.groups)
+        )
+
+    @cached_property
+    def point_loads(self) -> tuple[PointLoads, ...]:
+        """Point loads of each block, in the order of `point_values`."""
+        result = []
+        for number, (block, element) in enumerate(zip(self.blocks, self.model.groups, strict=True)):
+            points = [load.point for load in self._loads_of(number)]
+            result.append(locate_loads(block, element, [self.model.mesh_of(point) for point in points], points))
+        return tuple(result)
+
+    def _loads_of(self, block: int) -> list:
+        return [load for load in self.model.point_loads if self.model.mesh_of(load.point).block == block]
+
+    def point_values(self, time: float) -> tuple[np.ndarray, ...]:
+        """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
+        return tuple(
+            np.array(
+                [np.array(load.value) * factor(load, time, self.static) for load in self._loads_of(number)]
+            ).reshape(-1, 3)
+            for number in range(len(self.blocks))
+        )
+
+    def body(self, time: float) -> np.ndarray:
+        """Acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
+        result = np.zeros((len(self.model.beams), 4))
+        for load in self.model.gravity:
+            result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
+        for load in self.model.distributed:
+            row = next(i for i, beam in enumerate(self.model.beams) if beam is load.beam)
+            result[row, 2:] += np.array(load.vector) * factor(load, time, self.static)
+        return result
+
+    @cached_property
+    def held(self) -> tuple[Held, ...]:
+        """Held coordinates, ordered by number. Raises InputError where two supports hold the same one."""
+        held: dict[int, Held] = {}
+        for support in self.model.supports:
+            mesh = self.model.mesh_of(support.point)
+            node = mesh.node_at(support.point.fraction)
+            dofs = mesh.dofs_of_node(node)
+            labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
+            for direction, value in support.held().items():
+                new = _held_coordinates(support, direction, value, dict(zip(labels, dofs, strict=True)), self.reference)
+                for item in new:
+                    if item.dof in held:
+                        name = type(support).__name__
+                        raise InputError(f"{name} at {support.point}: another support already holds {direction} there")
+                    held[item.dof] = item
+        return tuple(held[dof] for dof in sorted(held))
+
+    @cached_property
+    def held_dofs(self) -> np.ndarray:
+        return np.array([item.dof for item in self.held], dtype=np.int64)
+
+    def held_values(self, time: float) -> np.ndarray:
+        """Values of the held coordinates at a time, in statics at a load factor."""
+        return np.array([self._held_value(item, time) for item in self.held], dtype=float)
+
+    def _held_value(self, item: Held, time: float) -> float:
+        if callable(item.value):
+            value = function_value("prescribed value", item.value, time)
+        else:
+            value = item.value * (time if self.static else 1.0)
+        if item.turned is None:
+            return self.reference[item.dof] + value
+        return float(np.cos(value) * item.turned[0] + np.sin(value) * item.turned[1])
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Numbers of the unknown coordinates and the half width of their band."""
+        free = np.full(self.model.size, -1, dtype=np.int64)
+        mask = np.ones(self.model.size, dtype=bool)
+        mask[self.held_dofs] = False
+        free[mask] = np.arange(mask.sum())
+        widest = max(block.dof.shape[1] - 1 for block in self.blocks)
+        return Layout(free, widest, np.empty((0, 0, 0), dtype=np.int64))
+
+    @cached_property
+    def free_dofs(self) -> np.ndarray:
+        return np.flatnonzero(self.layout.free >= 0)
+
+
+def _held_coordinates(support, direction, value, dofs, reference) -> list[Held]:  # type: ignore[no-untyped-def]
+    """The coordinates that hold one direction of a support."""
+    if direction in ("ux", "uy"):
+        return [Held(dofs[f"r^{direction[1]}"], value)]
+    if direction == "rotation":
+        if "theta" in dofs:
+            return [Held(dofs["theta"], value)]
+        x, y = reference[dofs["r_y^x"]], reference[dofs["r_y^y"]]
+        return [Held(dofs["r_y^x"], value, (x, -y)), Held(dofs["r_y^y"], value, (y, x))]
+    assert isinstance(support, Roller)
+    nx, ny = support.direction
+    if abs(nx) < 1e-12:
+        return [Held(dofs["r^y"], 0.0)]
+    if abs(ny) < 1e-12:
+        return [Held(dofs["r^x"], 0.0)]
+    raise InputError(f"Roller at {support.point}: only normals along x or y are supported yet, got {support.normal}")

@@ -1,0 +1,1 @@
+"""Analyses are verbs on a model; they know coordinates, not elements."""

@@ -1,0 +1,79 @@
+"""Stress resultants at the quadrature points, and those that a linearised step predicts."""
+
+import numpy as np
+from numba import njit
+
+from beamfem.kernels.coordinates import node_map
+from beamfem.kernels.measures import green_lagrange
+
+
+@njit(cache=True, error_model="numpy")
+def predict_stress(block, p, step, stress):
+    """Fill stress (ne, nq, ns) with C (eps + (d eps / de) B dp), B and eps at p, dp = step.
+
+    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
+    """
+    ne, nn = block.frame.shape[0], block.frame.shape[1]
+    nv = block.scale.shape[1]
+    nr, nd, nq = block.r_slots.shape[0], block.d_slots.shape[0], block.jacobian.shape[1]
+    ns = block.stiffness.shape[2]
+    npe = block.dof.shape[1]
+    npn, per_node = npe // nn, 2 * nv // nn
+    coefficients = np.array([1.0, 0.0, 0.0])
+    pe, zero = np.empty(npe), np.zeros(npn)
+    e, de, unused = np.empty(2 * nv), np.empty(2 * nv), np.empty(2 * nv)
+    b, c = np.zeros((npe, per_node)), np.zeros((npe, per_node))
+    q, dq, eps, grad = np.empty(6), np.empty(6), np.empty(ns), np.empty((ns, 6))
+    for element in range(ne):
+        kind = block.kind[element]
+        for i in range(npe):
+            pe[i] = p[block.dof[element, i]]
+        de[:] = 0.0
+        for node in range(nn):
+            lo, hi = node * npn, (node + 1) * npn
+            elo, ehi = node * per_node, (node + 1) * per_node
+            cosine, sine = block.frame[element, node, 0], block.frame[element, node, 1]
+            node_map(
+                block.coordinates,
+                pe[lo:hi],
+                zero,
+                zero,
+                cosine,
+                sine,
+                coefficients,
+                e[elo:ehi],
+                unused[elo:ehi],
+                b[lo:hi],
+                c[lo:hi],
+            )
+            for i in range(lo, hi):
+                for x in range(block.column_start[i - lo], block.column_stop[i - lo]):
+                    de[elo + x] += b[i, x] * step[block.dof[element, i]]
+        for point in range(nq):
+            inverse = 1.0 / block.jacobian[kind, point]
+            q[:] = 0.0
+            dq[:] = 0.0
+            for i in range(nr):
+                slot = block.r_slots[i]
+                phi = block.r_xi[point, i] * block.scale[kind, slot] * inverse
+                for x in range(2):
+                    q[x] += phi * e[2 * slot + x]
+                    dq[x] += phi * de[2 * slot + x]
+            for i in range(nd):
+                slot = block.d_slots[i]
+                phi, slope = block.d[point, i], block.d_xi[point, i] * inverse
+                for x in range(2):
+                    q[2 + x] += phi * e[2 * slot + x]
+                    dq[2 + x] += phi * de[2 * slot + x]
+                    q[4 + x] += slope * e[2 * slot + x]
+                    dq[4 + x] += slope * de[2 * slot + x]
+            green_lagrange(q, eps, grad)
+            for i in range(ns):
+                eps[i] -= block.reference[kind, point, i]
+                for x in range(6):
+                    eps[i] += grad[i, x] * dq[x]
+            for i in range(ns):
+                total = 0.0
+                for j in range(ns):
+                    total += block.stiffness[kind, point, i, j] * eps[j]
+                stress[element, point, i] = total

@@ -1,0 +1,150 @@
+"""Motion in time."""
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.analysis.equations import INERTIA, coordinate_scale, linearise
+from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
+from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.kernels.advance import advance
+from beamfem.model.model import Model
+from beamfem.model.system import System
+from beamfem.progress import progress
+from beamfem.solution import Solution, State, Statistics
+from beamfem.validation import count, positive
+
+_TOLERANCE = 1e-9
+_ITERATIONS = 25
+_CHUNK_SECONDS = 0.25
+
+
+def simulate(
+    model: Model,
+    duration: float,
+    step: float,
+    integrator: GeneralizedAlpha | None = None,
+    start: State | None = None,
+    velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
+    save_every: int = 1,
+) -> Solution:
+    """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
+
+    start: a state to start from, such as the last of a static solution; velocity: initial velocity field.
+    Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails.
+    """
+    positive("duration", duration)
+    positive("step", step)
+    count("save_every", save_every)
+    if step > duration:
+        raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
+    system = System(model, static=False)
+    rule = (integrator or GeneralizedAlpha()).rule(step)
+    steps = int(np.ceil(duration / step - 1e-9))
+    times = step * np.arange(steps + 1)
+    held = HeldMotion.sample(system, times, step)
+    n = model.size
+    state = np.zeros((4, n))
+    state[0] = start_state(system, start)
+    state[1] = start_velocity(system, state[0], velocity, start)
+    state[:3, system.held_dofs] = held.values[0]
+    state[2] = initial_acceleration(system, state, times[0])
+    state[3] = state[2]
+    states = np.empty((steps // save_every + 1, 3, n))
+    states[0] = state[:3]
+    statistics = np.array([0.0, 0.0, 0.0, 1.0])
+    scale = coordinate_scale(system)
+    done, size = 0, save_every
+    with progress("time [s]", times[-1]) as report:
+        while done < steps:
+            now = min(size, steps - done)
+            saved = np.empty((now, 3, n))
+            rows = slice(done + 1, done + now + 1)
+            inputs = (held.values[rows], *_sample_loads(system, times[rows]))
+            begun = clock.perf_counter()
+            completed = advance(
+                system.blocks,
+                system.point_loads,
+                system.layout,
+                system.free_dofs,
+                system.held_dofs,
+                state,
+                inputs,
+                rule,
+                np.array([_TOLERANCE, _ITERATIONS]),
+                scale,
+                saved,
+                statistics,
+            )
+            spent = clock.perf_counter() - begun
+            kept = np.arange(done + 1, done + completed + 1)
+            chosen = kept % save_every == 0
+            states[kept[chosen] // save_every] = saved[:completed][chosen]
+            done += completed
+            report(times[done])
+            if completed < now:
+                message = (
+                    f"the iteration of the step from {times[done]:.6g} s to {times[done + 1]:.6g} s did not converge: "
+                    f"the last correction was {statistics[2]:.2e} of the model after {_ITERATIONS} iterations at most. "
+                    "A smaller step may help"
+                )
+                raise ConvergenceError(message, _solution(system, times, states, done, save_every, statistics))
+            if spent < _CHUNK_SECONDS:
+                largest = max(int(64e6 / (24 * n)), 1)
+                size = save_every * max(min(2 * size, largest) // save_every, 1)
+    return _solution(system, times, states, done, save_every, statistics)
+
+
+def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.ndarray:
+    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates."""
+    p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
+    free = system.free_dofs
+    a[free] = 0.0
+    unbalanced, _ = linearise(system, p, v, a, time, (1.0, 0.0, 1.0))
+    _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
+    a[free] = mass.solve(-unbalanced[free])
+    return a
+
+
+@dataclass(frozen=True)
+class HeldMotion:
+    """Values, velocities and accelerations of the held coordinates (steps + 1, 3, nh)."""
+
+    values: np.ndarray
+
+    @classmethod
+    def sample(cls, system: System, times: np.ndarray, step: float) -> "HeldMotion":
+        """Sample the prescribed functions; their derivatives are central differences of fourth order."""
+        width = 0.02 * step
+        values = np.zeros((len(times), 3, len(system.held)))
+        if not any(callable(item.value) for item in system.held):
+            values[:, 0] = system.held_values(0.0)
+            return cls(values)
+        for i, now in enumerate(times):
+            centre = max(now, 2.0 * width)
+            around = [system.held_values(centre + k * width) for k in (-2, -1, 0, 1, 2)]
+            values[i, 0] = system.held_values(now)
+            values[i, 1] = (around[0] - 8 * around[1] + 8 * around[3] - around[4]) / (12.0 * width)
+            second = -around[0] + 16 * around[1] - 30 * around[2] + 16 * around[3] - around[4]
+            values[i, 2] = second / (12.0 * width**2)
+        return cls(values)
+
+
+def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    body = np.array([system.body(now) for now in times])
+    values = [system.point_values(now) for now in times]
+    return body, tuple(np.array([value[i] for value in values]) for i in range(len(system.blocks)))
+
+
+def _solution(
+    system: System, times: np.ndarray, states: np.ndarray, done: int, save_every: int, statistics: np.ndarray
+) -> Solution:
+    rows = done // save_every + 1
+    kept = states[:rows]
+    summary = Statistics(int(statistics[0]), done, 0, f"{done} steps of {times[1]:g} s")
+    return Solution(
+        system.model, False, times[: done + 1 : save_every], kept[:, 0], kept[:, 1], kept[:, 2], summary
+    )

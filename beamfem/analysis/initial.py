@@ -1,0 +1,80 @@
+"""What a motion starts from."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.system import System
+from beamfem.solution import State
+from beamfem.validation import finite, vector
+
+
+@dataclass(frozen=True)
+class RigidVelocity:
+    """Velocity of a rigid motion: vector (vx, vy) [m/s], angular [rad/s] about a point (x, y) [m]."""
+
+    vector: tuple[float, float] = (0.0, 0.0)
+    angular: float = 0.0
+    about: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vector", vector("vector of RigidVelocity", self.vector))
+        object.__setattr__(self, "about", vector("about of RigidVelocity", self.about))
+        finite("angular", self.angular)
+
+
+def start_state(system: System, start: State | None) -> np.ndarray:
+    """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
+    if start is None:
+        return system.reference.copy()
+    if len(start.p) != system.model.size:
+        raise InputError(
+            f"start has {len(start.p)} coordinates, this model has {system.model.size}; "
+            "take it from a model of the same beams, elements and support points"
+        )
+    return np.array(start.p)
+
+
+def start_velocity(
+    system: System,
+    p: np.ndarray,
+    velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None,
+    start: State | None,
+) -> np.ndarray:
+    """Return p' (n,) of a velocity field at the state p.
+
+    A function takes the reference position (2,) [m] and gives (vx, vy) [m/s]; sections then do not turn.
+    """
+    result = np.zeros(system.model.size) if start is None or velocity is not None else np.array(start.v)
+    if velocity is None:
+        return result
+    for mesh in system.model.meshes:
+        labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
+        rows = slice(mesh.first_dof, mesh.first_dof + mesh.size)
+        now, out = p[rows].reshape(mesh.nodes, -1), result[rows].reshape(mesh.nodes, -1)
+        if isinstance(velocity, RigidVelocity):
+            _rigid(velocity, labels, now, out)
+        else:
+            arc = mesh.node_arc_lengths()
+            values = np.array([vector("velocity", velocity(x)) for x in mesh.beam.curve.position(arc)])
+            out[:, :2] = values
+            if "r_x^x" in labels:
+                first = labels.index("r_x^x")
+                out[:, first : first + 2] = np.gradient(values, arc, axis=0, edge_order=1)
+    return result
+
+
+def _rigid(velocity: RigidVelocity, labels: tuple[str, ...], now: np.ndarray, out: np.ndarray) -> None:
+    for column, label in enumerate(labels):
+        if label == "theta":
+            out[:, column] = velocity.angular
+            continue
+        name, axis = label.split("^")
+        other = now[:, labels.index(f"{name}^{'y' if axis == 'x' else 'x'}")]
+        component = "xy".index(axis)
+        lever = other - (velocity.about[1 - component] if name == "r" else 0.0)
+        out[:, column] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
+        if name == "r":
+            out[:, column] += velocity.vector[component]

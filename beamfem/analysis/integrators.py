@@ -1,0 +1,30 @@
+"""Time integrators."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.validation import finite
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalized-alpha method, second order, unconditionally stable for linear systems; Chung and Hulbert 1993.
+
+    rho_inf in [0, 1] [-]: spectral radius at infinite frequency; 1 keeps all, 0 removes it in one step.
+    Raises InputError.
+    """
+
+    rho_inf: float = 0.9
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= finite("rho_inf", self.rho_inf) <= 1.0:
+            raise InputError(f"rho_inf lies between 0 and 1, got {self.rho_inf}")
+
+    def rule(self, step: float) -> np.ndarray:
+        """Return step [s], alpha_m, alpha_f, gamma, beta."""
+        alpha_m = (2.0 * self.rho_inf - 1.0) / (self.rho_inf + 1.0)
+        alpha_f = self.rho_inf / (self.rho_inf + 1.0)
+        gamma = 0.5 + alpha_f - alpha_m
+        return np.array([step, alpha_m, alpha_f, gamma, 0.25 * (gamma + 0.5) ** 2])

@@ -1,0 +1,114 @@
+"""Newton's method for an equilibrium at a fixed load factor."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.equations import STATICS, coordinate_scale, linearise, predicted_stresses, residual
+from beamfem.model.system import System
+
+
+class Ended(Enum):
+    """Why an iteration ended; the values are the sentences that users read."""
+
+    CONVERGED = "the correction and the residual are within the tolerance"
+    ROUND_OFF = "the residual has reached the round-off floor of the model"
+    DIVERGED = "the corrections grew beyond the size of the model"
+    EXHAUSTED = "the iterations ran out before the corrections became small"
+    SINGULAR = "the tangent is singular"
+
+    @property
+    def good(self) -> bool:
+        return self in (Ended.CONVERGED, Ended.ROUND_OFF)
+
+
+@dataclass(frozen=True)
+class NewtonResult:
+    """The last state (n,) of an iteration, how many iterations it took and why it ended."""
+
+    state: np.ndarray
+    iterations: int
+    ended: Ended
+
+
+@dataclass(frozen=True)
+class Newton:
+    """How to iterate.
+
+    tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
+    relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
+    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
+    """
+
+    tolerance: float = 1e-10
+    residual_tolerance: float = 1e-9
+    iterations: int = 30
+    independent_stresses: bool = True
+
+
+def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
+    """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
+    p, rest = start.copy(), np.zeros(len(start))
+    scale = coordinate_scale(system)
+    free = system.free_dofs
+    stresses = None
+    held_step = np.zeros(len(p))
+    held_step[system.held_dofs] = system.held_values(load_factor) - p[system.held_dofs]
+    last = np.inf
+    for iteration in range(1, newton.iterations + 1):
+        unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
+        step = held_step if iteration == 1 else np.zeros(len(p))
+        right = -unbalanced[free]
+        if iteration == 1 and np.any(held_step):
+            right -= _held_force(system, p, held_step, load_factor)[free]
+        try:
+            step[free] = tangent.solve(right)
+        except (LinAlgError, ValueError):
+            return NewtonResult(p, iteration, Ended.SINGULAR)
+        if newton.independent_stresses:
+            stresses = predicted_stresses(system, p, step)
+        p = p + step
+        size = float(np.max(np.abs(step) / scale, initial=0.0))
+        if not np.isfinite(size) or size > 1e3:
+            return NewtonResult(start, iteration, Ended.DIVERGED)
+        floor = round_off_floor(system, p)
+        largest = float(np.max(np.abs(unbalanced[free]), initial=0.0))
+        force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
+        small = largest <= max(newton.residual_tolerance * force, floor)
+        if size <= newton.tolerance and (small or iteration > 1):
+            return NewtonResult(p, iteration, Ended.CONVERGED)
+        if iteration > 2 and largest <= floor and size > 0.25 * last:
+            return NewtonResult(p, iteration, Ended.ROUND_OFF)
+        last = size
+    return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def round_off_floor(system: System, p: np.ndarray) -> float:
+    """Return the residual [N] that is left by cancellation when strains are formed from positions.
+
+    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l, and the
+    section answers with its largest axial stiffness.
+    """
+    worst = 0.0
+    for block in system.blocks:
+        stiffest = float(block.stiffness[:, :, 0, 0].max())
+        worst = max(worst, stiffest / float(block.jacobian.min()))
+    reach = max(float(np.max(np.abs(p))), max(beam.curve.length for beam in system.model.beams))
+    return 8.0 * np.finfo(float).eps * worst * reach
+
+
+def _load_size(system: System, load_factor: float) -> float:
+    """Largest force or moment that acts; keeps the residual's scale above zero where nothing reacts."""
+    values = [np.abs(forces).max(initial=0.0) for forces in system.point_values(load_factor)]
+    return float(max(values, default=0.0))
+
+
+def _held_force(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
+    """Change of the residual with a step (n,) of the held coordinates, by a central difference."""
+    rest = np.zeros(len(p))
+    size = 1e-6 / max(float(np.max(np.abs(step))), 1e-300)
+    ahead = residual(system, p + size * step, rest, rest, load_factor)
+    behind = residual(system, p - size * step, rest, rest, load_factor)
+    return np.asarray((ahead - behind) / (2.0 * size))

@@ -1,0 +1,79 @@
+"""Static equilibrium under loads that grow with a load factor from 0 to 1."""
+
+import numpy as np
+
+from beamfem.analysis.free_motion import require_support
+from beamfem.analysis.newton import Ended, Newton, solve_equilibrium
+from beamfem.errors import ConvergenceError
+from beamfem.model.model import Model
+from beamfem.model.system import System
+from beamfem.progress import progress
+from beamfem.solution import Solution, Statistics
+
+_SMALLEST_STEP = 1e-6
+_EASY_ITERATIONS = 8
+
+
+def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> Solution:
+    """Return the equilibria from load factor 0 to 1; steps are cut and grown as the iterations need.
+
+    steps: load steps to start with. Rows of the result: load factor 0 (loads with scale=False), ..., 1.
+    Raises FreeMotionError before, ConvergenceError (with the states found) where it cannot go on.
+    """
+    system = System(model, static=True)
+    require_support(system)
+    newton = newton or Newton()
+    done = _Record(model)
+    first = solve_equilibrium(system, system.reference, 0.0, newton)
+    done.iterations += first.iterations
+    if not first.ended.good:
+        done.add(0.0, system.reference)
+        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution())
+    done.add(0.0, first.state)
+    done.ended = first.ended
+    reached, step = 0.0, 1.0 / steps
+    with progress("load factor", 1.0) as report:
+        while reached < 1.0:
+            target = 1.0 if reached + step > 1.0 - 1e-12 else reached + step
+            result = solve_equilibrium(system, done.states[-1], target, newton)
+            done.iterations += result.iterations
+            if result.ended.good:
+                reached = target
+                done.add(reached, result.state)
+                done.ended = result.ended
+                report(reached)
+                if result.iterations <= _EASY_ITERATIONS:
+                    step *= 2.0
+                continue
+            done.cuts += 1
+            step *= 0.5
+            if step < _SMALLEST_STEP:
+                raise ConvergenceError(
+                    f"no equilibrium found beyond load factor {reached:.6g}: {result.ended.value}, "
+                    f"with load steps down to {_SMALLEST_STEP:g}. A limit point or a bifurcation may lie here",
+                    done.solution(),
+                )
+    return done.solution()
+
+
+class _Record:
+    """What has been found so far."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.load_factors: list[float] = []
+        self.states: list[np.ndarray] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = Ended.CONVERGED
+
+    def add(self, load_factor: float, state: np.ndarray) -> None:
+        self.load_factors.append(load_factor)
+        self.states.append(state)
+
+    def solution(self) -> Solution:
+        states = np.array(self.states)
+        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, self.ended.value)
+        return Solution(
+            self.model, True, np.array(self.load_factors), states, np.zeros_like(states), np.zeros_like(states), statistics
+        )

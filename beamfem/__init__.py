@@ -1,5 +1,10 @@
 """Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
 
+from beamfem.analysis.dynamics import simulate
+from beamfem.analysis.initial import RigidVelocity
+from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.newton import Newton
+from beamfem.analysis.statics import solve_static
 from beamfem.curves import Line
 from beamfem.element.element import ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, Element
 from beamfem.element.forces import ContinuumMechanics
@@ -10,3 +15,4 @@ from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMomen
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
 from beamfem.section import Rectangle, Section
+from beamfem.solution import Solution

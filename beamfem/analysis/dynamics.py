@@ -145,6 +145,4 @@ def _solution(
     rows = done // save_every + 1
     kept = states[:rows]
     summary = Statistics(int(statistics[0]), done, 0, f"{done} steps of {times[1]:g} s")
-    return Solution(
-        system.model, False, times[: done + 1 : save_every], kept[:, 0], kept[:, 1], kept[:, 2], summary
-    )
+    return Solution(system.model, False, times[: done + 1 : save_every], kept[:, 0], kept[:, 1], kept[:, 2], summary)

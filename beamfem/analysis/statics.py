@@ -28,7 +28,9 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     done.iterations += first.iterations
     if not first.ended.good:
         done.add(0.0, system.reference)
-        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution())
+        raise ConvergenceError(
+            f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
+        )
     done.add(0.0, first.state)
     done.ended = first.ended
     reached, step = 0.0, 1.0 / steps
@@ -75,5 +77,11 @@ class _Record:
         states = np.array(self.states)
         statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, self.ended.value)
         return Solution(
-            self.model, True, np.array(self.load_factors), states, np.zeros_like(states), np.zeros_like(states), statistics
+            self.model,
+            True,
+            np.array(self.load_factors),
+            states,
+            np.zeros_like(states),
+            np.zeros_like(states),
+            statistics,
         )

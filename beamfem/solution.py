@@ -1,0 +1,198 @@
+"""A solution: states of a model over load factor or time, and what users ask of them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem import postprocess
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
+from beamfem.model.loads import factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.postprocess import Fields, SectionForces
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence."""
+
+    iterations: int
+    steps: int
+    cuts: int
+    ended: str
+
+
+@dataclass(frozen=True)
+class State:
+    """Coordinates p (n,), their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
+
+    p: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    at: float
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies (steps,) [J]; potential is that of gravity and of the other constant dead forces."""
+
+    kinetic: np.ndarray
+    strain: np.ndarray
+    potential: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        return self.kinetic + self.strain + self.potential
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """States of a model: row 0 is the start, the last row the end.
+
+    at (steps,): load factors or times [s]; p, v, a (steps, n).
+    """
+
+    model: Model
+    static: bool
+    at: np.ndarray
+    p: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    statistics: Statistics
+
+    def __len__(self) -> int:
+        return len(self.at)
+
+    def __getitem__(self, row: int) -> State:
+        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]))
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times (steps,) [s]. Raises InputError for a static solution."""
+        if self.static:
+            raise InputError("a static solution has no time; use load_factor")
+        return self.at
+
+    @property
+    def load_factor(self) -> np.ndarray:
+        """Load factors (steps,). Raises InputError for a motion."""
+        if not self.static:
+            raise InputError("a motion has no load factor; use time")
+        return self.at
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations in all."""
+        return self.statistics.iterations
+
+    def fields(self, point: Point) -> Fields:
+        """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps."""
+        mesh = self.model.mesh_of(point)
+        element, xi = mesh.locate(point.fraction)
+        found = postprocess.fields(mesh, self.p, np.array([element]), np.array([xi]))
+        return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point (steps, 2) [m]."""
+        return self._axis(point, postprocess.nodal_vectors(self.model.mesh_of(point), self.p)).r[:, 0]
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference (steps, 2) [m]."""
+        return self.position(point) - point.reference
+
+    def velocity(self, point: Point) -> np.ndarray:
+        """Return the velocity of a point (steps, 2) [m/s]."""
+        return self._axis(point, postprocess.nodal_velocities(self.model.mesh_of(point), self.p, self.v)).r[:, 0]
+
+    def rotation(self, point: Point) -> np.ndarray:
+        """Return the rotation of the section from the reference (steps,) [rad], counter-clockwise, continuous."""
+        return np.asarray(self.fields(point).rotation)
+
+    def _axis(self, point: Point, vectors: np.ndarray) -> postprocess.Axis:
+        mesh = self.model.mesh_of(point)
+        element, xi = mesh.locate(point.fraction)
+        return postprocess.axis(mesh, vectors, np.array([element]), np.array([xi]))
+
+    def reaction(self, point: Point) -> np.ndarray:
+        """Return what a support does to the beam (steps, 3): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        from beamfem.reactions import reaction
+
+        return reaction(self, point)
+
+    def section_forces(self, beam: Beam) -> SectionForces:
+        """Return normal and shear force and moment at the Gauss points of a beam (steps, stations)."""
+        return postprocess.section_forces(self.model.mesh_of(beam.start), self.p)
+
+    @cached_property
+    def _momenta(self) -> tuple[postprocess.Momenta, ...]:
+        return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
+
+    def energy(self) -> Energy:
+        """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
+        kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
+        strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
+        return Energy(kinetic, strain, self._potential())
+
+    def _potential(self) -> np.ndarray:
+        result = np.zeros(len(self))
+        for load in self.model.gravity:
+            weights = np.array([factor(load, at, self.static) for at in self.at])
+            for mesh, carried in zip(self.model.meshes, self._momenta, strict=True):
+                result -= weights * ((carried.first_moment - _reference_moment(mesh)) @ np.array(load.vector))
+        for load in self.model.point_loads:
+            weights = np.array([factor(load, at, self.static) for at in self.at])
+            result -= weights * (self.displacement(load.point) @ np.array(load.value[:2]))
+            if load.value[2]:
+                result -= weights * load.value[2] * self.rotation(load.point)
+        for spread in self.model.distributed:
+            weights = np.array([factor(spread, at, self.static) for at in self.at])
+            mesh = self.model.mesh_of(spread.beam.start)
+            element, xi, weight = postprocess.gauss_points(mesh)
+            now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.p), element, xi).r
+            start = mesh.beam.curve.position(mesh.vertices[element] + xi * mesh.lengths[element])
+            result -= weights * (np.einsum("sqc,c->sq", now - start, np.array(spread.vector)) @ weight)
+        return result
+
+    def linear_momentum(self) -> np.ndarray:
+        """Return the linear momentum (steps, 2) [kg m/s]."""
+        return np.asarray(sum(m.linear for m in self._momenta))
+
+    def angular_momentum(self) -> np.ndarray:
+        """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
+        return np.asarray(sum(m.angular for m in self._momenta))
+
+    def to_vtk(self, path: str | PathLike[str]) -> None:
+        """Write the deformed body and the centreline for ParaView: `path` ends in .pvd."""
+        from beamfem.io.vtk import write_pvd
+
+        write_pvd(self, path)
+
+    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """Draw deformed shapes with matplotlib, into a file where `path` is given; return the figure."""
+        from beamfem.view.plots import plot_shapes
+
+        return plot_shapes(self, path, **options)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write model and states into one HDF5 file."""
+        from beamfem.io.results import save
+
+        save(self, path)
+
+
+def _reference_moment(mesh: BeamMesh) -> np.ndarray:
+    """Integral of the reference position over the mass (2,) [kg m]."""
+    element, xi, weight = postprocess.gauss_points(mesh)
+    position = mesh.beam.curve.position(mesh.vertices[element] + xi * mesh.lengths[element])
+    return np.asarray(weight @ position * mesh.beam.material.density * mesh.beam.section.area)
+
+
+def _single(value: Any) -> Any:
+    """Drop the axis of points."""
+    if isinstance(value, postprocess.Components):
+        return postprocess.Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
+    return value[:, 0]

@@ -16,3 +16,38 @@ from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
 from beamfem.section import Rectangle, Section
 from beamfem.solution import Solution
+
+__all__ = [
+    "ANCF",
+    "ANCFCRBF",
+    "Beam",
+    "BeamfemError",
+    "BilinearANCF",
+    "BilinearCRBF",
+    "Clamp",
+    "ContinuumMechanics",
+    "ConvergenceError",
+    "DistributedLoad",
+    "Element",
+    "FreeMotionError",
+    "GeneralizedAlpha",
+    "Gravity",
+    "InputError",
+    "Line",
+    "Material",
+    "Model",
+    "Newton",
+    "Pin",
+    "Point",
+    "PointForce",
+    "PointMoment",
+    "Prescribed",
+    "Rectangle",
+    "RigidVelocity",
+    "Roller",
+    "Section",
+    "Solution",
+    "UnknownPointError",
+    "simulate",
+    "solve_static",
+]

@@ -143,11 +143,12 @@ class Solution:
             weights = np.array([factor(load, at, self.static) for at in self.at])
             for mesh, carried in zip(self.model.meshes, self._momenta, strict=True):
                 result -= weights * ((carried.first_moment - _reference_moment(mesh)) @ np.array(load.vector))
-        for load in self.model.point_loads:
-            weights = np.array([factor(load, at, self.static) for at in self.at])
-            result -= weights * (self.displacement(load.point) @ np.array(load.value[:2]))
-            if load.value[2]:
-                result -= weights * load.value[2] * self.rotation(load.point)
+        for acting in self.model.point_loads:
+            weights = np.array([factor(acting, at, self.static) for at in self.at])
+            fx, fy, moment = acting.value
+            result -= weights * (self.displacement(acting.point) @ np.array([fx, fy]))
+            if moment:
+                result -= weights * moment * self.rotation(acting.point)
         for spread in self.model.distributed:
             weights = np.array([factor(spread, at, self.static) for at in self.at])
             mesh = self.model.mesh_of(spread.beam.start)

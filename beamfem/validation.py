@@ -36,7 +36,7 @@ def count(name: str, value: Any) -> int:
     return int(value)
 
 
-def vector(name: str, value: Sequence[float]) -> tuple[float, float]:
+def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return `value` as two finite floats, or raise InputError naming it."""
     try:
         numbers = tuple(float(component) for component in value)

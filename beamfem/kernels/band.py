@@ -1,4 +1,4 @@
-"""LU factorisation of a band matrix in row storage: row i holds A[i, i - w .. i + w], so that inner loops are contiguous.
+"""LU factorisation of a band matrix in row storage: row i holds A[i, i - w .. i + w], inner loops are contiguous.
 
 No pivoting: tangents of a supported beam have strong diagonals. Growth is watched, and whoever calls can then ask
 SciPy's pivoted solver.

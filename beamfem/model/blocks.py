@@ -83,7 +83,7 @@ def locate_loads(block: Block, element: Element, meshes: list[BeamMesh], points:
 
 def _classes(lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Classes of elements of equal length, to round-off of the arc length: (nc,) lengths and (ne,) class numbers."""
-    _, first, kind = np.unique(np.round(lengths / lengths.max(), 9), return_index=True, return_inverse=True)
+    _, kind = np.unique(np.round(lengths / lengths.max(), 9), return_inverse=True)
     members = np.bincount(kind)
     return np.bincount(kind, weights=lengths) / members, kind.astype(np.int64)
 

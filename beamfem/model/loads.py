@@ -83,7 +83,7 @@ class PointForce:
 
 @dataclass(frozen=True)
 class PointMoment:
-    """Moment [N m], counter-clockwise, on the section direction d: virtual work M dtheta, dtheta = d x delta d / |d|^2."""
+    """Moment [N m], counter-clockwise, on d: virtual work M dtheta with dtheta = d x delta d / |d|^2."""
 
     point: Point
     moment: float

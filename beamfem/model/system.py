@@ -82,9 +82,9 @@ class System:
         result = np.zeros((len(self.model.beams), 4))
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
-        for load in self.model.distributed:
-            row = next(i for i, beam in enumerate(self.model.beams) if beam is load.beam)
-            result[row, 2:] += np.array(load.vector) * factor(load, time, self.static)
+        for spread in self.model.distributed:
+            row = next(i for i, beam in enumerate(self.model.beams) if beam is spread.beam)
+            result[row, 2:] += np.array(spread.vector) * factor(spread, time, self.static)
         return result
 
     @cached_property

@@ -1,0 +1,1 @@
+"""Reading and writing: an exporter knows only a Solution."""

@@ -1,6 +1,7 @@
 """Elastic forces: strain measures and the section stiffness that goes with them."""
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
@@ -50,7 +51,7 @@ class ContinuumMechanics:
         axial = lam + 2.0 * mu
         matrix[0, 0] = matrix[3, 3] = axial * area
         matrix[1, 1] = axial * second
-        matrix[2, 2] = axial * fourth
+        matrix[2, 2] = axial * cast(float, fourth)
         matrix[0, 2] = matrix[2, 0] = axial * second
         matrix[0, 3] = matrix[3, 0] = lam * area
         matrix[2, 3] = matrix[3, 2] = lam * second

@@ -1,0 +1,147 @@
+"""A model as plain numbers, lists and names for JSON, and back."""
+
+from bisect import bisect_left
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from beamfem.curves import Line
+from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.element import Element
+from beamfem.element.fields import Cubic, Lagrange
+from beamfem.element.forces import ContinuumMechanics
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.model.beam import Beam, Point
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.model import Model
+from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
+from beamfem.section import Section
+from beamfem.validation import function_value
+
+_CLASSES = {
+    kind.__name__: kind
+    for kind in (
+        Line,
+        Section,
+        Material,
+        Element,
+        Cubic,
+        Lagrange,
+        Gradients,
+        Rotation,
+        ContinuumMechanics,
+        Beam,
+        Point,
+        Clamp,
+        Pin,
+        Roller,
+        Prescribed,
+        Gravity,
+        DistributedLoad,
+        PointForce,
+        PointMoment,
+        Model,
+    )
+}
+# numbers of kernels belong to this version of the code, not to the model
+_NOT_SAVED = ("code",)
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """A function saved as values (n,) at increasing times [s] or load factors at (n,), linear between them."""
+
+    at: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __call__(self, at: float) -> float:
+        """Return the value at a time [s] or load factor. Raises InputError outside of the saved range."""
+        if not self.at[0] <= at <= self.at[-1]:
+            raise InputError(
+                f"this function was saved as its values from {self.at[0]:g} to {self.at[-1]:g} and cannot be "
+                f"evaluated at {at:g}; to run the model there, give it the function itself again"
+            )
+        after = bisect_left(self.at, at)
+        if self.at[after] == at:
+            return self.values[after]
+        share = (at - self.at[after - 1]) / (self.at[after] - self.at[after - 1])
+        return (1.0 - share) * self.values[after - 1] + share * self.values[after]
+
+
+def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
+    """Return the description of a model whose functions are used at times [s] or load factors at (steps,).
+
+    Raises InputError for a part that cannot be saved.
+    """
+    writer = _Writer(model, [float(value) for value in np.unique(at)])
+    beams = [writer.members(beam) for beam in model.beams]
+    described = writer.members(model)
+    return {"beams": beams, "model": described, "at": writer.at, "functions": writer.values}
+
+
+def rebuild(description: dict[str, Any]) -> Model:
+    """Return the model of a description; its functions are `Sampled`. Raises InputError for an unknown class."""
+    at = tuple(description["at"])
+    functions = [Sampled(at, tuple(values)) for values in description["functions"]]
+    beams: list[Beam] = []
+    for beam in description["beams"]:
+        beams.append(_read(beam, beams, functions))
+    model = _read(description["model"], beams, functions)
+    assert isinstance(model, Model)
+    return model
+
+
+class _Writer:
+    """Beams and functions are written once and meant by number."""
+
+    def __init__(self, model: Model, at: list[float]) -> None:
+        self.beams = model.beams
+        self.at = at
+        self.functions: list[Callable[[float], float]] = []
+        self.values: list[list[float]] = []
+
+    def members(self, value: Any) -> dict[str, Any]:
+        names = [field.name for field in fields(value) if field.name not in _NOT_SAVED]
+        return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
+
+    def write(self, value: Any) -> Any:
+        if isinstance(value, Beam):
+            return {"beam": next(i for i, beam in enumerate(self.beams) if beam is value)}
+        if _CLASSES.get(type(value).__name__) is type(value):
+            return self.members(value)
+        if isinstance(value, np.ndarray | np.generic):
+            return value.tolist()
+        if isinstance(value, tuple | list):
+            return [self.write(item) for item in value]
+        if value is None or isinstance(value, bool | int | float | str):
+            return value
+        if callable(value):
+            return {"function": self.number(value)}
+        raise InputError(f"a {type(value).__name__} cannot be saved; the parts that can are {', '.join(_CLASSES)}")
+
+    def number(self, function: Callable[[float], float]) -> int:
+        for i, known in enumerate(self.functions):
+            if known is function:
+                return i
+        self.functions.append(function)
+        self.values.append([function_value("saved function", function, at) for at in self.at])
+        return len(self.functions) - 1
+
+
+def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:
+    if isinstance(value, list):
+        return tuple(_read(item, beams, functions) for item in value)
+    if not isinstance(value, dict):
+        return value
+    if "beam" in value and "class" not in value:
+        return beams[value["beam"]]
+    if "function" in value:
+        return functions[value["function"]]
+    name = value["class"]
+    if name not in _CLASSES:
+        raise InputError(f"this version of beamfem knows no {name}; a newer one may")
+    members = {key: _read(item, beams, functions) for key, item in value.items() if key != "class"}
+    return _CLASSES[name](**members)

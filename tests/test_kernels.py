@@ -1,0 +1,127 @@
+"""Tangents against finite differences, rigid motion, the band solver; every combination."""
+
+import numpy as np
+import pytest
+from conftest import beam
+from scipy.linalg import solve_banded
+
+import beamfem as bf
+from beamfem.analysis.equations import Tangent, linearise, predicted_stresses
+from beamfem.model.system import System
+from beamfem.postprocess import axis, gauss_points, nodal_vectors
+
+
+def dense(tangent):
+    rows = tangent.rows
+    n, width = rows.shape
+    half = width // 2
+    matrix = np.zeros((n, n))
+    for i in range(n):
+        for j in range(max(0, i - half), min(n, i + half + 1)):
+            matrix[i, j] = rows[i, half + j - i]
+    return matrix
+
+
+@pytest.mark.parametrize("weights", [(1.0, 0.0, 0.0), (1.0, 0.7, 0.3), (0.0, 0.0, 1.0)])
+def test_tangent_equals_finite_differences(element, rng, weights):
+    one = beam(element)
+    loads = [
+        bf.PointMoment(one.at(0.4), 3.0),
+        bf.PointForce(one.end, (1.0, 2.0)),
+        bf.Gravity((1.0, -9.81)),
+        bf.DistributedLoad(one, (2.0, 1.0)),
+    ]
+    system = System(bf.Model([one], loads=loads), static=False)
+    n = system.model.size
+    p = system.reference + 0.1 * rng.standard_normal(n)
+    v, a = rng.standard_normal(n), rng.standard_normal(n)
+    ck, cv, ca = weights
+    tangent = dense(linearise(system, p, v, a, 0.0, weights)[1])
+    h = 1e-6
+    numeric = np.empty((n, n))
+    for j in range(n):
+        d = np.zeros(n)
+        d[j] = h
+        ahead = linearise(system, p + ck * d, v + cv * d, a + ca * d, 0.0, (1.0, 1.0, 1.0))[0]
+        behind = linearise(system, p - ck * d, v - cv * d, a - ca * d, 0.0, (1.0, 1.0, 1.0))[0]
+        numeric[:, j] = (ahead - behind) / (2 * h)
+    assert np.abs(tangent - numeric).max() <= 1e-8 * np.abs(numeric).max()
+
+
+def test_predicted_stresses_of_no_step_are_the_true_ones(element, rng):
+    system = System(bf.Model([beam(element)]), static=True)
+    p = system.reference + 0.1 * rng.standard_normal(system.model.size)
+    rest = np.zeros_like(p)
+    stresses = predicted_stresses(system, p, rest)
+    plain = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))[1].rows
+    mixed = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0), stresses)[1].rows
+    assert np.abs(plain - mixed).max() <= 1e-13 * np.abs(plain).max()
+
+
+def moved(system, angle, shift):
+    """Coordinates of the reference after a rigid motion."""
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s], [s, c]])
+    p = system.reference.copy()
+    mesh = system.model.meshes[0]
+    labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
+    table = p.reshape(mesh.nodes, -1)
+    for column, label in enumerate(labels):
+        if label == "theta":
+            table[:, column] += angle
+        elif label.endswith("^x"):
+            table[:, column : column + 2] = table[:, column : column + 2] @ turn.T
+    table[:, :2] += shift
+    return p
+
+
+@pytest.mark.parametrize("angle", [0.3, 2.0, -3.1, 40.0])
+@pytest.mark.parametrize("distance", [0.0, 1000.0])
+def test_rigid_motion_gives_no_strain(element, angle, distance):
+    system = System(bf.Model([beam(element)]), static=True)
+    mesh = system.model.meshes[0]
+    reach = distance * mesh.beam.curve.length
+    p = moved(system, angle, np.array([reach, -reach]))
+    where, xi, _ = gauss_points(mesh)
+    now = axis(mesh, nodal_vectors(mesh, p[None]), where, xi)
+    strains = mesh.beam.element.forces.strains(now.r_s, now.d, now.d_s)
+    # a position of size |r| keeps eps |r|; divided by an element's length, a strain keeps eps |r| / l
+    floor = 40 * np.finfo(float).eps * (1.0 + reach / mesh.lengths.min())
+    assert np.abs(strains).max() <= floor
+
+
+def test_uniform_stretch_is_a_patch(element):
+    system = System(bf.Model([beam(element, end=(1.0, 0.0))]), static=True)
+    mesh = system.model.meshes[0]
+    p = system.reference.copy()
+    table = p.reshape(mesh.nodes, -1)
+    labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
+    table[:, 0] *= 1.1
+    if "r_x^x" in labels:
+        table[:, labels.index("r_x^x")] *= 1.1
+    rest = np.zeros_like(p)
+    force, _ = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))
+    inner = force.reshape(mesh.nodes, -1)[1:-1, :2]
+    assert np.abs(inner).max() <= 1e-12 * np.abs(force).max()
+
+
+def test_band_solver_equals_scipy(rng):
+    n, half = 40, 5
+    rows = rng.standard_normal((n, 2 * half + 1))
+    rows[:, half] += 12.0
+    for i in range(n):
+        for j in range(2 * half + 1):
+            if not 0 <= i + j - half < n:
+                rows[i, j] = 0.0
+    right = rng.standard_normal(n)
+    matrix = dense(Tangent(rows))
+    expected = np.linalg.solve(matrix, right)
+    assert np.abs(Tangent(rows).solve(right) - expected).max() <= 1e-13
+    assert np.abs(Tangent(rows)._solve_pivoted(right) - expected).max() <= 1e-13
+
+
+def test_band_solver_pivots_where_it_must():
+    rows = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    right = np.array([2.0, 3.0])
+    assert Tangent(rows).solve(right) == pytest.approx([3.0, 2.0], abs=1e-15)
+    assert solve_banded((1, 1), np.array([[0, 1.0], [0, 0], [1.0, 0]]), right) == pytest.approx([3.0, 2.0], abs=1e-15)

@@ -1,0 +1,369 @@
+"""The compiled kernels against the readable scikit-fem forms, to round-off."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from skfem import MeshLine
+
+from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
+from beamfem.analysis.equations import INERTIA, STATICS, linearise, residual
+from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.fields import Cubic, Field, Lagrange
+from beamfem.element.skfem_element import BeamMapping, FieldElement
+from beamfem.forms import (
+    beam_basis,
+    elastic_force,
+    elastic_tangent,
+    gravity_load,
+    mass,
+    mass_basis,
+    nodal_numbers,
+    strain_energy,
+)
+from beamfem.model.beam import Beam
+from beamfem.model.system import System
+from beamfem.postprocess import strain_energy as kernel_strain_energy
+
+GRAVITY = (1.3, -9.81)
+FIELDS = [Cubic(), Lagrange(1), Lagrange(2), Lagrange(3)]
+STATES = [0.0, 0.2]  # size of the random change of the coordinates
+
+each_field = pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+each_state = pytest.mark.parametrize("size", STATES, ids=["reference", "deformed"])
+each_law = pytest.mark.parametrize("plane_stress", [False, True], ids=["solid", "plane_stress"])
+each_integration = pytest.mark.parametrize("integration", ["full", "reduced"])
+
+
+def make_system(element: Element) -> System:
+    """An oblique beam whose pin splits one of three equal elements, so that element lengths differ."""
+    section, material = Section(2e-3, 1.1e-6), Material(2.1e9, 0.3, 7800.0)
+    beam = Beam(Line((0.3, -0.2), (1.6, 0.7)), 3, element, section, material)
+    return System(Model([beam], [Pin(beam.at(0.42))], [Gravity(GRAVITY)]), static=False)
+
+
+def random_state(system: System, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    random = np.random.default_rng(7)
+    change, v, a = random.uniform(-1.0, 1.0, (3, system.model.size))
+    return system.reference + size * change, 3.0 * v, 20.0 * a
+
+
+def dense(system: System, rows: np.ndarray) -> np.ndarray:
+    n, width = rows.shape
+    half = width // 2
+    matrix = np.zeros((n, n))
+    for row in range(n):
+        for column in range(max(row - half, 0), min(row + half + 1, n)):
+            matrix[row, column] = rows[row, half + column - row]
+    return matrix
+
+
+def tangent_of(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, coefficients: tuple) -> np.ndarray:
+    """Tangent of the unknown coordinates."""
+    return dense(system, linearise(system, p, v, a, 0.0, coefficients)[1].rows)
+
+
+def assert_equal_to_round_off(actual: np.ndarray, expected: np.ndarray, scale: float | None = None) -> None:
+    scale = np.abs(expected).max() if scale is None else scale
+    np.testing.assert_allclose(actual, expected, rtol=0.0, atol=1e-12 * scale)
+
+
+@dataclass
+class Oracle:
+    """Forms of the only beam of a system in the numbering of e."""
+
+    system: System
+
+    def __post_init__(self) -> None:
+        mesh = self.system.model.meshes[0]
+        beam = mesh.beam
+        self.basis, self.mass_basis = beam_basis(mesh), mass_basis(mesh)
+        self.numbers = nodal_numbers(self.basis)
+        law = beam.element.forces.plane_stress
+        self.lame = {"lam": beam.material.lame_lambda(law), "mu": beam.material.shear_modulus}
+        self.density = beam.material.density
+
+    def _vector(self, assembled: np.ndarray) -> np.ndarray:
+        result = np.empty(len(assembled))
+        result[self.numbers] = assembled
+        return result
+
+    def _matrix(self, assembled) -> np.ndarray:
+        result = np.empty(assembled.shape)
+        result[np.ix_(self.numbers, self.numbers)] = assembled.toarray()
+        return result
+
+    def force(self, e: np.ndarray) -> np.ndarray:
+        return self._vector(elastic_force.assemble(self.basis, u=e[self.numbers], **self.lame))
+
+    def stiffness(self, e: np.ndarray) -> np.ndarray:
+        return self._matrix(elastic_tangent.assemble(self.basis, u=e[self.numbers], **self.lame))
+
+    def energy(self, e: np.ndarray) -> float:
+        return strain_energy.assemble(self.basis, u=e[self.numbers], **self.lame)
+
+    def mass(self) -> np.ndarray:
+        return self._matrix(mass.assemble(self.mass_basis, density=self.density))
+
+    def weight(self) -> np.ndarray:
+        gx, gy = GRAVITY
+        return self._vector(gravity_load.assemble(self.mass_basis, density=self.density, gx=gx, gy=gy))
+
+    def scale(self) -> float:
+        """Largest force that a nodal change of order 1 causes, the yardstick where elastic forces cancel."""
+        return float(np.abs(self.stiffness(self.system.reference)).max())
+
+
+@dataclass
+class RotatedOracle:
+    """e(p), B and B' of paper, eqs. (5) to (7), written out; angles are theta plus the slope of the beam."""
+
+    system: System
+    per_node: int
+
+    def angles(self, p: np.ndarray) -> np.ndarray:
+        line = self.system.model.beams[0].curve
+        slope = np.arctan2(line.end[1] - line.start[1], line.end[0] - line.start[0])
+        return p.reshape(-1, self.per_node)[:, -1] + slope
+
+    def e(self, p: np.ndarray) -> np.ndarray:
+        linear, t = p.reshape(-1, self.per_node)[:, :-1], self.angles(p)
+        return np.column_stack([linear, -np.sin(t), np.cos(t)]).ravel()
+
+    def _per_node(self, identity: float, columns: np.ndarray) -> np.ndarray:
+        nodes, n = len(columns), self.per_node
+        result = np.zeros((nodes * (n + 1), nodes * n))
+        for node, column in enumerate(columns):
+            row, col = node * (n + 1), node * n
+            result[row : row + n - 1, col : col + n - 1] = identity * np.eye(n - 1)
+            result[row + n - 1 : row + n + 1, col + n - 1] = column
+        return result
+
+    def b(self, p: np.ndarray) -> np.ndarray:
+        t = self.angles(p)
+        return self._per_node(1.0, np.column_stack([-np.cos(t), -np.sin(t)]))
+
+    def b_dot(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+        t, rate = self.angles(p), v.reshape(-1, self.per_node)[:, -1]
+        return self._per_node(0.0, np.column_stack([np.sin(t) * rate, -np.cos(t) * rate]))
+
+    def b_transposed_slope(self, p: np.ndarray, f: np.ndarray) -> np.ndarray:
+        """d(B^T)/dp f: (sin t, -cos t) . f on the diagonal of each angle."""
+        t, pairs = self.angles(p), f.reshape(-1, self.per_node + 1)[:, -2:]
+        diagonal = np.zeros(p.shape).reshape(-1, self.per_node)
+        diagonal[:, -1] = np.sin(t) * pairs[:, 0] - np.cos(t) * pairs[:, 1]
+        return np.diag(diagonal.ravel())
+
+    def acceleration_slopes(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """d(B a + B' v)/dp and d(B' v)/dv."""
+        t = self.angles(p)
+        rate, turn = v.reshape(-1, self.per_node)[:, -1], a.reshape(-1, self.per_node)[:, -1]
+        x = np.sin(t) * turn + np.cos(t) * rate**2
+        y = -np.cos(t) * turn + np.sin(t) * rate**2
+        return self._per_node(0.0, np.column_stack([x, y])), 2.0 * self.b_dot(p, v)
+
+
+@each_field
+@each_law
+@each_integration
+@each_state
+def test_gradients_force_and_tangent(field: Field, plane_stress: bool, integration, size: float):
+    system = make_system(Element(field, Gradients(), ContinuumMechanics(plane_stress), integration))
+    oracle = Oracle(system)
+    e, _, _ = random_state(system, size)
+    still = np.zeros(len(e))
+    kernel = residual(system, e, still, still, 0.0)
+    assert_equal_to_round_off(kernel, oracle.force(e) - oracle.weight(), None if size else oracle.scale())
+    free = system.free_dofs
+    assert_equal_to_round_off(tangent_of(system, e, still, still, STATICS), oracle.stiffness(e)[np.ix_(free, free)])
+
+
+@each_field
+def test_gradients_inertia(field: Field):
+    system = make_system(Element(field, Gradients(), ContinuumMechanics()))
+    oracle = Oracle(system)
+    e, v, a = random_state(system, 0.2)
+    free, m = system.free_dofs, oracle.mass()
+    assert_equal_to_round_off(tangent_of(system, e, v, a, INERTIA), m[np.ix_(free, free)])
+    assert_equal_to_round_off(residual(system, e, v, a, 0.0), m @ a + oracle.force(e) - oracle.weight())
+
+
+@each_field
+@each_law
+@each_state
+def test_rotation_force_and_tangent(field: Field, plane_stress: bool, size: float):
+    system = make_system(Element(field, Rotation(), ContinuumMechanics(plane_stress)))
+    oracle = Oracle(make_system(Element(field, Gradients(), ContinuumMechanics(plane_stress))))
+    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    p, _, _ = random_state(system, size)
+    still = np.zeros(len(p))
+    e, b = rotated.e(p), rotated.b(p)
+    f = oracle.force(e) - oracle.weight()
+    assert_equal_to_round_off(residual(system, p, still, still, 0.0), b.T @ f, None if size else oracle.scale())
+    expected = b.T @ oracle.stiffness(e) @ b + rotated.b_transposed_slope(p, f)
+    free = system.free_dofs
+    assert_equal_to_round_off(tangent_of(system, p, still, still, STATICS), expected[np.ix_(free, free)])
+
+
+@each_field
+def test_rotation_inertia(field: Field):
+    system = make_system(Element(field, Rotation(), ContinuumMechanics()))
+    oracle = Oracle(make_system(Element(field, Gradients(), ContinuumMechanics())))
+    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    p, v, a = random_state(system, 0.2)
+    e, b, m = rotated.e(p), rotated.b(p), oracle.mass()
+    free = np.ix_(system.free_dofs, system.free_dofs)
+    assert_equal_to_round_off(tangent_of(system, p, v, a, INERTIA), (b.T @ m @ b)[free])
+
+    still = np.zeros(len(p))
+    inertia = m @ (b @ a + rotated.b_dot(p, v) @ v)
+    difference = residual(system, p, v, a, 0.0) - residual(system, p, still, still, 0.0)
+    f = oracle.force(e) - oracle.weight()
+    assert_equal_to_round_off(difference, b.T @ inertia, np.abs(b.T @ f).max())
+
+    ck, cv, ca = 1.0, 50.0, 4000.0
+    by_p, by_v = rotated.acceleration_slopes(p, v, a)
+    elastic = b.T @ oracle.stiffness(e) @ b + rotated.b_transposed_slope(p, f + inertia)
+    expected = ck * elastic + b.T @ m @ (ck * by_p + cv * by_v + ca * b)
+    assert_equal_to_round_off(tangent_of(system, p, v, a, (ck, cv, ca)), expected[free])
+
+
+@each_field
+@pytest.mark.parametrize("moving", [0.0, 1.0], ids=["weight", "inertia"])
+def test_inertia_and_weight_of_the_kernel_alone(field: Field, moving: float):
+    """Material too soft for its elastic forces to hide the others."""
+    beam = Beam(
+        Line((0.0, 0.0), (0.0, 2.0)),
+        2,
+        Element(field, Rotation(), ContinuumMechanics()),
+        Section(2e-3, 1.1e-6),
+        Material(1e-12, 0.3, 7800.0),
+    )
+    system = System(Model([beam], loads=[Gravity(GRAVITY)]), static=False)
+    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    p, v, a = random_state(system, 0.2)
+    v, a, b, oracle = moving * v, moving * a, rotated.b(p), Oracle(system)
+    inertia = oracle.mass() @ (b @ a + rotated.b_dot(p, v) @ v)
+    assert_equal_to_round_off(residual(system, p, v, a, 0.0), b.T @ (inertia - oracle.weight()))
+
+
+@each_field
+def test_strain_energy(field: Field):
+    system = make_system(Element(field, Gradients(), ContinuumMechanics()))
+    oracle = Oracle(system)
+    e, _, _ = random_state(system, 0.2)
+    assert_equal_to_round_off(kernel_strain_energy(system.model.meshes[0], e[None])[0], oracle.energy(e))
+
+
+@each_field
+def test_forms_are_derivatives_of_the_energy(field: Field):
+    oracle = Oracle(make_system(Element(field, Gradients(), ContinuumMechanics())))
+    e, direction, _ = random_state(oracle.system, 0.2)
+    step = 1e-6 * direction
+    power = (oracle.energy(e + step) - oracle.energy(e - step)) / 2e-6
+    assert power == pytest.approx(oracle.force(e) @ direction, rel=1e-7)
+    change = (oracle.force(e + step) - oracle.force(e - step)) / 2e-6
+    exact = oracle.stiffness(e) @ direction
+    np.testing.assert_allclose(change, exact, rtol=0.0, atol=1e-8 * np.abs(exact).max())
+
+
+@each_field
+def test_mass_integration_is_exact(field: Field):
+    mesh = make_system(Element(field, Gradients(), ContinuumMechanics())).model.meshes[0]
+    finer = beam_basis(mesh, field.degree + 3)
+    assert_equal_to_round_off(
+        mass.assemble(mass_basis(mesh), density=2.0).toarray(), mass.assemble(finer, density=2.0).toarray()
+    )
+
+
+@pytest.fixture(params=FIELDS, ids=lambda field: field.name)
+def on_line(request) -> tuple[FieldElement, BeamMapping, np.ndarray]:
+    """An element, a mapping of two different lengths, and element lengths."""
+    return (
+        FieldElement(request.param),
+        BeamMapping(MeshLine(np.array([1000.0, 1000.25, 1000.95]))),
+        np.array([0.25, 0.7]),
+    )
+
+
+def functions(element: FieldElement) -> range:
+    return range(element.nodal_dofs * 2 + element.interior_dofs)
+
+
+def test_element_is_a_partition_of_unity(on_line):
+    element, mapping, _ = on_line
+    points = np.array([[0.0, 0.13, 0.6, 1.0], [0.3, -0.2, 0.0, 0.1]])
+    for name, constant in (("r", 1.0), ("r_y", points[1])):
+        for axis in range(2):
+            own = [i for i in functions(element) if element.place(i)[2] == axis]
+            own = [i for i in own if element.field.vectors[element.place(i)[1]] == name]
+            total = sum(element.gbasis(mapping, points, i)[0] for i in own)
+            np.testing.assert_allclose(total[axis], np.broadcast_to(constant, total[axis].shape), atol=1e-14)
+            np.testing.assert_array_equal(total[1 - axis], 0.0)
+
+
+def test_element_is_nodal(on_line):
+    element, mapping, lengths = on_line
+    nodes = np.stack([element.field.nodes, np.zeros(len(element.field.nodes))])
+    for i in functions(element):
+        node, vector, axis = element.place(i)
+        field = element.gbasis(mapping, nodes, i)[0]
+        values = {"r": np.asarray(field), "r_x": field.grad[:, 0], "r_y": field.grad[:, 1]}
+        for number, name in enumerate(element.field.vectors):
+            expected = np.zeros((2, len(lengths), nodes.shape[1]))
+            if number == vector:
+                expected[axis, :, node] = 1.0
+            np.testing.assert_allclose(values[name], expected, atol=1e-13)
+
+
+def test_element_gradient_is_the_derivative(on_line):
+    element, mapping, lengths = on_line
+    points, step = np.array([[0.21, 0.5, 0.83], [0.3, -0.2, 0.1]]), 1e-5
+    for i in functions(element):
+        grad = element.gbasis(mapping, points, i)[0].grad
+        for row, size in ((0, lengths[:, None]), (1, 1.0)):
+            shift = step * np.eye(2)[row][:, None]
+            high, low = (np.asarray(element.gbasis(mapping, points + sign * shift, i)[0]) for sign in (1, -1))
+            np.testing.assert_allclose((high - low) / (2.0 * step * size), grad[:, row], atol=1e-8)
+
+
+def test_element_index_and_numbers(on_line):
+    element, mapping, _ = on_line
+    assert len(element.dofnames) == element.nodal_dofs + element.interior_dofs
+    assert element.doflocs.shape == (len(functions(element)), 1)
+    with pytest.raises(ValueError, match="Index"):
+        element.gbasis(mapping, np.array([[0.5]]), len(functions(element)))
+
+
+def test_axis_is_where_y_is_not_given(on_line):
+    element, mapping, _ = on_line
+    xi = np.array([[0.1, 0.7]])
+    for i in functions(element):
+        on_axis = element.gbasis(mapping, xi, i, tind=np.array([1]))[0]
+        both = element.gbasis(mapping, np.vstack([xi, 0.0 * xi]), i)[0]
+        np.testing.assert_array_equal(np.asarray(on_axis), np.asarray(both)[:, 1:])
+        np.testing.assert_array_equal(on_axis.grad, both.grad[:, :, 1:])
+
+
+def test_mapping_keeps_y():
+    mapping = BeamMapping(MeshLine(np.array([0.0, 2.0, 3.0])))
+    expected = np.array([[[1.0, 2.0], [2.5, 3.0]], [[5.0, 6.0], [5.0, 6.0]]])
+    np.testing.assert_allclose(mapping.F(np.array([[0.5, 1.0], [5.0, 6.0]])), expected)
+
+
+def test_cubic_shape_functions_of_the_paper():
+    """Eq. (4): s1 to s6 with xi = x / l, eta = y / l."""
+    length, x, y = 0.8, np.array([0.1, 0.37, 0.8]), np.array([0.02, -0.05, 0.04])
+    xi, eta = x / length, y / length
+    paper = [
+        1 - 3 * xi**2 + 2 * xi**3,
+        length * (xi - 2 * xi**2 + xi**3),
+        eta * length * (1 - xi),
+        3 * xi**2 - 2 * xi**3,
+        length * (-(xi**2) + xi**3),
+        xi * eta * length,
+    ]
+    mapping = BeamMapping(MeshLine(np.array([0.0, length])))
+    for i, expected in enumerate(paper):
+        value = np.asarray(FieldElement(Cubic()).gbasis(mapping, np.stack([xi, y]), 2 * i)[0])
+        np.testing.assert_allclose(value[0, 0], expected, atol=1e-15)

@@ -1,0 +1,204 @@
+"""Saving and loading of solutions."""
+
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.io import description, results
+from beamfem.io.description import Sampled
+from beamfem.io.results import load, save
+from beamfem.solution import Solution
+
+
+def beam(element: bf.Element, start: tuple[float, float] = (0.0, 0.0), length: float = 1.0) -> bf.Beam:
+    x, y = start
+    line = bf.Line(start, (x + length, y))
+    return bf.Beam(line, 2, element, bf.Rectangle(0.1, 0.1), bf.Material(2.1e7, 0.3, 7850.0))
+
+
+def ramp(at: float) -> float:
+    return float(np.sin(at / 0.3))
+
+
+def static_solution() -> Solution:
+    one, two = beam(bf.ANCF()), beam(bf.BilinearCRBF(bf.ContinuumMechanics(plane_stress=True), "reduced"), (0.0, 1.0))
+    supports = [bf.Clamp(one.start), bf.Pin(two.start), bf.Roller(two.end), bf.Prescribed(one.at(1 / 3), uy=-0.01)]
+    loads = [
+        bf.Gravity((0.0, -9.81), scale=False),
+        bf.DistributedLoad(two, (0.0, -3.0)),
+        bf.PointForce(one.end, (1.0, np.float64(-5.0))),
+        bf.PointMoment(two.at(0.3), 2.0),
+    ]
+    return bf.solve_static(bf.Model([one, two], supports, loads), steps=3)
+
+
+def moving_solution(element: bf.Element) -> Solution:
+    one = beam(element)
+    supports = [bf.Prescribed(one.start, ux=0.0, uy=lambda t: 0.1 * t**3, rotation=ramp)]
+    loads = [bf.PointForce(one.end, (0.0, 20.0), amplitude=ramp), bf.DistributedLoad(one, (1.0, 0.0), amplitude=ramp)]
+    return bf.simulate(bf.Model([one], supports, loads), 0.02, 1e-3)
+
+
+def assert_same(before: Solution, after: Solution) -> None:
+    assert after.static == before.static
+    assert after.statistics == before.statistics
+    for name in ("at", "p", "v", "a"):
+        np.testing.assert_array_equal(getattr(after, name), getattr(before, name), strict=True)
+    for name in ("kinetic", "strain", "potential"):
+        np.testing.assert_array_equal(getattr(after.energy(), name), getattr(before.energy(), name))
+    for old, new in zip(before.model.supports, after.model.supports, strict=True):
+        np.testing.assert_array_equal(after.reaction(new.point), before.reaction(old.point))
+        np.testing.assert_array_equal(after.position(new.point), before.position(old.point))
+    for old, new in zip(before.model.beams, after.model.beams, strict=True):
+        assert (new.curve, new.elements, new.element) == (old.curve, old.elements, old.element)
+        assert (new.section, new.material) == (old.section, old.material)
+        np.testing.assert_array_equal(after.rotation(new.at(0.7)), before.rotation(old.at(0.7)))
+        np.testing.assert_array_equal(after.section_forces(new).moment, before.section_forces(old).moment)
+
+
+def test_static_solution_comes_back_the_same_from_a_new_folder(tmp_path):
+    before = static_solution()
+    path = tmp_path / "new" / "folder" / "static.h5"
+    before.save(path)
+    after = load(str(path))
+    assert_same(before, after)
+    one, two = after.model.beams
+    assert after.model.supports[0].point.beam is one
+    assert after.model.loads[1].beam is two
+
+
+@pytest.mark.parametrize("element", [bf.ANCFCRBF(), bf.BilinearANCF()], ids=lambda element: element.name)
+def test_motion_with_functions_comes_back_the_same(tmp_path, monkeypatch, element):
+    monkeypatch.setattr(results, "_BLOCK_BYTES", 1000)
+    before = moving_solution(element)
+    save(before, tmp_path / "motion.h5")
+    after = load(tmp_path / "motion.h5")
+    assert_same(before, after)
+    save(after, tmp_path / "motion.h5")
+    assert_same(before, load(tmp_path / "motion.h5"))
+
+
+def test_loaded_model_cannot_be_run_beyond_the_saved_values(tmp_path):
+    save(moving_solution(bf.BilinearCRBF()), tmp_path / "motion.h5")
+    model = load(tmp_path / "motion.h5").model
+    amplitude = model.loads[0].amplitude
+    assert isinstance(amplitude, Sampled)
+    assert amplitude is model.loads[1].amplitude
+    with pytest.raises(bf.InputError, match=r"saved as its values from 0 to 0\.02 and cannot be evaluated at 0\.02"):
+        bf.simulate(model, 0.04, 1e-3)
+
+
+def test_sampled_is_linear_inside_and_raises_outside():
+    function = Sampled((0.0, 1.0, 3.0), (0.0, 0.1, 0.5))
+    assert [function(at) for at in (0.0, 1.0, 3.0)] == [0.0, 0.1, 0.5]
+    assert function(2.0) == pytest.approx(0.3)
+    assert Sampled((0.0,), (7.0,))(0.0) == 7.0
+    for outside in (-1e-9, 3.1, np.nan):
+        with pytest.raises(bf.InputError, match="saved as its values"):
+            function(outside)
+
+
+def test_unknown_part_is_named_and_leaves_an_older_file_alone(tmp_path, monkeypatch):
+    solution = static_solution()
+    save(solution, tmp_path / "a.h5")
+    monkeypatch.delitem(description._CLASSES, "Roller")
+    with pytest.raises(bf.InputError, match="a Roller cannot be saved"):
+        save(solution, tmp_path / "a.h5")
+    with pytest.raises(bf.InputError, match="knows no Roller"):
+        load(tmp_path / "a.h5")
+    monkeypatch.undo()
+    assert_same(solution, load(tmp_path / "a.h5"))
+
+
+def test_files_that_are_none_of_ours_are_refused(tmp_path):
+    with pytest.raises(FileNotFoundError, match="there is no file"):
+        load(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("no states in here")
+    with pytest.raises(bf.InputError, match="no HDF5 file"):
+        load(tmp_path / "text.h5")
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["at"] = [1.0]
+    with pytest.raises(bf.InputError, match="not one that beamfem saved"):
+        load(tmp_path / "other.h5")
+
+
+def test_newer_and_damaged_files_are_refused(tmp_path):
+    path = tmp_path / "a.h5"
+    save(static_solution(), path)
+    content = path.read_bytes()
+    for size in (len(content) // 2, len(content) - 8, 100):
+        path.write_bytes(content[:size])
+        with pytest.raises(bf.InputError, match="truncated, damaged"):
+            load(path)
+    path.write_bytes(content)
+    with h5py.File(path, "r+") as file:
+        file.attrs["format_version"] = 2
+    with pytest.raises(bf.InputError, match="reads formats up to 1"):
+        load(path)
+    path.write_bytes(content)
+    with h5py.File(path, "r+") as file:
+        del file["v"]
+    with pytest.raises(bf.InputError, match="truncated, damaged"):
+        load(path)
+    path.write_bytes(content)
+    with h5py.File(path, "r+") as file:
+        del file["v"]
+        file["v"] = np.zeros((len(file["at"]), 3))
+    with pytest.raises(bf.InputError, match="do not fit"):
+        load(path)
+
+
+def test_missing_h5py_names_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(bf.BeamfemError, match=r"pip install beamfem\[store\]"):
+        load(tmp_path / "a.h5")
+
+
+KILLED = """
+import os, sys
+import numpy as np
+import beamfem as bf
+from beamfem.io import results
+from beamfem.solution import Statistics
+
+rows, blocks = 40, int(sys.argv[2])
+one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), bf.Rectangle(0.1, 0.1), bf.Material(1e7, 0.3, 1e3))
+model = bf.Model([one], [bf.Clamp(one.start)])
+p = np.arange(rows * model.size, dtype=float).reshape(rows, -1)
+solution = bf.Solution(model, False, np.arange(rows) * 0.1, p, -p, 2 * p, Statistics(9, rows - 1, 0, "39 steps"))
+results._BLOCK_BYTES = 8 * 8 * model.size
+append, done = results._append, []
+
+def killed(file, solution, rows):
+    if len(done) == blocks:
+        file["at"].resize(rows.stop, axis=0)
+        file["p"].resize(rows.stop, axis=0)
+        file["p"][rows] = solution.p[rows]
+        os._exit(9)
+    append(file, solution, rows)
+    done.append(rows)
+
+results._append = killed
+results.save(solution, sys.argv[1])
+"""
+
+
+@pytest.mark.parametrize("blocks", [0, 3])
+def test_killed_writer_leaves_the_rows_before(tmp_path, blocks):
+    path = tmp_path / "killed.h5"
+    ended = subprocess.run([sys.executable, "-c", KILLED, str(path), str(blocks)], check=False)
+    assert ended.returncode == 9
+    if blocks == 0:
+        with pytest.raises(bf.InputError, match="before the first rows"):
+            load(path)
+        return
+    solution = load(path)
+    expected = np.arange(24 * solution.model.size, dtype=float).reshape(24, -1)
+    for values, factor in ((solution.p, 1), (solution.v, -1), (solution.a, 2)):
+        np.testing.assert_array_equal(values, factor * expected)
+    np.testing.assert_array_equal(solution.time, np.arange(24) * 0.1)
+    assert solution.statistics.ended == "39 steps; the file holds 24 of 40 rows because its writing was cut off"

@@ -1,0 +1,179 @@
+"""ParaView files: read back what was written."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+import beamfem as bf
+from beamfem import postprocess
+from beamfem.io import vtk
+
+HEIGHT = 0.02
+# Degree (3, 1): xi and side of the eight points of a cell, from vtkHigherOrderQuadrilateral.PointIndexFromIJK.
+XI = np.array([0.0, 3.0, 3.0, 0.0, 1.0, 2.0, 1.0, 2.0]) / 3.0
+Y = 0.5 * HEIGHT * np.array([-1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0])
+
+
+def swing(*elements, duration=0.2, step=0.02, **options):
+    beams = []
+    for i, element in enumerate(elements):
+        line = bf.Line((0.0, float(i)), (0.6, 0.8 + i))
+        material = bf.Material(2e6, 0.3, 5000.0)
+        beams.append(bf.Beam(line, 3, element, bf.Rectangle(0.02, HEIGHT), material))
+    model = bf.Model(beams, [bf.Pin(beam.start) for beam in beams], [bf.Gravity((0.0, -9.81))])
+    return bf.simulate(model, duration, step, **options)
+
+
+def read(path):
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def collection(path):
+    """Times (steps,) and files of a .pvd."""
+    sets = ElementTree.parse(path).findall("./Collection/DataSet")
+    return np.array([float(s.get("timestep")) for s in sets]), [Path(path).parent / s.get("file") for s in sets]
+
+
+def point_data(grid):
+    data = grid.GetPointData()
+    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return swing(bf.ANCFCRBF(), bf.BilinearCRBF())
+
+
+@pytest.fixture(scope="module")
+def written(solution, tmp_path_factory):
+    path = tmp_path_factory.mktemp("vtk") / "new folder" / "a & b" / "swing.pvd"
+    solution.to_vtk(path)
+    return path
+
+
+def test_a_file_a_step_at_the_times_of_the_solution(solution, written):
+    for path in (written, written.with_name("swing_centreline.pvd")):
+        times, files = collection(path)
+        np.testing.assert_array_equal(times, solution.at)
+        assert all(file.is_file() for file in files)
+    assert not list(written.parent.glob("*.tmp"))
+
+
+def test_points_are_those_of_the_field(solution, written):
+    _, files = collection(written)
+    for row in (0, 5, len(solution) - 1):
+        points = vtk_to_numpy(read(files[row]).GetPoints().GetData()).reshape(2, 3, 8, 3)
+        for mesh, found in zip(solution.model.meshes, points, strict=True):
+            vectors = postprocess.nodal_vectors(mesh, solution.p[row : row + 1])
+            for element in range(mesh.elements):
+                axis = postprocess.axis(mesh, vectors, np.full(8, element), XI)
+                np.testing.assert_allclose(found[element, :, :2], axis.r[0] + Y[:, None] * axis.d[0], atol=1e-14)
+        assert not points[..., 2].any()
+
+
+def test_cells_are_curved_quadrilaterals_with_active_degrees(written):
+    grid = read(collection(written)[1][-1])
+    assert {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())} == {VTK_LAGRANGE_QUADRILATERAL}
+    degrees = grid.GetCellData().GetHigherOrderDegrees()
+    assert degrees is not None
+    assert degrees.GetTuple(0)[:2] == (3.0, 1.0)
+
+
+def test_vtk_maps_a_cell_onto_the_body(written):
+    """A wrong order of the points would fold the cell."""
+    grid = read(collection(written)[1][0])
+    cell, weights = grid.GetCell(1), [0.0] * 8
+    corner, bottom, top, middle = ([0.0] * 3 for _ in range(4))
+    for place, xyz in (((0, 0, 0), corner), ((0.5, 0, 0), bottom), ((0.5, 1, 0), top), ((0.5, 0.5, 0), middle)):
+        cell.EvaluateLocation(reference(0), place, xyz, weights)
+    np.testing.assert_allclose(np.subtract(top, bottom)[:2], HEIGHT * np.array([-0.8, 0.6]), atol=1e-12)
+    np.testing.assert_allclose(middle[:2], [0.3, 0.4], atol=1e-12)
+    np.testing.assert_allclose(np.subtract(bottom, corner)[:2], np.array([0.6, 0.8]) / 6.0, atol=1e-12)
+
+
+def test_body_data(written):
+    _, files = collection(written)
+    start, end = read(files[0]), read(files[-1])
+    data = point_data(end)
+    assert all(np.isfinite(values).all() for values in data.values())
+    for name in ("displacement", "velocity"):
+        assert data[name].shape == (48, 3)
+        assert np.abs(data[name]).max() > 0.01
+    for tensor in ("green_strain", "stress"):
+        assert all(data[f"{tensor}_{component}"].shape == (48,) for component in ("xx", "yy", "xy"))
+    moved = vtk_to_numpy(end.GetPoints().GetData()) - vtk_to_numpy(start.GetPoints().GetData())
+    np.testing.assert_allclose(data["displacement"], moved, atol=1e-13)
+
+
+def test_strain_belongs_to_the_height_of_its_point():
+    """Bent counter-clockwise: the lower face is stretched and the upper one compressed, and so is the stress."""
+    beam = bf.Beam(
+        bf.Line((0, 0), (1, 0)), 2, bf.BilinearCRBF(), bf.Rectangle(0.02, HEIGHT), bf.Material(2e6, 0.0, 1.0)
+    )
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e-3)]))
+    samples = vtk._body(solution.model.meshes[0])
+    data = samples.arrays(solution.p, solution.v)
+    strain = data["green_strain_xx"][-1]
+    assert (strain[[0, 1, 4, 5]] > 0.0).all()
+    assert (strain[[2, 3, 6, 7]] < 0.0).all()
+    np.testing.assert_allclose(data["stress_xx"][-1], 2e6 * strain, rtol=1e-12)
+
+
+def test_velocity_is_the_rate_of_the_points():
+    solution = swing(bf.ANCFCRBF(), duration=0.02, step=1e-4)
+    samples = vtk._body(solution.model.meshes[0])
+    data = samples.arrays(solution.p, solution.v)
+    rate = (data["points"][101] - data["points"][99]) / 2e-4
+    np.testing.assert_allclose(data["velocity"][100], rate, atol=1e-3 * np.abs(rate).max())
+
+
+def test_centreline(solution, written):
+    grid = read(collection(written.with_name("swing_centreline.pvd"))[1][-1])
+    assert {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())} == {VTK_POLY_LINE}
+    points, data = vtk_to_numpy(grid.GetPoints().GetData()), point_data(grid)
+    half = len(points) // 2
+    for beam, last in zip(solution.model.beams, (half - 1, -1), strict=True):
+        np.testing.assert_allclose(points[last, :2], solution.position(beam.end)[-1], atol=1e-14)
+        np.testing.assert_allclose(data["displacement"][last, :2], solution.displacement(beam.end)[-1], atol=1e-14)
+        np.testing.assert_allclose(data["velocity"][last, :2], solution.velocity(beam.end)[-1], atol=1e-13)
+        np.testing.assert_allclose(data["rotation"][last], solution.rotation(beam.end)[-1], atol=1e-13)
+
+
+@pytest.mark.parametrize("element", [bf.BilinearANCF(), bf.BilinearCRBF()])
+def test_rotation_counts_full_turns_over_chunks(element, tmp_path, monkeypatch):
+    spin = 2.0 * np.pi * 10.0
+    material = bf.Material(2e7, 0.3, 1000.0)
+    beam = bf.Beam(bf.Line((0, 0), (0.1, 0)), 1, element, bf.Rectangle(0.02, HEIGHT), material)
+    model, velocity = bf.Model([beam], [bf.Pin(beam.start)]), bf.RigidVelocity(angular=spin)
+    solution = bf.simulate(model, 0.25, 0.0005, velocity=velocity, save_every=10)
+    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    solution.to_vtk(tmp_path / "spin.pvd")
+    rotation = point_data(read(tmp_path / "spin" / "0050.vtu"))["rotation"]
+    expected = solution.rotation(beam.end)[-1]
+    assert expected > 4.0 * np.pi
+    np.testing.assert_allclose(rotation[1:3], expected, atol=1e-12)
+
+
+def test_other_suffixes_are_refused(solution, tmp_path):
+    with pytest.raises(bf.InputError, match=r'swing\.pvd" would be right'):
+        solution.to_vtk(tmp_path / "swing.vtu")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(bf.InputError, match=r"\.pvd"):
+        solution.to_vtk("")
+
+
+def test_what_was_written_before_a_failure_can_be_read(solution, tmp_path, monkeypatch):
+    (tmp_path / "swing" / "0003.vtu").mkdir(parents=True)
+    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    with pytest.raises(OSError, match=r"0003\.vtu"):
+        solution.to_vtk(tmp_path / "swing.pvd")
+    assert len(collection(tmp_path / "swing.pvd")[0]) == 3

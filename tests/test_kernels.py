@@ -36,8 +36,10 @@ def test_tangent_equals_finite_differences(element, rng, weights):
     p = system.reference + 0.1 * rng.standard_normal(n)
     v, a = rng.standard_normal(n), rng.standard_normal(n)
     ck, cv, ca = weights
+    if ca == 0.0:  # statics knows no inertia
+        v, a = np.zeros(n), np.zeros(n)
     tangent = dense(linearise(system, p, v, a, 0.0, weights)[1])
-    h = 1e-6
+    h = 1.0 if ck == 0.0 else 1e-6  # the residual is linear in p''
     numeric = np.empty((n, n))
     for j in range(n):
         d = np.zeros(n)

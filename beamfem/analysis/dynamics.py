@@ -20,6 +20,9 @@ from beamfem.validation import count, positive
 _TOLERANCE = 1e-9
 _ITERATIONS = 25
 _CHUNK_SECONDS = 0.25
+# weights of first and second derivative, times 12; a function of time need not exist before the start
+_CENTRAL = (np.array([1, -8, 0, 8, -1]), np.array([-1, 16, -30, 16, -1]), (-2, -1, 0, 1, 2))
+_FORWARD = (np.array([-25, 48, -36, 16, -3]), np.array([35, -104, 114, -56, 11]), (0, 1, 2, 3, 4))
 
 
 def simulate(
@@ -124,12 +127,11 @@ class HeldMotion:
             values[:, 0] = system.held_values(0.0)
             return cls(values)
         for i, now in enumerate(times):
-            centre = max(now, 2.0 * width)
-            around = [system.held_values(centre + k * width) for k in (-2, -1, 0, 1, 2)]
+            first, second, offsets = _FORWARD if now == 0.0 else _CENTRAL
+            around = np.array([system.held_values(now + k * width) for k in offsets])
             values[i, 0] = system.held_values(now)
-            values[i, 1] = (around[0] - 8 * around[1] + 8 * around[3] - around[4]) / (12.0 * width)
-            second = -around[0] + 16 * around[1] - 30 * around[2] + 16 * around[3] - around[4]
-            values[i, 2] = second / (12.0 * width**2)
+            values[i, 1] = first @ around / (12.0 * width)
+            values[i, 2] = second @ around / (12.0 * width**2)
         return cls(values)
 
 

@@ -8,6 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, coordinate_scale, linearise, predicted_stresses, residual
 from beamfem.model.system import System
+from beamfem.postprocess import axis, gauss_points, nodal_vectors
 
 
 class Ended(Enum):
@@ -18,6 +19,7 @@ class Ended(Enum):
     DIVERGED = "the corrections grew beyond the size of the model"
     EXHAUSTED = "the iterations ran out before the corrections became small"
     SINGULAR = "the tangent is singular"
+    INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
 
     @property
     def good(self) -> bool:
@@ -78,11 +80,21 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
         force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
         small = largest <= max(newton.residual_tolerance * force, floor)
         if size <= newton.tolerance and (small or iteration > 1):
-            return NewtonResult(p, iteration, Ended.CONVERGED)
+            return NewtonResult(p, iteration, Ended.INVERTED if inverted(system, p) else Ended.CONVERGED)
         if iteration > 2 and largest <= floor and size > 0.25 * last:
             return NewtonResult(p, iteration, Ended.ROUND_OFF)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def inverted(system: System, p: np.ndarray) -> bool:
+    """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
+    for mesh in system.model.meshes:
+        element, xi, _ = gauss_points(mesh)
+        now = axis(mesh, nodal_vectors(mesh, p[None]), element, xi)
+        if np.any(now.r_s[..., 0] * now.d[..., 1] <= now.r_s[..., 1] * now.d[..., 0]):
+            return True
+    return False
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:

@@ -16,7 +16,7 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
     """Add the residual of all elements to `residual` (n,) and their tangent to `matrix` (flat).
 
     body: (beams, 4) acceleration of gravity [m/s^2] and load per length [N/m] of each beam.
-    coefficients: (ck, cv, ca); (1, 0, 0) in statics, (0, 0, 1) gives the mass matrix.
+    coefficients: (ck, cv, ca); (1, 0, 0) in statics, (0, 0, 1) gives the mass matrix; ca = 0 leaves inertia out.
     geometric_stress: (ne, nq, ns) stress resultants for the geometric part of the tangent, or ne = 0 for the true ones.
     matrix: empty where only the residual is wanted.
     """

@@ -13,8 +13,8 @@ test: $(VENV)/.ready lint
 verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -m "slow or not slow"
 
-bench: $(VENV)/.bench
-	$(BIN)/python studies/timing.py
+bench: $(VENV)/.ready
+	$(BIN)/python studies/pendulum.py
 
 lint: $(VENV)/.ready
 	$(BIN)/ruff check .
@@ -24,10 +24,6 @@ lint: $(VENV)/.ready
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[plot,store,test]"
-	touch $@
-
-$(VENV)/.bench: $(VENV)/.ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[bench]"
 	touch $@
 
 clean:

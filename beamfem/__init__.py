@@ -9,13 +9,15 @@ from beamfem.curves import Line
 from beamfem.element.element import ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, Element
 from beamfem.element.forces import ContinuumMechanics
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
+from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
+from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Rectangle, Section
-from beamfem.solution import Solution
+from beamfem.solution import Solution, State
 
 __all__ = [
     "ANCF",
@@ -29,6 +31,7 @@ __all__ = [
     "ConvergenceError",
     "DistributedLoad",
     "Element",
+    "Fields",
     "FreeMotionError",
     "GeneralizedAlpha",
     "Gravity",
@@ -46,8 +49,11 @@ __all__ = [
     "RigidVelocity",
     "Roller",
     "Section",
+    "SectionForces",
     "Solution",
+    "State",
     "UnknownPointError",
+    "load",
     "simulate",
     "solve_static",
 ]

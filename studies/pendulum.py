@@ -69,7 +69,7 @@ def fall(element: bf.Element, elements: int, second_moment: float, duration: flo
 def main(
     second_moment: float = PRINTED,
     duration: float = 1.2,
-    step: float = 1e-3,
+    step: float = 5e-4,
     meshes: tuple[int, ...] = MESHES,
 ) -> dict[tuple[str, int], Run]:
     """Return a run for each element name and number of elements."""

@@ -134,9 +134,7 @@ def judge(figure: Figure, runs: Runs) -> tuple[str, bool]:
     if figure.number == 12:
         return f"the largest difference is {largest:.1e} (range {spread:.1e}).", 2.5e-4 < largest < 7.5e-4
     share = mean / spread
-    found = (
-        f"the root mean square difference is {mean:.1e}, {100 * share:.1f} % of the range; the largest {largest:.1e}."
-    )
+    found = f"the rms difference is {mean:.1e}, {100 * share:.1f} % of the range; the largest {largest:.1e}."
     return found, share <= GOOD
 
 

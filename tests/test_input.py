@@ -36,7 +36,7 @@ BAD = {
     "half an element": (lambda: a_beam(elements=2.5), "elements"),
     "element by name": (lambda: a_beam(element="ANCF"), "element"),
     "section by number": (lambda: a_beam(section=0.01), "section"),
-    "unknown integration": (lambda: bf.ANCF(integration="ful"), "full.*reduced"),
+    "unknown integration": (lambda: bf.ANCF(integration="ful"), r"full.*reduced"),
     "point beyond the end": (lambda: BEAM.at(1.5), "between 0 and 1"),
     "force of nan": (lambda: bf.PointForce(BEAM.end, (0, math.nan)), "PointForce"),
     "amplitude as a number": (lambda: bf.PointForce(BEAM.end, (0, 1), amplitude=2.0), "amplitude"),
@@ -62,7 +62,7 @@ def test_bad_input_is_named(case):
 
 
 def test_a_support_on_no_beam_of_the_model_is_refused():
-    with pytest.raises(bf.UnknownPointError, match="Clamp at .* not in this model"):
+    with pytest.raises(bf.UnknownPointError, match=r"Clamp at .* not in this model"):
         bf.Model([BEAM], [bf.Clamp(a_beam().start)])
 
 

@@ -12,6 +12,7 @@ from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.advance import advance
 from beamfem.model.model import Model
+from beamfem.model.sampled import Sampled
 from beamfem.model.system import System
 from beamfem.progress import progress
 from beamfem.solution import Solution, State, Statistics
@@ -121,6 +122,11 @@ class HeldMotion:
     @classmethod
     def sample(cls, system: System, times: np.ndarray, step: float) -> "HeldMotion":
         """Sample the prescribed functions; their derivatives are central differences of fourth order."""
+        if any(isinstance(item.value, Sampled) for item in system.held):
+            raise InputError(
+                "a prescribed motion of this model was saved as values, which have no accelerations between them; "
+                "give the function again to run it on"
+            )
         width = 0.02 * step
         values = np.zeros((len(times), 3, len(system.held)))
         if not any(callable(item.value) for item in system.held):

@@ -1,8 +1,7 @@
 """A model as plain numbers, lists and names for JSON, and back."""
 
-from bisect import bisect_left
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
+from beamfem.model.sampled import Sampled
 from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
 from beamfem.section import Section
 from beamfem.validation import function_value
@@ -48,27 +48,6 @@ _CLASSES = {
 }
 # numbers of kernels belong to this version of the code, not to the model
 _NOT_SAVED = ("code",)
-
-
-@dataclass(frozen=True)
-class Sampled:
-    """A function saved as values (n,) at increasing times [s] or load factors at (n,), linear between them."""
-
-    at: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __call__(self, at: float) -> float:
-        """Return the value at a time [s] or load factor. Raises InputError outside of the saved range."""
-        if not self.at[0] <= at <= self.at[-1]:
-            raise InputError(
-                f"this function was saved as its values from {self.at[0]:g} to {self.at[-1]:g} and cannot be "
-                f"evaluated at {at:g}; to run the model there, give it the function itself again"
-            )
-        after = bisect_left(self.at, at)
-        if self.at[after] == at:
-            return self.values[after]
-        share = (at - self.at[after - 1]) / (self.at[after] - self.at[after - 1])
-        return (1.0 - share) * self.values[after - 1] + share * self.values[after]
 
 
 def describe(model: Model, at: np.ndarray) -> dict[str, Any]:

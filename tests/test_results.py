@@ -88,8 +88,8 @@ def test_loaded_model_cannot_be_run_beyond_the_saved_values(tmp_path):
     amplitude = model.loads[0].amplitude
     assert isinstance(amplitude, Sampled)
     assert amplitude is model.loads[1].amplitude
-    with pytest.raises(bf.InputError, match=r"saved as its values from 0 to 0\.02 and cannot be evaluated at 0\.02"):
-        bf.simulate(model, 0.04, 1e-3)
+    with pytest.raises(bf.InputError, match=r"saved as its values from 0 to 0\.02 and cannot be evaluated at 0\.04"):
+        amplitude(0.04)
 
 
 def test_sampled_is_linear_inside_and_raises_outside():

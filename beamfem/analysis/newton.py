@@ -10,6 +10,8 @@ from beamfem.analysis.equations import STATICS, coordinate_scale, linearise, pre
 from beamfem.model.system import System
 from beamfem.postprocess import axis, gauss_points, nodal_vectors
 
+_STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
+
 
 class Ended(Enum):
     """Why an iteration ended; the values are the sentences that users read."""
@@ -75,16 +77,28 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         if not np.isfinite(size) or size > 1e3:
             return NewtonResult(start, iteration, Ended.DIVERGED)
-        floor = round_off_floor(system, p)
-        largest = float(np.max(np.abs(unbalanced[free]), initial=0.0))
-        force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
-        small = largest <= max(newton.residual_tolerance * force, floor)
-        if size <= newton.tolerance and (small or iteration > 1):
-            return NewtonResult(p, iteration, Ended.INVERTED if inverted(system, p) else Ended.CONVERGED)
-        if iteration > 2 and largest <= floor and size > 0.25 * last:
-            return NewtonResult(p, iteration, Ended.ROUND_OFF)
+        stagnant = iteration > 2 and size > 0.25 * last and size < _STAGNANT
+        if size <= newton.tolerance or stagnant:
+            ended = _judge(system, p, load_factor, newton, size)
+            if ended is not None:
+                return NewtonResult(p, iteration, ended)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, size: float) -> Ended | None:
+    """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on."""
+    rest = np.zeros(len(p))
+    unbalanced = residual(system, p, rest, rest, load_factor)
+    largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
+    force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
+    if size <= newton.tolerance and largest <= newton.residual_tolerance * force:
+        ended = Ended.CONVERGED
+    elif largest <= round_off_floor(system, p):
+        ended = Ended.ROUND_OFF
+    else:
+        return None
+    return Ended.INVERTED if inverted(system, p) else ended
 
 
 def inverted(system: System, p: np.ndarray) -> bool:

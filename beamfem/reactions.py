@@ -26,6 +26,8 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     system = System(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
     held[system.held_dofs] = True
+    for dof, _ in system.inclined:
+        held[dof : dof + 2] = True
     node = mesh.node_at(point.fraction)
     dofs = mesh.dofs_of_node(node)
     element = mesh.beam.element

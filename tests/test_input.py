@@ -84,8 +84,8 @@ def test_two_supports_of_one_coordinate_are_refused():
         bf.solve_static(model)
 
 
-def test_an_inclined_roller_is_refused_by_name():
-    model = bf.Model([BEAM], [bf.Pin(BEAM.start), bf.Roller(BEAM.end, (1, 1))])
+def test_an_inclined_roller_at_a_pin_is_refused():
+    model = bf.Model([BEAM], [bf.Pin(BEAM.start), bf.Roller(BEAM.start, (1, 1))])
     with pytest.raises(bf.InputError, match="Roller"):
         bf.solve_static(model)
 

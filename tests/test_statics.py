@@ -122,3 +122,41 @@ def test_a_load_that_cannot_be_carried_gives_back_what_was_found():
     found = caught.value.solution
     assert 0.0 <= found.load_factor[-1] < 1.0
     assert np.isfinite(found.p).all()
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, np.pi / 2, 2.5])
+def test_a_turned_model_has_the_turned_solution(element, angle):
+    """A beam on a pin and a roller, all turned by an angle; only inclined rollers make the difference."""
+
+    def solve(turn):
+        c, s = np.cos(turn), np.sin(turn)
+        rotation = np.array([[c, -s], [s, c]])
+        beam = bf.Beam(bf.Line((0, 0), tuple(rotation @ (1.0, 0.0))), 6, element, SQUARE, STEEL)
+        supports = [bf.Pin(beam.start), bf.Roller(beam.end, tuple(rotation @ (0.0, 1.0)))]
+        model = bf.Model([beam], supports, [bf.PointForce(beam.at(0.4), tuple(rotation @ (3.0, -30.0)))])
+        solution = bf.solve_static(model)
+        reaction = solution.reaction(beam.end)[-1]
+        return solution.displacement(beam.end)[-1] @ rotation, solution.rotation(beam.end)[-1], reaction[:2] @ rotation
+
+    for found, expected in zip(solve(angle), solve(0.0), strict=True):
+        assert found == pytest.approx(expected, rel=1e-6, abs=1e-12 if np.ndim(found) == 0 else 1e-6)
+
+
+def test_an_inclined_roller_moves_along_its_plane_in_time(element):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, element, bf.Rectangle(0.1, 0.1), bf.Material(1e7, 0.3, 1000.0))
+    model = bf.Model([beam], [bf.Roller(beam.start, (1.0, 2.0))], [bf.Gravity((0, -9.81))])
+    moved = bf.simulate(model, 0.2, 1e-3).displacement(beam.start)
+    assert np.abs(moved @ [1.0, 2.0]).max() < 1e-12
+    assert np.abs(moved).max() > 1e-3
+
+
+def test_twenty_thousand_elements_end_at_the_round_off_floor_and_are_right():
+    """Strains lose digits to cancellation in 20,000 elements of one beam; the solve says so and stays right."""
+    tips = []
+    for elements in (1000, 20_000):
+        load = 5 * 2e11 * SQUARE.second_moment * 1.346153846
+        beam, model = cantilever(bf.ANCF(), elements, [lambda b, load=load: bf.PointForce(b.end, (0, load))])
+        solution = bf.solve_static(model)
+        tips.append(solution.displacement(beam.end)[-1])
+    assert "round-off" in solution.statistics.ended
+    assert np.abs(tips[0] - tips[1]).max() < 1e-6

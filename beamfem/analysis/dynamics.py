@@ -75,6 +75,7 @@ def simulate(
                 system.layout,
                 system.free_dofs,
                 system.held_dofs,
+                system.turned,
                 state,
                 inputs,
                 rule,
@@ -109,7 +110,7 @@ def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.n
     a[free] = 0.0
     unbalanced, _ = linearise(system, p, v, a, time, (1.0, 0.0, 1.0))
     _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
-    a[free] = mass.solve(-unbalanced[free])
+    a[free] = mass.solve(-unbalanced[free], system.turned)
     return a
 
 

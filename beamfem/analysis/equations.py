@@ -9,6 +9,7 @@ from beamfem.kernels.assemble import assemble
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.stress import predict_stress
+from beamfem.kernels.turned import hold_normals, turn_back
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
@@ -24,8 +25,19 @@ class Tangent:
 
     rows: np.ndarray
 
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        """Return x with A x = right; pivots only where the plain factorisation meets a tiny one. Raises LinAlgError."""
+    def solve(self, right: np.ndarray, turned: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """Return x with A x = right and no change along the normals of inclined rollers.
+
+        turned: numbers (nt,) and normals (nt, 2) of those. Pivots only where the plain factorisation meets a tiny
+        pivot. Raises LinAlgError.
+        """
+        rows, right = self.rows.copy(), right.copy()
+        hold_normals(rows, right, *turned)
+        x = Tangent(rows)._solve(right)
+        turn_back(x, *turned)
+        return x
+
+    def _solve(self, right: np.ndarray) -> np.ndarray:
         lu = self.rows.copy()
         if factor(lu) > _SMALLEST_PIVOT:
             x = right.copy()

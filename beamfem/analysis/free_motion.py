@@ -13,6 +13,8 @@ def require_support(system: System) -> None:
         dofs = np.arange(mesh.first_dof, mesh.first_dof + mesh.size)
         modes = _rigid_motions(system, number)
         rows = modes[[dof in held for dof in dofs]]
+        inclined = [(dof - mesh.first_dof, normal) for dof, normal in system.inclined if dof in dofs]
+        rows = np.vstack([rows, *(normal @ modes[dof : dof + 2] for dof, normal in inclined)])
         rank_rows = rows if len(rows) else np.zeros((1, 3))
         _, singular, basis = np.linalg.svd(rank_rows)
         rank = int((singular > 1e-9).sum())

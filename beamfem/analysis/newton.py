@@ -68,7 +68,7 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
         if iteration == 1 and np.any(held_step):
             right -= _held_force(system, p, held_step, load_factor)[free]
         try:
-            step[free] = tangent.solve(right)
+            step[free] = tangent.solve(right, system.turned)
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if newton.independent_stresses:
@@ -90,7 +90,7 @@ def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, si
     """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on."""
     rest = np.zeros(len(p))
     unbalanced = residual(system, p, rest, rest, load_factor)
-    largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
+    largest = float(np.max(np.abs(system.along_free(unbalanced)), initial=0.0))
     force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
     if size <= newton.tolerance and largest <= newton.residual_tolerance * force:
         ended = Ended.CONVERGED

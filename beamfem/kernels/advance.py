@@ -6,15 +6,17 @@ from numba import njit
 from beamfem.kernels.assemble import assemble
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.loads import assemble_point_loads
+from beamfem.kernels.turned import hold_normals, turn_back
 
 
 @njit(cache=True, error_model="numpy")
-def advance(blocks, loads, layout, free, held, state, inputs, rule, limits, scale, saved, statistics):
+def advance(blocks, loads, layout, free, held, turned, state, inputs, rule, limits, scale, saved, statistics):
     """March through the steps of `inputs`; return how many were completed.
 
-    state: p, p', p'', auxiliary acceleration (4, n), advanced in place. inputs: held values (steps, 3, nh), body
-    (steps, beams, 4), point values a tuple of (steps, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta.
-    limits: tolerance of the correction relative to `scale` (n,), largest number of iterations.
+    turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
+    advanced in place. inputs: held values (steps, 3, nh), body (steps, beams, 4), point values a tuple of
+    (steps, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
+    `scale` (n,), largest number of iterations.
     saved (steps, 3, n). statistics (4,): iterations, most iterations in a step, last correction, worst pivot ratio.
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step.
     """
@@ -52,8 +54,10 @@ def advance(blocks, loads, layout, free, held, state, inputs, rule, limits, scal
             for i in range(unknown):
                 right[i] = -residual[free[i]]
             lu = matrix.reshape(unknown, width)
+            hold_normals(lu, right, turned[0], turned[1])
             statistics[3] = min(statistics[3], factor(lu))
             solve(lu, right)
+            turn_back(right, turned[0], turned[1])
             largest = 0.0
             for i in range(unknown):
                 dof = free[i]

@@ -133,6 +133,32 @@ class System:
         return Layout(free, widest, np.empty((0, 0, 0), dtype=np.int64))
 
     @cached_property
+    def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
+        """First coordinate of r and unit normal of each roller that neither x nor y describes."""
+        found = []
+        for support in self.model.supports:
+            if isinstance(support, Roller) and _axis_of(support) is None:
+                mesh = self.model.mesh_of(support.point)
+                found.append((int(mesh.dofs_of_node(mesh.node_at(support.point.fraction))[0]), support.direction))
+        for dof, _ in found:
+            if self.layout.free[dof] < 0 or self.layout.free[dof + 1] < 0:
+                raise InputError("an inclined Roller stands where another support already holds a displacement")
+        return tuple(found)
+
+    @cached_property
+    def turned(self) -> tuple[np.ndarray, np.ndarray]:
+        """Numbers among the unknown (nt,) and unit normals (nt, 2) of inclined rollers."""
+        first = np.array([self.layout.free[dof] for dof, _ in self.inclined], dtype=np.int64)
+        return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
+
+    def along_free(self, residual: np.ndarray) -> np.ndarray:
+        """Return the residual of the unknown directions: reactions of inclined rollers are taken out."""
+        result = residual[self.free_dofs]
+        for first, normal in zip(*self.turned, strict=True):
+            result[first : first + 2] -= normal * (normal @ result[first : first + 2])
+        return result
+
+    @cached_property
     def free_dofs(self) -> np.ndarray:
         return np.flatnonzero(self.layout.free >= 0)
 
@@ -146,10 +172,13 @@ def _held_coordinates(support, direction, value, dofs, reference) -> list[Held]:
             return [Held(dofs["theta"], value)]
         x, y = reference[dofs["r_y^x"]], reference[dofs["r_y^y"]]
         return [Held(dofs["r_y^x"], value, (x, -y)), Held(dofs["r_y^y"], value, (y, x))]
-    assert isinstance(support, Roller)
-    nx, ny = support.direction
-    if abs(nx) < 1e-12:
-        return [Held(dofs["r^y"], 0.0)]
-    if abs(ny) < 1e-12:
-        return [Held(dofs["r^x"], 0.0)]
-    raise InputError(f"Roller at {support.point}: only normals along x or y are supported yet, got {support.normal}")
+    along = _axis_of(support)
+    return [] if along is None else [Held(dofs[f"r^{along}"], 0.0)]
+
+
+def _axis_of(support: Roller) -> str | None:
+    """Name the axis that the normal of a roller is along, if any."""
+    nx, ny = np.abs(support.direction)
+    if ny < 1e-12:
+        return "x"
+    return "y" if nx < 1e-12 else None

@@ -6,8 +6,8 @@ from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
 from beamfem.curves import Line
-from beamfem.element.element import ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, Element
-from beamfem.element.forces import ContinuumMechanics
+from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element
+from beamfem.element.forces import ContinuumMechanics, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
 from beamfem.io.results import load
 from beamfem.material import Material
@@ -22,6 +22,7 @@ from beamfem.solution import Solution, State
 __all__ = [
     "ANCF",
     "ANCFCRBF",
+    "CRBF",
     "Beam",
     "BeamfemError",
     "BilinearANCF",
@@ -52,6 +53,7 @@ __all__ = [
     "SectionForces",
     "Solution",
     "State",
+    "Structural",
     "UnknownPointError",
     "load",
     "simulate",

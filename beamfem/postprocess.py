@@ -152,11 +152,9 @@ def green_strain(now: Axis, y: np.ndarray) -> Components:
 
 
 def stress(mesh: BeamMesh, strain: Components) -> Components:
-    """Return the second Piola-Kirchhoff stress [Pa] of St. Venant-Kirchhoff material."""
-    material = mesh.beam.material
-    lam, mu = material.lame_lambda(mesh.beam.element.forces.plane_stress), material.shear_modulus
-    trace = lam * (strain.xx + strain.yy)
-    return Components(trace + 2 * mu * strain.xx, trace + 2 * mu * strain.yy, 2 * mu * strain.xy)
+    """Return the stress [Pa] that the elastic forces give to a strain."""
+    found = mesh.beam.element.forces.stress(strain.xx, strain.yy, strain.xy, mesh.beam.material)
+    return Components(*found)
 
 
 def gauss_points(mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -171,8 +169,7 @@ def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:
     element, xi, _ = gauss_points(mesh)
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     resultant = _resultants(mesh, now)
-    force = resultant[..., 0:1] * now.r_s + resultant[..., 1:2] * now.d_s + resultant[..., 4:5] * now.d
-    couple = resultant[..., 1:2] * now.r_s + resultant[..., 2:3] * now.d_s + resultant[..., 5:6] * now.d
+    force, couple = mesh.beam.element.forces.conjugates(resultant, now.r_s, now.d, now.d_s)
     across = now.d / np.linalg.norm(now.d, axis=-1, keepdims=True)
     along = np.stack([across[..., 1], -across[..., 0]], axis=-1)
     moment = now.d[..., 0] * couple[..., 1] - now.d[..., 1] * couple[..., 0]
@@ -224,7 +221,7 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
 
 def _resultants(mesh: BeamMesh, now: Axis) -> np.ndarray:
     forces = mesh.beam.element.forces
-    stiffness = forces.stiffness(mesh.beam.section, mesh.beam.material)
+    stiffness = forces.stiffness(mesh.beam.section, mesh.beam.material, mesh.beam.element.coordinates)
     return np.asarray(forces.strains(now.r_s, now.d, now.d_s) @ stiffness)
 
 

@@ -7,9 +7,13 @@ import beamfem as bf
 
 PRESETS = (bf.ANCF, bf.ANCFCRBF, bf.BilinearANCF, bf.BilinearCRBF)
 ELEMENTS = [make(forces=bf.ContinuumMechanics(flag)) for make in PRESETS for flag in (False, True)]
+ELEMENTS += [make(forces=bf.Structural()) for make in PRESETS] + [bf.CRBF(1), bf.CRBF(3)]
 
 
-@pytest.fixture(params=ELEMENTS, ids=lambda e: f"{e.name}-{'plane-stress' if e.forces.plane_stress else '3D'}")
+@pytest.fixture(
+    params=ELEMENTS,
+    ids=lambda e: f"{e.name}-{e.forces.name}{'-plane-stress' if getattr(e.forces, 'plane_stress', False) else ''}",
+)
 def element(request):
     return request.param
 

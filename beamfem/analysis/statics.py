@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from beamfem.analysis.equations import residual
 from beamfem.analysis.free_motion import require_support
-from beamfem.analysis.newton import Ended, Newton, solve_equilibrium
+from beamfem.analysis.newton import Ended, Newton, NewtonResult, round_off_floor, solve_equilibrium
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
 from beamfem.model.system import System
@@ -24,7 +25,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     require_support(system)
     newton = newton or Newton()
     done = _Record(model)
-    first = solve_equilibrium(system, system.reference, 0.0, newton)
+    first = _unloaded(system) or solve_equilibrium(system, system.reference, 0.0, newton)
     done.iterations += first.iterations
     if not first.ended.good:
         done.add(0.0, system.reference)
@@ -56,6 +57,15 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
                     done.solution(),
                 )
     return done.solution()
+
+
+def _unloaded(system: System) -> NewtonResult | None:
+    """Return the reference as the equilibrium at load factor 0 where nothing acts yet, else None."""
+    p, rest = system.reference, np.zeros(system.model.size)
+    balanced = np.abs(residual(system, p, rest, rest, 0.0)).max() <= round_off_floor(system, p)
+    if balanced and np.array_equal(system.held_values(0.0), p[system.held_dofs]):
+        return NewtonResult(p, 0, Ended.CONVERGED)
+    return None
 
 
 class _Record:

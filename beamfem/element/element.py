@@ -7,8 +7,9 @@ import numpy as np
 
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.element.forces import ContinuumMechanics
+from beamfem.element.forces import ContinuumMechanics, Forces, Structural
 from beamfem.errors import InputError
+from beamfem.validation import count
 
 Integration = Literal["full", "reduced"]
 
@@ -23,16 +24,22 @@ class Element:
 
     field: Field
     coordinates: Gradients | Rotation
-    forces: ContinuumMechanics
+    forces: Forces
     integration: Integration = "full"
     label: str | None = None
 
     def __post_init__(self) -> None:
         if self.integration not in ("full", "reduced"):
             raise InputError(f'integration must be "full" or "reduced", got {self.integration!r}')
-        for name, kind in (("coordinates", Gradients | Rotation), ("forces", ContinuumMechanics)):
+        for name, kind in (("coordinates", Gradients | Rotation), ("forces", Forces)):
             if not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {getattr(self, name)!r}")
+
+        if (self.coordinates, self.forces, self.integration) == (Gradients(), Structural(), "reduced"):
+            raise InputError(
+                "structural forces with gradients need full integration: they see the unit vector of d only, so that "
+                "with reduced integration the thickness can change without resistance"
+            )
 
     @property
     def name(self) -> str:
@@ -51,21 +58,31 @@ class Element:
         return 0.5 * (xi + 1.0), 0.5 * weights
 
 
-def ANCF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
     return Element(Cubic(), Gradients(), forces or ContinuumMechanics(), integration, "ANCF")
 
 
-def ANCFCRBF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+def ANCFCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
     return Element(Cubic(), Rotation(), forces or ContinuumMechanics(), integration, "ANCF-CRBF")
 
 
-def BilinearANCF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by gradients, 4 coordinates a node; paper, eqs. (8) to (10)."""
     return Element(Lagrange(1), Gradients(), forces or ContinuumMechanics(), integration, "bilinear-ANCF")
 
 
-def BilinearCRBF(forces: ContinuumMechanics | None = None, integration: Integration = "full") -> Element:
+def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by rotations, 3 coordinates a node; paper, section 4."""
     return Element(Lagrange(1), Rotation(), forces or ContinuumMechanics(), integration, "bilinear-CRBF")
+
+
+def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
+    """Field of any order in r and r_y carried by rotations, 3 coordinates a node; suggested in the paper, section 4.
+
+    order: 1 to 8. Raises InputError.
+    """
+    if count("order", order) > 8:
+        raise InputError(f"order must be at most 8, got {order}")
+    return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")

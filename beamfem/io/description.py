@@ -10,7 +10,7 @@ from beamfem.curves import Line
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
-from beamfem.element.forces import ContinuumMechanics
+from beamfem.element.forces import ContinuumMechanics, Structural
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
@@ -33,6 +33,7 @@ _CLASSES = {
         Gradients,
         Rotation,
         ContinuumMechanics,
+        Structural,
         Beam,
         Point,
         Clamp,

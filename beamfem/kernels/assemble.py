@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.coordinates import node_map
-from beamfem.kernels.measures import green_lagrange, green_lagrange_hessian
+from beamfem.kernels.measures import measure, measure_hessian
 
 
 @njit(cache=True, error_model="numpy")
@@ -100,7 +100,7 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                 q[3] += phi_d[i] * e[slot, 1]
                 q[4] += phi_x[i] * e[slot, 0]
                 q[5] += phi_x[i] * e[slot, 1]
-            green_lagrange(q, eps, grad)
+            measure(block.measures, q, eps, grad)
             stiffness = block.stiffness[kind, point]
             for i in range(ns):
                 eps[i] -= block.reference[kind, point, i]
@@ -141,7 +141,7 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                         total += grad[i, x] * cg[i, z]
                     h[x, z] = total
                     h[z, x] = total
-            green_lagrange_hessian(sigma_geo, h)
+            measure_hessian(block.measures, q, sigma_geo, h)
             _spread(block, phi_r, phi_d, phi_x, h, k)
 
         for i in range(npe):

@@ -10,6 +10,7 @@ ROTATION = 1
 
 # Strain measures, see `measures`.
 GREEN_LAGRANGE = 0
+STRUCTURAL = 1
 
 
 class Block(NamedTuple):
@@ -20,7 +21,7 @@ class Block(NamedTuple):
     """
 
     coordinates: int  # GRADIENTS or ROTATION
-    measures: int  # GREEN_LAGRANGE
+    measures: int  # GREEN_LAGRANGE or STRUCTURAL
     r_slots: np.ndarray  # (nr,) which nodal vectors carry r0
     d_slots: np.ndarray  # (nd,) which nodal vectors carry d
     r_xi: np.ndarray  # (nq, nr) dN_r/dxi on the unit element

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.coordinates import node_map
-from beamfem.kernels.measures import green_lagrange
+from beamfem.kernels.measures import measure
 
 
 @njit(cache=True, error_model="numpy")
@@ -67,7 +67,7 @@ def predict_stress(block, p, step, stress):
                     dq[2 + x] += phi * de[2 * slot + x]
                     q[4 + x] += slope * e[2 * slot + x]
                     dq[4 + x] += slope * de[2 * slot + x]
-            green_lagrange(q, eps, grad)
+            measure(block.measures, q, eps, grad)
             for i in range(ns):
                 eps[i] -= block.reference[kind, point, i]
                 for x in range(6):

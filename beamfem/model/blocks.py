@@ -29,7 +29,7 @@ def build_block(element: Element, meshes: list[tuple[int, BeamMesh]]) -> Block:
         unique, kind = _classes(mesh.lengths)
         scale = scales(element, unique)
         jacobian = np.repeat(unique[:, None], len(xi), axis=1)
-        stiffness = element.forces.stiffness(beam.section, beam.material)
+        stiffness = element.forces.stiffness(beam.section, beam.material, element.coordinates)
         mass, gravity, length = _inertia(mesh, element, unique, scale)
         frame, dof = _nodes(mesh)
         part = {

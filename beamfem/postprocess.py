@@ -115,13 +115,27 @@ def turning(mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: n
     reference = mesh.beam.curve.tangent(mesh.vertices[element] + xi * mesh.lengths[element])
     start = np.arctan2(reference[:, 1], reference[:, 0])
     angle = np.arctan2(-now.d[..., 0], now.d[..., 1]) - start
+    node = element * mesh.intervals + np.round(xi * mesh.intervals).astype(int)
+    near = nodal_rotations(mesh, p)[:, node]
+    return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
+
+
+def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
+    """Return the rotation of each node's section from the reference (steps, nodes) [rad].
+
+    Gradients know a rotation up to full turns only: it is continued along the beam from its start, and there over the
+    states, the first of them within half a turn. Rotations are coordinates of their own.
+    """
     table, names = _table(mesh, p)
     if "theta" in names:
-        node = element * mesh.intervals + np.round(xi * mesh.intervals).astype(int)
-        near = table[:, node, names.index("theta")]
-        return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
-    angle = np.unwrap(angle, axis=0)
-    return np.asarray(angle - 2.0 * np.pi * np.round(angle[:1] / (2.0 * np.pi)))
+        return table[:, :, names.index("theta")]
+    d = nodal_vectors(mesh, p)[:, :, mesh.beam.element.field.vectors.index("r_y")]
+    tangent = mesh.beam.curve.tangent(mesh.node_arc_lengths())
+    angle = np.arctan2(-d[..., 0], d[..., 1]) - np.arctan2(tangent[:, 1], tangent[:, 0])
+    angle = np.unwrap(angle, axis=1)
+    start = np.unwrap(angle[:, 0])
+    start -= 2.0 * np.pi * np.round(start[0] / (2.0 * np.pi))
+    return np.asarray(angle + (start - angle[:, 0])[:, None])
 
 
 def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Fields:

@@ -8,10 +8,17 @@ import numpy as np
 from beamfem.errors import InputError
 
 
+def _number(value: Any) -> Any:
+    """Refuse text: float() would read it, arithmetic later would not."""
+    if isinstance(value, str | bytes):
+        raise TypeError
+    return value
+
+
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float, or raise InputError naming it."""
     try:
-        number = float(value)
+        number = float(_number(value))
     except (TypeError, ValueError):
         raise InputError(f"{name} must be a number, got {value!r}") from None
     if not np.isfinite(number):
@@ -39,7 +46,7 @@ def count(name: str, value: Any) -> int:
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return `value` as two finite floats, or raise InputError naming it."""
     try:
-        numbers = tuple(float(component) for component in value)
+        numbers = tuple(float(_number(component)) for component in value)
     except (TypeError, ValueError):
         raise InputError(f"{name} must be two numbers (x, y), got {value!r}") from None
     if len(numbers) != 2 or not np.isfinite(numbers).all():

@@ -111,3 +111,20 @@ def test_a_step_that_fails_hands_back_the_states_before():
     with pytest.raises(bf.ConvergenceError, match="did not converge") as caught:
         bf.simulate(model, 0.1, 1e-2)
     assert caught.value.solution.time[-1] == pytest.approx(0.05)
+
+
+def test_an_inclined_roller_holds_the_initial_velocity_too(element):
+    """Found in review: the point left its plane with the velocity it was given."""
+    one = beam(element)
+    model = bf.Model([one], [bf.Roller(one.start, (1, 1))])
+    solution = bf.simulate(model, 0.05, 1e-3, velocity=bf.RigidVelocity((1.0, 0.0)))
+    assert np.abs(solution.displacement(one.start) @ [1.0, 1.0]).max() < 1e-13
+
+
+def test_the_last_state_is_kept_whatever_save_every_is():
+    """Found in review: the end was lost where save_every did not divide the steps."""
+    model = bf.Model([beam(bf.ANCF())], loads=[bf.Gravity((0, -9.81))])
+    assert bf.simulate(model, 0.1, 0.01, save_every=4).time == pytest.approx([0.0, 0.04, 0.08, 0.1])
+    whole = bf.simulate(model, 0.1, 0.01)
+    for every in (3, 4, 100):
+        assert np.array_equal(bf.simulate(model, 0.1, 0.01, save_every=every).p[-1], whole.p[-1])

@@ -50,6 +50,16 @@ BAD = {
     "negative duration": (lambda: bf.simulate(bf.Model([BEAM]), -1.0, 1e-3), "duration"),
     "zero step": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.0), "step"),
     "step beyond duration": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 2.0), "must not exceed"),
+    "moment as text": (lambda: bf.PointMoment(BEAM.end, "3"), "moment"),
+    "force as text": (lambda: bf.PointForce(BEAM.end, (0, "1")), "PointForce"),
+    "modulus as text": (lambda: bf.Material("1", 0.3, 1.0), "youngs_modulus"),
+    "the same beam twice": (lambda: bf.Model([BEAM, BEAM]), "twice"),
+    "a beam for a list": (lambda: bf.Model(BEAM), "list"),
+    "a clamp of a beam": (lambda: bf.Model([BEAM], [bf.Clamp(BEAM)]), "point of Clamp"),
+    "a load on a point": (lambda: bf.Model([BEAM], loads=[bf.DistributedLoad(BEAM.end, (0, 1))]), "must be a Beam"),
+    "no load steps": (lambda: bf.solve_static(bf.Model([BEAM]), steps=0), "steps"),
+    "start from a solution": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, start="a"), "start"),
+    "velocity of numbers": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, velocity=(1, 0)), "velocity"),
     "save every half step": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, save_every=0.5), "save_every"),
 }
 

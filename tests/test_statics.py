@@ -160,3 +160,16 @@ def test_twenty_thousand_elements_end_at_the_round_off_floor_and_are_right():
         tips.append(solution.displacement(beam.end)[-1])
     assert "round-off" in solution.statistics.ended
     assert np.abs(tips[0] - tips[1]).max() < 1e-6
+
+
+@pytest.mark.parametrize("make", [bf.ANCF, bf.ANCFCRBF])
+def test_a_prescribed_full_turn_is_not_taken_for_none(make):
+    """Found in review: gradients hold a cosine and a sine, and one load step of 2 pi changed neither."""
+    rubber = bf.Material(1e7, 0.0, 1000.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 24, make(), SQUARE, rubber)
+    model = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, rotation=2 * np.pi)])
+    solution = bf.solve_static(model)
+    assert solution.rotation(beam.end)[-1] == pytest.approx(2 * np.pi, abs=1e-9)
+    assert solution.reaction(beam.end)[-1, 2] > 0.0
+    start = bf.simulate(model, 1e-3, 1e-3, start=solution[-1])
+    assert start.rotation(beam.end)[0] == pytest.approx(2 * np.pi, abs=1e-9)

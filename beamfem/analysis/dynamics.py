@@ -37,7 +37,8 @@ def simulate(
 ) -> Solution:
     """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
 
-    start: a state to start from, such as the last of a static solution; velocity: initial velocity field.
+    start: a state to start from, such as the last of a static solution; velocity: initial velocity field;
+    save_every: keep each so many-th step, and the last.
     Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails.
     """
     positive("duration", duration)
@@ -55,9 +56,13 @@ def simulate(
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
     state[:3, system.held_dofs] = held.values[0]
+    for dof, normal in system.inclined:
+        pair = slice(dof, dof + 2)
+        state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
+        state[1, pair] -= normal * (normal @ state[1, pair])
     state[2] = initial_acceleration(system, state, times[0])
     state[3] = state[2]
-    states = np.empty((steps // save_every + 1, 3, n))
+    states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0])
     scale = coordinate_scale(system)
@@ -89,6 +94,8 @@ def simulate(
             chosen = kept % save_every == 0
             states[kept[chosen] // save_every] = saved[:completed][chosen]
             done += completed
+            if completed and done % save_every:
+                states[done // save_every + 1] = saved[completed - 1]
             report(times[done])
             if completed < now:
                 message = (
@@ -133,9 +140,10 @@ class HeldMotion:
         if not any(callable(item.value) for item in system.held):
             values[:, 0] = system.held_values(0.0)
             return cls(values)
+        start = system.reference[system.held_dofs]  # differences of displacements, not of positions far away
         for i, now in enumerate(times):
             first, second, offsets = _FORWARD if now == 0.0 else _CENTRAL
-            around = np.array([system.held_values(now + k * width) for k in offsets])
+            around = np.array([system.held_values(now + k * width) - start for k in offsets])
             values[i, 0] = system.held_values(now)
             values[i, 1] = first @ around / (12.0 * width)
             values[i, 2] = second @ around / (12.0 * width**2)
@@ -151,7 +159,7 @@ def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[
 def _solution(
     system: System, times: np.ndarray, states: np.ndarray, done: int, save_every: int, statistics: np.ndarray
 ) -> Solution:
-    rows = done // save_every + 1
-    kept = states[:rows]
+    kept_steps = np.append(np.arange(0, done, save_every), done)
+    kept = states[: len(kept_steps)]
     summary = Statistics(int(statistics[0]), done, 0, f"{done} steps of {times[1]:g} s")
-    return Solution(system.model, False, times[: done + 1 : save_every], kept[:, 0], kept[:, 1], kept[:, 2], summary)
+    return Solution(system.model, False, times[kept_steps], kept[:, 0], kept[:, 1], kept[:, 2], summary)

@@ -29,6 +29,8 @@ def start_state(system: System, start: State | None) -> np.ndarray:
     """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
     if start is None:
         return system.reference.copy()
+    if not isinstance(start, State):
+        raise InputError(f"start must be a state, such as solution[-1], got a {type(start).__name__}")
     if len(start.p) != system.model.size:
         raise InputError(
             f"start has {len(start.p)} coordinates, this model has {system.model.size}; "
@@ -50,6 +52,8 @@ def start_velocity(
     result = np.zeros(system.model.size) if start is None or velocity is not None else np.array(start.v)
     if velocity is None:
         return result
+    if not isinstance(velocity, RigidVelocity) and not callable(velocity):
+        raise InputError(f"velocity must be a RigidVelocity or a function of the position, got {velocity!r}")
     for mesh in system.model.meshes:
         labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
         rows = slice(mesh.first_dof, mesh.first_dof + mesh.size)

@@ -10,9 +10,11 @@ from beamfem.model.model import Model
 from beamfem.model.system import System
 from beamfem.progress import progress
 from beamfem.solution import Solution, Statistics
+from beamfem.validation import count
 
 _SMALLEST_STEP = 1e-6
 _EASY_ITERATIONS = 8
+_LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 
 
 def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> Solution:
@@ -21,6 +23,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     steps: load steps to start with. Rows of the result: load factor 0 (loads with scale=False), ..., 1.
     Raises FreeMotionError before, ConvergenceError (with the states found) where it cannot go on.
     """
+    count("steps", steps)
     system = System(model, static=True)
     require_support(system)
     newton = newton or Newton()
@@ -38,6 +41,9 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     with progress("load factor", 1.0) as report:
         while reached < 1.0:
             target = 1.0 if reached + step > 1.0 - 1e-12 else reached + step
+            while system.largest_turn(reached, target) > _LARGEST_TURN:
+                step *= 0.5
+                target = reached + step
             result = solve_equilibrium(system, done.states[-1], target, newton)
             done.iterations += result.iterations
             if result.ended.good:

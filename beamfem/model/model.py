@@ -24,6 +24,8 @@ class Model:
 
     def __post_init__(self) -> None:
         for name in ("beams", "supports", "loads"):
+            if not isinstance(getattr(self, name), Sequence):
+                raise InputError(f"{name} of a Model must be a list, got {getattr(self, name)!r}")
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if not self.beams:
             raise InputError("a Model needs at least one beam")
@@ -31,7 +33,13 @@ class Model:
             for item in getattr(self, name):
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {item!r}")
+        if len({id(beam) for beam in self.beams}) < len(self.beams):
+            raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
         for item in (*self.supports, *self.loads):
+            for place, kind in (("point", Point), ("beam", Beam)):
+                if not isinstance(getattr(item, place, None), kind | None):
+                    what = f"{place} of {type(item).__name__} must be a {kind.__name__}"
+                    raise InputError(f"{what} such as beam.end or beam, got {getattr(item, place)!r}")
             if isinstance(item, Clamp | Pin | Roller | Prescribed | PointForce | PointMoment):
                 self._require(item.point.beam, type(item).__name__, f" at {item.point}")
             elif isinstance(item, DistributedLoad):

@@ -113,14 +113,24 @@ class System:
         """Values of the held coordinates at a time, in statics at a load factor."""
         return np.array([self._held_value(item, time) for item in self.held], dtype=float)
 
-    def _held_value(self, item: Held, time: float) -> float:
+    def _given(self, item: Held, time: float) -> float:
         if callable(item.value):
-            value = function_value("prescribed value", item.value, time)
-        else:
-            value = item.value * (time if self.static else 1.0)
+            return function_value("prescribed value", item.value, time)
+        return item.value * (time if self.static else 1.0)
+
+    def _held_value(self, item: Held, time: float) -> float:
+        value = self._given(item, time)
         if item.turned is None:
             return self.reference[item.dof] + value
         return float(np.cos(value) * item.turned[0] + np.sin(value) * item.turned[1])
+
+    def largest_turn(self, before: float, after: float) -> float:
+        """Return the largest change [rad] of a rotation that is prescribed through gradients, between two times.
+
+        Their held values are a cosine and a sine, which cannot tell a full turn from none.
+        """
+        turned = [item for item in self.held if item.turned is not None]
+        return max((abs(self._given(item, after) - self._given(item, before)) for item in turned), default=0.0)
 
     @cached_property
     def layout(self) -> Layout:
@@ -140,6 +150,8 @@ class System:
             if isinstance(support, Roller) and _axis_of(support) is None:
                 mesh = self.model.mesh_of(support.point)
                 found.append((int(mesh.dofs_of_node(mesh.node_at(support.point.fraction))[0]), support.direction))
+        if len({dof for dof, _ in found}) < len(found):
+            raise InputError("two inclined Rollers stand at the same point; a Pin holds both directions")
         for dof, _ in found:
             if self.layout.free[dof] < 0 or self.layout.free[dof + 1] < 0:
                 raise InputError("an inclined Roller stands where another support already holds a displacement")

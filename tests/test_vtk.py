@@ -133,7 +133,8 @@ def test_velocity_is_the_rate_of_the_points():
     samples = vtk._body(solution.model.meshes[0])
     data = samples.arrays(solution.p, solution.v)
     rate = (data["points"][101] - data["points"][99]) / 2e-4
-    np.testing.assert_allclose(data["velocity"][100], rate, atol=1e-3 * np.abs(rate).max())
+    # the integrator's velocity and the central difference both are of second order in the step
+    np.testing.assert_allclose(data["velocity"][100], rate, atol=5e-5 * np.abs(rate).max())
 
 
 def test_centreline(solution, written):

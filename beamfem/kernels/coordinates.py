@@ -6,6 +6,7 @@ ca dp, the change of e'' is C dp. Columns j of B and C are zero outside [column_
 
 import math
 
+import numpy as np
 from numba import njit
 
 from beamfem.kernels.block import ROTATION
@@ -39,6 +40,23 @@ def node_map(coordinates, p, v, a, cosine, sine, coefficients, e, acceleration, 
         along_d = -ck * a[j] - 2.0 * cv * v[j]
         c[j, j] = ax * along_a + dx * along_d
         c[j, j + 1] = ay * along_a + dy * along_d
+
+
+@njit(cache=True, error_model="numpy")
+def element_map(block, element, p, e, b):
+    """Fill e (2 nv,) and the columns of B, b (npe, ne of a node), of an element at rest; p (n,) of the whole model."""
+    nn, npe = block.frame.shape[1], block.dof.shape[1]
+    npn, per_node = npe // nn, e.shape[0] // nn
+    here, zero = np.empty(npn), np.zeros(npn)
+    unused, c = np.empty(per_node), np.zeros((npn, per_node))
+    coefficients = np.array([1.0, 0.0, 0.0])
+    for node in range(nn):
+        lo, hi = node * npn, (node + 1) * npn
+        for i in range(npn):
+            here[i] = p[block.dof[element, lo + i]]
+        cosine, sine = block.frame[element, node, 0], block.frame[element, node, 1]
+        local = e[node * per_node : (node + 1) * per_node]
+        node_map(block.coordinates, here, zero, zero, cosine, sine, coefficients, local, unused, b[lo:hi], c)
 
 
 @njit(cache=True, inline="always", error_model="numpy")

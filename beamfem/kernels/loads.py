@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from beamfem.kernels.coordinates import node_map
+from beamfem.kernels.coordinates import element_map
 
 
 @njit(cache=True, error_model="numpy")
@@ -16,33 +16,12 @@ def assemble_point_loads(block, loads, layout, p, values, ck, residual, matrix):
     npe = block.dof.shape[1]
     npn, per_node = npe // nn, 2 * nv // nn
     nr, nd = block.r_slots.shape[0], block.d_slots.shape[0]
-    coefficients = np.array([1.0, 0.0, 0.0])
-    e, unused = np.zeros(2 * nv), np.zeros(2 * nv)
-    b, c = np.zeros((npe, per_node)), np.zeros((npe, per_node))
-    zero = np.zeros(npn)
+    e = np.zeros(2 * nv)
+    b = np.zeros((npe, per_node))
     force = np.empty(2 * nv)
-    pe = np.empty(npe)
     for load in range(loads.element.shape[0]):
         element = loads.element[load]
-        for i in range(npe):
-            pe[i] = p[block.dof[element, i]]
-        for node in range(nn):
-            lo, hi = node * npn, (node + 1) * npn
-            elo, ehi = node * per_node, (node + 1) * per_node
-            cosine, sine = block.frame[element, node, 0], block.frame[element, node, 1]
-            node_map(
-                block.coordinates,
-                pe[lo:hi],
-                zero,
-                zero,
-                cosine,
-                sine,
-                coefficients,
-                e[elo:ehi],
-                unused[elo:ehi],
-                b[lo:hi],
-                c[lo:hi],
-            )
+        element_map(block, element, p, e, b)
         moment = values[load, 2]
         dx, dy = 0.0, 0.0
         for i in range(nd):

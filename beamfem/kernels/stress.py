@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from beamfem.kernels.coordinates import node_map
+from beamfem.kernels.coordinates import element_map
 from beamfem.kernels.measures import measure
 
 
@@ -19,33 +19,15 @@ def predict_stress(block, p, step, stress):
     ns = block.stiffness.shape[2]
     npe = block.dof.shape[1]
     npn, per_node = npe // nn, 2 * nv // nn
-    coefficients = np.array([1.0, 0.0, 0.0])
-    pe, zero = np.empty(npe), np.zeros(npn)
-    e, de, unused = np.empty(2 * nv), np.empty(2 * nv), np.empty(2 * nv)
-    b, c = np.zeros((npe, per_node)), np.zeros((npe, per_node))
+    e, de = np.empty(2 * nv), np.empty(2 * nv)
+    b = np.zeros((npe, per_node))
     q, dq, eps, grad = np.empty(6), np.empty(6), np.empty(ns), np.empty((ns, 6))
     for element in range(ne):
         kind = block.kind[element]
-        for i in range(npe):
-            pe[i] = p[block.dof[element, i]]
         de[:] = 0.0
+        element_map(block, element, p, e, b)
         for node in range(nn):
-            lo, hi = node * npn, (node + 1) * npn
-            elo, ehi = node * per_node, (node + 1) * per_node
-            cosine, sine = block.frame[element, node, 0], block.frame[element, node, 1]
-            node_map(
-                block.coordinates,
-                pe[lo:hi],
-                zero,
-                zero,
-                cosine,
-                sine,
-                coefficients,
-                e[elo:ehi],
-                unused[elo:ehi],
-                b[lo:hi],
-                c[lo:hi],
-            )
+            lo, hi, elo = node * npn, (node + 1) * npn, node * per_node
             for i in range(lo, hi):
                 for x in range(block.column_start[i - lo], block.column_stop[i - lo]):
                     de[elo + x] += b[i, x] * step[block.dof[element, i]]

@@ -10,7 +10,7 @@ from beamfem.kernels.block import Block, Layout, PointLoads
 from beamfem.model.blocks import build_block, locate_loads
 from beamfem.model.loads import factor
 from beamfem.model.model import Model
-from beamfem.model.supports import Roller, Value
+from beamfem.model.supports import Roller, Support, Value
 from beamfem.validation import function_value
 
 
@@ -175,7 +175,9 @@ class System:
         return np.flatnonzero(self.layout.free >= 0)
 
 
-def _held_coordinates(support, direction, value, dofs, reference) -> list[Held]:  # type: ignore[no-untyped-def]
+def _held_coordinates(
+    support: Support, direction: str, value: Value, dofs: dict[str, int], reference: np.ndarray
+) -> list[Held]:
     """The coordinates that hold one direction of a support."""
     if direction in ("ux", "uy"):
         return [Held(dofs[f"r^{direction[1]}"], value)]
@@ -184,6 +186,7 @@ def _held_coordinates(support, direction, value, dofs, reference) -> list[Held]:
             return [Held(dofs["theta"], value)]
         x, y = reference[dofs["r_y^x"]], reference[dofs["r_y^y"]]
         return [Held(dofs["r_y^x"], value, (x, -y)), Held(dofs["r_y^y"], value, (y, x))]
+    assert isinstance(support, Roller)
     along = _axis_of(support)
     return [] if along is None else [Held(dofs[f"r^{along}"], 0.0)]
 

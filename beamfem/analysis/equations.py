@@ -1,65 +1,17 @@
 """Residual and tangent of a system in a state: the only place where solvers meet the kernels."""
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy.linalg import LinAlgError, solve_banded
 
+from beamfem.analysis.tangent import Tangent
 from beamfem.kernels.assemble import assemble
-from beamfem.kernels.band import factor, solve
 from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.stress import predict_stress
-from beamfem.kernels.turned import hold_normals, turn_back
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
 _EMPTY = np.empty(0)
 _NO_STRESS = np.empty((0, 0, 0))
-_SMALLEST_PIVOT = 1e-13
-
-
-@dataclass(frozen=True)
-class Tangent:
-    """A band matrix of the unknown coordinates, rows of 2 w + 1 entries."""
-
-    rows: np.ndarray
-
-    def solve(self, right: np.ndarray, turned: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Return x with A x = right and no change along the normals of inclined rollers.
-
-        turned: numbers (nt,) and normals (nt, 2) of those. Pivots only where the plain factorisation meets a tiny
-        pivot. Raises LinAlgError.
-        """
-        rows, right = self.rows.copy(), right.copy()
-        hold_normals(rows, right, *turned)
-        x = Tangent(rows)._solve(right)
-        turn_back(x, *turned)
-        return x
-
-    def _solve(self, right: np.ndarray) -> np.ndarray:
-        lu = self.rows.copy()
-        if factor(lu) > _SMALLEST_PIVOT:
-            x = right.copy()
-            solve(lu, x)
-            if np.isfinite(x).all():
-                return x
-        return self._solve_pivoted(right)
-
-    def _solve_pivoted(self, right: np.ndarray) -> np.ndarray:
-        n, width = self.rows.shape
-        half = width // 2
-        diagonals = np.zeros((width, n))
-        for offset in range(-half, half + 1):
-            size = max(n - abs(offset), 0)
-            first = max(-offset, 0)
-            diagonals[half - offset, first + offset : first + offset + size] = self.rows[
-                first : first + size, half + offset
-            ]
-        x = solve_banded((half, half), diagonals, right)
-        if not np.isfinite(x).all():
-            raise LinAlgError("the tangent is singular")
-        return np.asarray(x)
 
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
@@ -105,6 +57,21 @@ def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple
         predict_stress(block, p, step, stress)
         result.append(stress)
     return tuple(result)
+
+
+def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
+    """Return the change of the residual (n,) [N, N m] with the load factor, prescribed motions included.
+
+    A central difference of the given width, exact to round-off where loads are proportional to the load factor.
+    """
+    rest = np.zeros(len(p))
+    held, slopes = system.held_dofs, []
+    for side in (1.0, -1.0):
+        at = load_factor + side * width
+        moved = p.copy()
+        moved[held] += system.held_values(at) - system.held_values(load_factor)
+        slopes.append(side * residual(system, moved, rest, rest, at))
+    return np.asarray(sum(slopes) / (2.0 * width))
 
 
 def coordinate_scale(system: System) -> np.ndarray:

@@ -6,7 +6,7 @@ from numba import njit
 from beamfem.kernels.assemble import assemble
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.loads import assemble_point_loads
-from beamfem.kernels.turned import hold_normals, turn_back
+from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 
 @njit(cache=True, error_model="numpy")
@@ -54,7 +54,8 @@ def advance(blocks, loads, layout, free, held, turned, state, inputs, rule, limi
             for i in range(unknown):
                 right[i] = -residual[free[i]]
             lu = matrix.reshape(unknown, width)
-            hold_normals(lu, right, turned[0], turned[1])
+            hold_normals(lu, turned[0], turned[1])
+            turn_in(right, turned[0], turned[1])
             statistics[3] = min(statistics[3], factor(lu))
             solve(lu, right)
             turn_back(right, turned[0], turned[1])

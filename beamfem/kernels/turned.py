@@ -4,17 +4,16 @@ from numba import njit
 
 
 @njit(cache=True, error_model="numpy")
-def hold_normals(rows, right, first, normal):
+def hold_normals(rows, first, normal):
     """Turn each pair of unknowns to (normal, tangent) in a band matrix and hold the normal one at zero change.
 
-    rows (n, 2 w + 1) and right (n,) in place; first (nt,) number of the pair's x; normal (nt, 2) unit vectors.
+    rows (n, 2 w + 1) in place; first (nt,) number of the pair's x; normal (nt, 2) unit vectors.
     """
     n, width = rows.shape
     w = width // 2
     for k in range(first.shape[0]):
         i, j = first[k], first[k] + 1
         c, s = normal[k, 0], normal[k, 1]
-        right[i], right[j] = c * right[i] + s * right[j], -s * right[i] + c * right[j]
         for column in range(max(0, j - w), min(n, i + w + 1)):
             x, y = rows[i, w + column - i], rows[j, w + column - j]
             rows[i, w + column - i] = c * x + s * y
@@ -28,6 +27,14 @@ def hold_normals(rows, right, first, normal):
             rows[i, w + other - i] = 0.0
             rows[other, w + i - other] = 0.0
         rows[i, w] = size if size > 0.0 else 1.0
+
+
+@njit(cache=True, error_model="numpy")
+def turn_in(right, first, normal):
+    """Turn each pair of a right-hand side (n,) to (normal, tangent) in place, the normal one zero."""
+    for k in range(first.shape[0]):
+        i, j = first[k], first[k] + 1
+        right[j] = -normal[k, 1] * right[i] + normal[k, 0] * right[j]
         right[i] = 0.0
 
 

@@ -6,17 +6,18 @@ from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
 from beamfem.curves import Line
-from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element
-from beamfem.element.forces import ContinuumMechanics, Structural
+from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
-from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
+from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.postprocess import Fields, SectionForces
-from beamfem.section import Rectangle, Section
+from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
 
 __all__ = [
@@ -27,16 +28,22 @@ __all__ = [
     "BeamfemError",
     "BilinearANCF",
     "BilinearCRBF",
+    "Circle",
     "Clamp",
     "ContinuumMechanics",
     "ConvergenceError",
     "DistributedLoad",
+    "ElasticLine",
     "Element",
     "Fields",
+    "Foundation",
     "FreeMotionError",
     "GeneralizedAlpha",
     "Gravity",
+    "Hinge",
     "InputError",
+    "Layer",
+    "Layered",
     "Line",
     "Material",
     "Model",
@@ -47,13 +54,18 @@ __all__ = [
     "PointMoment",
     "Prescribed",
     "Rectangle",
+    "Rigid",
     "RigidVelocity",
     "Roller",
     "Section",
     "SectionForces",
+    "ShearRigid",
     "Solution",
+    "SplitContinuum",
+    "Spring",
     "State",
     "Structural",
+    "Tube",
     "UnknownPointError",
     "load",
     "simulate",

@@ -1,7 +1,7 @@
 """Stress-free shapes of a beam axis."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -9,11 +9,14 @@ from beamfem.errors import InputError
 from beamfem.validation import vector
 
 
+@runtime_checkable
 class Curve(Protocol):
     """A planar curve by arc length."""
 
     @property
     def length(self) -> float: ...  # [m]
+    @property
+    def corners(self) -> tuple[float, ...]: ...  # arc lengths where the tangent jumps [m]
     def position(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) [m]
     def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) unit vectors
 
@@ -34,6 +37,10 @@ class Line:
     @property
     def length(self) -> float:
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         share = np.asarray(arc_length)[:, None] / self.length

@@ -21,12 +21,14 @@ def beam_basis(mesh: BeamMesh, points: int | None = None) -> Basis:
 
     points: Gauss points along an element; without it those of the beam's elastic forces.
     """
-    element, section = mesh.beam.element, mesh.beam.section
+    element, section = mesh.beam.element, mesh.beam.section_at(0.0)
+    low, high = section.bounds
+    area = sum(moments[0] for _, moments in section.moments(mesh.beam.material))
     xi, along = element.quadrature() if points is None else _gauss(points)
     eta, across = _gauss(_HEIGHT_POINTS)
-    y = section.height * (eta - 0.5)
+    y = low + (high - low) * eta
     X = np.stack([np.repeat(xi, len(y)), np.tile(y, len(xi))])
-    W = np.outer(along, across * section.height * section.width).ravel()
+    W = np.outer(along, across * area).ravel()
     line = mesh.skfem
     return Basis(line, FieldElement(element.field), mapping=BeamMapping(line), quadrature=(X, W))
 

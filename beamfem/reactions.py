@@ -8,38 +8,34 @@ from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.system import System
-from beamfem.postprocess import nodal_vectors
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
 
 
 def reaction(solution: "Solution", point: Point) -> np.ndarray:
-    """Return fx, fy [N] and m [N m] of the support at a point (steps, 3); m is d x the force on d.
+    """Return fx, fy [N] and m [N m] of the supports and springs at a point (steps, 3).
 
     Raises InputError where no support is.
     """
     model = solution.model
     mesh = model.mesh_of(point)
-    if not any(s.point.beam is point.beam and abs(s.point.fraction - point.fraction) < 1e-9 for s in model.supports):
+    near = [s for s in model.point_supports if s.point.beam is point.beam]
+    if not any(abs(support.point.fraction - point.fraction) < 1e-9 for support in near):
         raise InputError(f"there is no support at {point}, so there is no reaction")
     system = System(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
     held[system.held_dofs] = True
     for dof, _ in system.inclined:
         held[dof : dof + 2] = True
-    node = mesh.node_at(point.fraction)
-    dofs = mesh.dofs_of_node(node)
-    element = mesh.beam.element
-    labels = element.coordinates.labels(element.field.vectors)
-    director = nodal_vectors(mesh, solution.p)[:, node, element.field.vectors.index("r_y")]
+    dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
+    springs = system.springs
     result = np.zeros((len(solution), 3))
     for row, at in enumerate(solution.at):
-        force = residual(system, solution.p[row], solution.v[row], solution.a[row], at)
-        local = dict(zip(labels, np.where(held, force, 0.0)[dofs], strict=True))
-        result[row, :2] = local["r^x"], local["r^y"]
-        if "theta" in local:
-            result[row, 2] = local["theta"]
-        else:
-            result[row, 2] = director[row, 0] * local["r_y^y"] - director[row, 1] * local["r_y^x"]
+        p = solution.p[row]
+        force = np.where(held, residual(system, p, solution.v[row], solution.a[row], at), 0.0)
+        np.subtract.at(force, springs.dof, springs.stiffness * (p[springs.dof] - springs.rest))
+        for column, name in enumerate(("r^x", "r^y", "theta")):
+            if name in dofs:
+                result[row, column] = force[dofs[name]]
     return result

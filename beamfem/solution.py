@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 
 from beamfem import postprocess
+from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.loads import factor
+from beamfem.model.loads import PointForce, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.reference import inertia_points, length_points
 from beamfem.postprocess import Fields, SectionForces
 
 
@@ -38,7 +40,9 @@ class State:
 
 @dataclass(frozen=True)
 class Energy:
-    """Energies (steps,) [J]; potential is that of gravity and of the other constant dead forces."""
+    """Energies (steps,) [J]; potential is that of gravity and of the other constant dead forces.
+
+    Forces that follow have none; springs and foundations are not counted."""
 
     kinetic: np.ndarray
     strain: np.ndarray
@@ -144,17 +148,21 @@ class Solution:
             for mesh, carried in zip(self.model.meshes, self._momenta, strict=True):
                 result -= weights * ((carried.first_moment - _reference_moment(mesh)) @ np.array(load.vector))
         for acting in self.model.point_loads:
+            if acting.follower and isinstance(acting, PointForce):
+                continue
             weights = np.array([factor(acting, at, self.static) for at in self.at])
             fx, fy, moment = acting.value
             result -= weights * (self.displacement(acting.point) @ np.array([fx, fy]))
             if moment:
                 result -= weights * moment * self.rotation(acting.point)
         for spread in self.model.distributed:
+            if spread.follower:
+                continue
             weights = np.array([factor(spread, at, self.static) for at in self.at])
             mesh = self.model.mesh_of(spread.beam.start)
-            element, xi, weight = postprocess.gauss_points(mesh)
+            element, xi, weight = length_points(mesh)
             now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.p), element, xi).r
-            start = mesh.beam.curve.position(mesh.vertices[element] + xi * mesh.lengths[element])
+            start = mesh.beam.curve.position(mesh.arc_length(element, xi))
             result -= weights * (np.einsum("sqc,c->sq", now - start, np.array(spread.vector)) @ weight)
         return result
 
@@ -187,9 +195,10 @@ class Solution:
 
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:
     """Integral of the reference position over the mass (2,) [kg m]."""
-    element, xi, weight = postprocess.gauss_points(mesh)
-    position = mesh.beam.curve.position(mesh.vertices[element] + xi * mesh.lengths[element])
-    return np.asarray(weight @ position * mesh.beam.material.density * mesh.beam.section.area)
+    element, xi, inertia = inertia_points(mesh)
+    arc = mesh.arc_length(element, xi)
+    tangent = mesh.beam.curve.tangent(arc)
+    return np.asarray(inertia[:, 0] @ mesh.beam.curve.position(arc) + inertia[:, 1] @ across(tangent))
 
 
 def _single(value: Any) -> Any:

@@ -1,19 +1,37 @@
 """The elements that every test of all combinations runs over, and a small model of each."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.element.coordinates import Gradients, Rotation, ShearFree
+from beamfem.element.fields import Cubic, Lagrange
 
-PRESETS = (bf.ANCF, bf.ANCFCRBF, bf.BilinearANCF, bf.BilinearCRBF)
-ELEMENTS = [make(forces=bf.ContinuumMechanics(flag)) for make in PRESETS for flag in (False, True)]
-ELEMENTS += [make(forces=bf.Structural()) for make in PRESETS] + [bf.CRBF(1), bf.CRBF(3)]
+FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
+COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
+FORCES = (bf.ContinuumMechanics(), bf.ContinuumMechanics(True), bf.SplitContinuum(), bf.ElasticLine(), bf.Structural())
 
 
-@pytest.fixture(
-    params=ELEMENTS,
-    ids=lambda e: f"{e.name}-{e.forces.name}{'-plane-stress' if getattr(e.forces, 'plane_stress', False) else ''}",
-)
+def combinations():
+    """Every combination of field, coordinates, forces and integration that is not refused."""
+    for parts in product(FIELDS, COORDINATES, FORCES, ("full", "reduced")):
+        try:
+            yield bf.Element(*parts)
+        except bf.InputError:
+            continue
+
+
+ELEMENTS = tuple(combinations())
+
+
+def identify(element):
+    flag = "-plane-stress" if getattr(element.forces, "plane_stress", False) else ""
+    return f"{element.name}-{element.forces.name}{flag}-{element.integration}"
+
+
+@pytest.fixture(params=ELEMENTS, ids=identify)
 def element(request):
     return request.param
 

@@ -7,7 +7,7 @@ import pytest
 
 from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
 from beamfem.analysis.equations import INERTIA, STATICS, linearise, residual
-from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.coordinates import Gradients, Rotation, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.forms import (
     beam_basis,
@@ -19,6 +19,7 @@ from beamfem.forms import (
     nodal_numbers,
     strain_energy,
 )
+from beamfem.kernels.block import ROTATION
 from beamfem.model.beam import Beam
 from beamfem.model.system import System
 from beamfem.postprocess import strain_energy as kernel_strain_energy
@@ -192,7 +193,7 @@ def test_gradients_inertia(field: Field):
 def test_rotation_force_and_tangent(field: Field, plane_stress: bool, size: float):
     system = make_system(Element(field, Rotation(), ContinuumMechanics(plane_stress)))
     oracle = Oracle(make_system(Element(field, Gradients(), ContinuumMechanics(plane_stress))))
-    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    rotated = RotatedOracle(system, len(labels(ROTATION, field.vectors)))
     p, _, _ = random_state(system, size)
     still = np.zeros(len(p))
     e, b = rotated.e(p), rotated.b(p)
@@ -207,7 +208,7 @@ def test_rotation_force_and_tangent(field: Field, plane_stress: bool, size: floa
 def test_rotation_inertia(field: Field):
     system = make_system(Element(field, Rotation(), ContinuumMechanics()))
     oracle = Oracle(make_system(Element(field, Gradients(), ContinuumMechanics())))
-    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    rotated = RotatedOracle(system, len(labels(ROTATION, field.vectors)))
     p, v, a = random_state(system, 0.2)
     e, b, m = rotated.e(p), rotated.b(p), oracle.mass()
     free = np.ix_(system.free_dofs, system.free_dofs)
@@ -238,7 +239,7 @@ def test_inertia_and_weight_of_the_kernel_alone(field: Field, moving: float):
         Material(1e-12, 0.3, 7800.0),
     )
     system = System(Model([beam], loads=[Gravity(GRAVITY)]), static=False)
-    rotated = RotatedOracle(system, len(Rotation().labels(field.vectors)))
+    rotated = RotatedOracle(system, len(labels(ROTATION, field.vectors)))
     p, v, a = random_state(system, 0.2)
     v, a, b, oracle = moving * v, moving * a, rotated.b(p), Oracle(system)
     inertia = oracle.mass() @ (b @ a + rotated.b_dot(p, v) @ v)

@@ -73,7 +73,7 @@ def test_pendulum_with_structural_forces():
 
 def test_structural_gradients_with_reduced_integration_are_refused():
     with pytest.raises(bf.InputError, match="thickness can change"):
-        bf.ANCF(forces=bf.Structural(), integration="reduced")
+        bf.BilinearANCF(forces=bf.Structural(), integration="reduced")
 
 
 @pytest.mark.parametrize("order", [0, 9, 1.5])

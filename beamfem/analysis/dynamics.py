@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.analysis.equations import INERTIA, coordinate_scale, linearise
+from beamfem.analysis.equations import INERTIA, linearise
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.errors import ConvergenceError, InputError
@@ -47,6 +47,10 @@ def simulate(
     if step > duration:
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
     system = System(model, static=False)
+    if system.unknowns.pattern is not None:
+        raise InputError(
+            "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"
+        )
     rule = (integrator or GeneralizedAlpha()).rule(step)
     steps = int(np.ceil(duration / step - 1e-9))
     times = step * np.arange(steps + 1)
@@ -65,7 +69,7 @@ def simulate(
     states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0])
-    scale = coordinate_scale(system)
+    scale = system.scale
     done, size = 0, save_every
     with progress("time [s]", times[-1]) as report:
         while done < steps:
@@ -77,7 +81,8 @@ def simulate(
             completed = advance(
                 system.blocks,
                 system.point_loads,
-                system.layout,
+                system.springs,
+                system.layouts[0],
                 system.free_dofs,
                 system.held_dofs,
                 system.turned,

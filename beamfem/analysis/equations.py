@@ -1,10 +1,12 @@
 """Residual and tangent of a system in a state: the only place where solvers meet the kernels."""
 
 import numpy as np
+from scipy.sparse import csc_array
 
-from beamfem.analysis.tangent import Tangent
+from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.assemble import assemble
 from beamfem.kernels.loads import assemble_point_loads
+from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.stress import predict_stress
 from beamfem.model.system import System
 
@@ -17,10 +19,12 @@ _NO_STRESS = np.empty((0, 0, 0))
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
     result = np.zeros(len(p))
-    values = system.point_values(time)
-    for block, loads, forces in zip(system.blocks, system.point_loads, values, strict=True):
-        assemble(block, system.layout, p, v, a, system.body(time), np.ones(3), _NO_STRESS, result, _EMPTY)
-        assemble_point_loads(block, loads, system.layout, p, forces, 1.0, result, _EMPTY)
+    body, values = system.body(time), system.point_values(time)
+    for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
+        layout = system.layouts[i]
+        assemble(block, layout, p, v, a, body, np.ones(3), _NO_STRESS, result, _EMPTY)
+        assemble_point_loads(block, loads, layout, p, values[i], 1.0, result, _EMPTY)
+    assemble_springs(system.springs, p, 1.0, result, _EMPTY)
     return result
 
 
@@ -35,18 +39,23 @@ def linearise(
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
 
-    stresses: stress resultants for the geometric part of the tangent, of each block (ne, nq, ns).
+    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns).
     """
-    layout = system.layout
-    unknown = len(system.free_dofs)
-    width = 2 * layout.half_width + 1
-    result, matrix = np.zeros(len(p)), np.zeros(unknown * width)
+    unknowns = system.unknowns
+    unknown, pattern = len(unknowns.dofs), unknowns.pattern
+    width = 2 * system.layouts[0].half_width + 1
+    matrix = np.zeros(unknown * width) if pattern is None else np.zeros(len(pattern.data))
+    result = np.zeros(len(p))
     body, values, weights = system.body(time), system.point_values(time), np.array(coefficients)
     for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
+        layout = system.layouts[i]
         geometric = _NO_STRESS if stresses is None else stresses[i]
         assemble(block, layout, p, v, a, body, weights, geometric, result, matrix)
         assemble_point_loads(block, loads, layout, p, values[i], coefficients[0], result, matrix)
-    return result, Tangent(matrix.reshape(unknown, width))
+    assemble_springs(system.springs, p, coefficients[0], result, matrix)
+    if pattern is None:
+        return result, BandTangent(matrix.reshape(unknown, width))
+    return result, SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
 
 
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -72,14 +81,3 @@ def load_slope(system: System, p: np.ndarray, load_factor: float, width: float =
         moved[held] += system.held_values(at) - system.held_values(load_factor)
         slopes.append(side * residual(system, moved, rest, rest, at))
     return np.asarray(sum(slopes) / (2.0 * width))
-
-
-def coordinate_scale(system: System) -> np.ndarray:
-    """Return what a coordinate's change is measured by (n,): the longest beam for positions [m], 1 for the rest."""
-    scale = np.ones(system.model.size)
-    longest = max(beam.curve.length for beam in system.model.beams)
-    for mesh in system.model.meshes:
-        labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
-        table = scale[mesh.first_dof : mesh.first_dof + mesh.size].reshape(mesh.nodes, -1)
-        table[:, [i for i, label in enumerate(labels) if label.startswith("r^")]] = longest
-    return scale

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.system import System
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.system import System, coordinate_columns
 from beamfem.solution import State
 from beamfem.validation import finite, vector
 
@@ -54,31 +55,40 @@ def start_velocity(
         return result
     if not isinstance(velocity, RigidVelocity) and not callable(velocity):
         raise InputError(f"velocity must be a RigidVelocity or a function of the position, got {velocity!r}")
+    if isinstance(velocity, RigidVelocity):
+        return _rigid(system, velocity, p)
     for mesh in system.model.meshes:
-        labels = mesh.beam.element.coordinates.labels(mesh.beam.element.field.vectors)
-        rows = slice(mesh.first_dof, mesh.first_dof + mesh.size)
-        now, out = p[rows].reshape(mesh.nodes, -1), result[rows].reshape(mesh.nodes, -1)
-        if isinstance(velocity, RigidVelocity):
-            _rigid(velocity, labels, now, out)
-        else:
-            arc = mesh.node_arc_lengths()
-            values = np.array([vector("velocity", velocity(x)) for x in mesh.beam.curve.position(arc)])
-            out[:, :2] = values
-            if "r_x^x" in labels:
-                first = labels.index("r_x^x")
-                out[:, first : first + 2] = np.gradient(values, arc, axis=0, edge_order=1)
+        values = np.array([vector("velocity", velocity(x)) for x in mesh.position])
+        slopes = _along(mesh, values)
+        for label, nodes, dofs in coordinate_columns(mesh):
+            if label.startswith(("r^", "r_x^")):
+                result[dofs] = (values if label.startswith("r^") else slopes)[nodes, "xy".index(label[-1])]
     return result
 
 
-def _rigid(velocity: RigidVelocity, labels: tuple[str, ...], now: np.ndarray, out: np.ndarray) -> None:
-    for column, label in enumerate(labels):
-        if label == "theta":
-            out[:, column] = velocity.angular
-            continue
-        name, axis = label.split("^")
-        other = now[:, labels.index(f"{name}^{'y' if axis == 'x' else 'x'}")]
-        component = "xy".index(axis)
-        lever = other - (velocity.about[1 - component] if name == "r" else 0.0)
-        out[:, column] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
-        if name == "r":
-            out[:, column] += velocity.vector[component]
+def _rigid(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.ndarray:
+    """Rates (n,) of a rigid motion from the state p."""
+    result = np.zeros(len(p))
+    for mesh in system.model.meshes:
+        columns = coordinate_columns(mesh)
+        for place, (label, _, dofs) in enumerate(columns):
+            if label == "theta":
+                result[dofs] = velocity.angular
+            elif label != "s":
+                name, axis = label.split("^")
+                component = "xy".index(axis)
+                other = columns[place + 1 - 2 * component][2]
+                lever = p[other] - (velocity.about[1 - component] if name == "r" else 0.0)
+                result[dofs] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
+                if name == "r":
+                    result[dofs] += velocity.vector[component]
+    return result
+
+
+def _along(mesh: BeamMesh, values: np.ndarray) -> np.ndarray:
+    """Derivative (nodes, 2) of nodal values along the beam; across a corner each side has its own."""
+    result = np.empty_like(values)
+    breaks = np.flatnonzero(np.diff(mesh.arc) <= 0.0) + 1
+    for part in np.split(np.arange(mesh.nodes), breaks):
+        result[part] = np.gradient(values[part], mesh.arc[part], axis=0, edge_order=1)
+    return result

@@ -6,9 +6,10 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.analysis.equations import STATICS, coordinate_scale, linearise, predicted_stresses, residual
+from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
+from beamfem.model.reference import stations
 from beamfem.model.system import System
-from beamfem.postprocess import axis, gauss_points, nodal_vectors
+from beamfem.postprocess import axis, nodal_vectors
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 
@@ -55,7 +56,7 @@ class Newton:
 def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
     p, rest = start.copy(), np.zeros(len(start))
-    scale = coordinate_scale(system)
+    scale = system.scale
     free = system.free_dofs
     stresses = None
     held_step = np.zeros(len(p))
@@ -104,7 +105,7 @@ def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, si
 def inverted(system: System, p: np.ndarray) -> bool:
     """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
     for mesh in system.model.meshes:
-        element, xi, _ = gauss_points(mesh)
+        element, xi = stations(mesh)
         now = axis(mesh, nodal_vectors(mesh, p[None]), element, xi)
         if np.any(now.r_s[..., 0] * now.d[..., 1] <= now.r_s[..., 1] * now.d[..., 0]):
             return True
@@ -121,7 +122,7 @@ def round_off_floor(system: System, p: np.ndarray) -> float:
     for block in system.blocks:
         stiffest = float(block.stiffness[:, :, 0, 0].max())
         worst = max(worst, stiffest / float(block.jacobian.min()))
-    reach = max(float(np.max(np.abs(p))), max(beam.curve.length for beam in system.model.beams))
+    reach = max(float(np.max(np.abs(p))), system.extent)
     return 8.0 * np.finfo(float).eps * worst * reach
 
 

@@ -1,28 +1,62 @@
 """The matrix of the unknown coordinates: how it is solved with, and what its pivots tell."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import LinAlgError, solve_banded
-from scipy.sparse import csr_array, dia_array
+from scipy.sparse import csc_array, csr_array, dia_array, eye_array
+from scipy.sparse.linalg import SuperLU, splu
 
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 _SMALLEST_PIVOT = 1e-13
 
+# numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
+Turned = tuple[np.ndarray, np.ndarray]
+
+
+class Factorised(Protocol):
+    """A tangent in its factors, for any number of right-hand sides."""
+
+    @property
+    def negative_pivots(self) -> int:
+        """How many eigenvalues of a symmetric tangent are negative (Sylvester's law of inertia)."""
+        ...
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        ...
+
+
+class Tangent(Protocol):
+    """A matrix of the unknown coordinates."""
+
+    def factorised(self, turned: Turned) -> Factorised:
+        """Return the factors. Raises LinAlgError."""
+        ...
+
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        ...
+
+    def sparse(self, turned: Turned) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+        ...
+
 
 @dataclass(frozen=True)
-class Factorised:
-    """A tangent in its factors, for any number of right-hand sides.
+class BandFactors:
+    """Factors of a band.
 
-    rows: the matrix, inclined rollers held; lu: its factors; plain: whether they may be used, or pivots are needed.
+    rows: the matrix, inclined rollers held; plain: whether lu may be used, or pivots are needed.
     """
 
     rows: np.ndarray
     lu: np.ndarray
     plain: bool
-    turned: tuple[np.ndarray, np.ndarray]
+    turned: Turned
 
     @property
     def negative_pivots(self) -> int:
@@ -46,31 +80,88 @@ class Factorised:
 
 
 @dataclass(frozen=True)
-class Tangent:
-    """A band matrix of the unknown coordinates, rows of 2 w + 1 entries."""
+class BandTangent:
+    """A band matrix, rows of 2 w + 1 entries."""
 
     rows: np.ndarray
 
-    def factorised(self, turned: tuple[np.ndarray, np.ndarray]) -> Factorised:
-        """Return the factors; turned: numbers (nt,) and normals (nt, 2) of inclined rollers.
-
-        Pivots only where the plain factorisation meets a tiny pivot.
-        """
+    def factorised(self, turned: Turned) -> BandFactors:
+        """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
         rows = self.rows.copy()
         hold_normals(rows, *turned)
         lu = rows.copy()
-        return Factorised(rows, lu, factor(lu) > _SMALLEST_PIVOT, turned)
+        return BandFactors(rows, lu, factor(lu) > _SMALLEST_PIVOT, turned)
 
-    def solve(self, right: np.ndarray, turned: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
         return self.factorised(turned).solve(right)
 
-    def sparse(self, turned: tuple[np.ndarray, np.ndarray]) -> csr_array:
+    def sparse(self, turned: Turned) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
         rows = self.rows.copy()
         hold_normals(rows, *turned)
         half = rows.shape[1] // 2
         return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
+
+
+@dataclass(frozen=True)
+class SparseFactors:
+    """Factors of a sparse matrix."""
+
+    lu: SuperLU
+    turned: Turned
+
+    @property
+    def negative_pivots(self) -> int:
+        """How many eigenvalues of a symmetric tangent are negative, as long as no row was exchanged for another."""
+        return int((self.lu.U.diagonal() < 0.0).sum())
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        x = right.copy()
+        turn_in(x, *self.turned)
+        x = self.lu.solve(x)
+        if not np.isfinite(x).all():
+            raise LinAlgError("the tangent is singular")
+        turn_back(x, *self.turned)
+        return np.asarray(x)
+
+
+@dataclass(frozen=True)
+class SparseTangent:
+    """A sparse matrix."""
+
+    matrix: csc_array
+
+    def factorised(self, turned: Turned) -> SparseFactors:
+        """Return the factors, with diagonal pivots unless tiny, so that their signs count. Raises LinAlgError."""
+        matrix = csc_array(self.sparse(turned))
+        options = {"SymmetricMode": True}
+        try:
+            lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-10, options=options)
+        except RuntimeError as error:
+            raise LinAlgError("the tangent is singular") from error
+        return SparseFactors(lu, turned)
+
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(turned).solve(right)
+
+    def sparse(self, turned: Turned) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+        first, normal = turned
+        if not len(first):
+            return csr_array(self.matrix)
+        turn = eye_array(self.matrix.shape[0], format="lil")
+        for i, (c, s) in zip(first, normal, strict=True):
+            turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
+        turn = csr_array(turn)
+        rotated = csr_array(turn @ self.matrix @ turn.T)
+        kept = np.ones(rotated.shape[0])
+        kept[first] = 0.0
+        keep = dia_array((kept[None], [0]), shape=rotated.shape)
+        held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
+        return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
 
 
 def _diagonals(rows: np.ndarray) -> np.ndarray:

@@ -5,9 +5,9 @@ from typing import Literal
 
 import numpy as np
 
-from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.element.forces import ContinuumMechanics, Forces, Structural
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, Structural
 from beamfem.errors import InputError
 from beamfem.validation import count
 
@@ -19,11 +19,12 @@ class Element:
     """A field, the nodal coordinates that carry it and the elastic forces that resist it.
 
     integration: "full" integrates the energy of a straight element exactly, "reduced" takes as many Gauss points as
-    the order of the field (cubic: 2). Raises InputError for a name that is not known.
+    the order of the field, and 2 (for a stretch coordinate 3, but for shear 2) where the nodes have no shear. Raises InputError for a combination
+    that makes no sense.
     """
 
     field: Field
-    coordinates: Gradients | Rotation
+    coordinates: Coordinates
     forces: Forces
     integration: Integration = "full"
     label: str | None = None
@@ -31,14 +32,27 @@ class Element:
     def __post_init__(self) -> None:
         if self.integration not in ("full", "reduced"):
             raise InputError(f'integration must be "full" or "reduced", got {self.integration!r}')
-        for name, kind in (("coordinates", Gradients | Rotation), ("forces", Forces)):
+        kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
+        for name, kind in kinds:
             if not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {getattr(self, name)!r}")
-
-        if (self.coordinates, self.forces, self.integration) == (Gradients(), Structural(), "reduced"):
+        has_slope = "r_x" in self.field.vectors
+        if isinstance(self.coordinates, ShearFree) and not has_slope:
             raise InputError(
-                "structural forces with gradients need full integration: they see the unit vector of d only, so that "
-                "with reduced integration the thickness can change without resistance"
+                f"coordinates without shear tie r_x to the angle of a node, but the {self.field.name} field has no r_x "
+                "there; the cubic field has"
+            )
+        if isinstance(self.forces, ElasticLine) and not has_slope:
+            raise InputError(
+                f"the elastic line takes its curvature from r_xx, which the {self.field.name} field does not have "
+                "across elements; use the cubic field, or Structural forces"
+            )
+        points = len(self.quadrature()[0])
+        sees_direction = isinstance(self.coordinates, Gradients) and isinstance(self.forces, Structural)
+        if sees_direction and points <= self.field.director_degree:
+            raise InputError(
+                f"structural forces with gradients on the {self.field.name} field need full integration: they see the "
+                "unit vector of d only, so that with reduced integration the thickness can change without resistance"
             )
 
     @property
@@ -48,14 +62,30 @@ class Element:
 
     @property
     def coordinates_per_node(self) -> int:
-        return len(self.coordinates.labels(self.field.vectors))
+        return len(labels(self.coordinates.code, self.field.vectors))
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
-        """Gauss points (nq,) and weights (nq,) on [0, 1]."""
-        reduced = 2 if isinstance(self.field, Cubic) else self.field.degree
+        """Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
+        reduced = 2 if isinstance(self.coordinates, ShearFree) else self.field.degree
         full = self.forces.points(self.field.degree, self.field.director_degree)
-        xi, weights = np.polynomial.legendre.leggauss(reduced if self.integration == "reduced" else full)
-        return 0.5 * (xi + 1.0), 0.5 * weights
+        return _gauss(reduced if self.integration == "reduced" else full)
+
+    def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
+        """Points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one rule where all agree.
+
+        With 2 points alone a stretch coordinate could change without resistance: r_x + c at every node leaves r0' as it
+        is at both of them. So all but shear takes 3 there.
+        """
+        shear = np.array(self.forces.shear_measures)
+        if self.integration == "reduced" and self.coordinates == ShearFree(stretchable=True):
+            return (*_gauss(2), shear), (*_gauss(3), ~shear)
+        return ((*self.quadrature(), np.ones_like(shear)),)
+
+
+def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points (points,) and weights (points,) on [0, 1]."""
+    xi, weights = np.polynomial.legendre.leggauss(points)
+    return 0.5 * (xi + 1.0), 0.5 * weights
 
 
 def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
@@ -86,3 +116,13 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     if count("order", order) > 8:
         raise InputError(f"order must be at most 8, got {order}")
     return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")
+
+
+def ShearRigid(stretchable: bool = True, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
+    """Cubic field without shear at its nodes, 4 coordinates a node, or 3; paper, sections 1.5 and 3.5.
+
+    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in stretch
+    and shear.
+    """
+    label = "shear-rigid-stretchable" if stretchable else "shear-rigid"
+    return Element(Cubic(), ShearFree(stretchable), forces or Structural(), integration, label)

@@ -1,11 +1,14 @@
 """Field bases r(x, y) = r0(x) + y d(x) on the unit interval."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from itertools import combinations
+from math import factorial
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 
+@runtime_checkable
 class Field(Protocol):
     """What an element needs of a field basis; all tables are those of the unit element, xi in [0, 1]."""
 
@@ -64,7 +67,7 @@ class Cubic:
 
 @dataclass(frozen=True)
 class Lagrange:
-    """Polynomials of one order in r and in r_y through Chebyshev-Lobatto nodes; order 1: paper, eqs. (8) to (10)."""
+    """Polynomials of one order in r and in r_y through Gauss-Lobatto nodes; order 1: paper, eqs. (8) to (10)."""
 
     order: int = 1
     vectors: tuple[str, ...] = ("r", "r_y")
@@ -83,16 +86,23 @@ class Lagrange:
 
     @property
     def nodes(self) -> np.ndarray:
-        return 0.5 - 0.5 * np.cos(np.pi * np.arange(self.order + 1) / self.order)
+        # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
+        inner = np.polynomial.legendre.Legendre.basis(self.order).deriv().roots()
+        return np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         nodes = self.nodes
+        factors = np.subtract.outer(np.asarray(xi, dtype=float), nodes)
         columns = []
         for i, own in enumerate(nodes):
-            others = np.delete(nodes, i)
-            polynomial = np.poly1d(others, r=True) / np.prod(own - others)
-            columns.append(np.polyval(polynomial.deriv(derivative) if derivative else polynomial, xi))
-        return np.stack(columns, axis=-1)
+            others = np.delete(np.arange(len(nodes)), i)
+            # a derivative of a product is the sum over the factors that are left out, in every order
+            parts = [
+                factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
+                for left_out in combinations(others, derivative)
+            ]
+            columns.append(factorial(derivative) * sum(parts) / np.prod(own - nodes[others]))
+        return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return self.centreline(xi, derivative)

@@ -7,18 +7,19 @@ from typing import Any
 import numpy as np
 
 from beamfem.curves import Line
-from beamfem.element.coordinates import Gradients, Rotation
+from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
-from beamfem.element.forces import ContinuumMechanics, Structural
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
 from beamfem.model.sampled import Sampled
-from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
-from beamfem.section import Section
+from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.section import Layer, Layered, Section, StiffnessSection
 from beamfem.validation import function_value
 
 _CLASSES = {
@@ -26,29 +27,39 @@ _CLASSES = {
     for kind in (
         Line,
         Section,
+        Layer,
+        Layered,
+        StiffnessSection,
         Material,
         Element,
         Cubic,
         Lagrange,
         Gradients,
         Rotation,
+        ShearFree,
         ContinuumMechanics,
+        SplitContinuum,
+        ElasticLine,
         Structural,
         Beam,
         Point,
         Clamp,
         Pin,
         Roller,
+        Spring,
+        Foundation,
         Prescribed,
         Gravity,
         DistributedLoad,
         PointForce,
         PointMoment,
+        Rigid,
+        Hinge,
         Model,
     )
 }
 # numbers of kernels belong to this version of the code, not to the model
-_NOT_SAVED = ("code",)
+_NOT_SAVED = ("code", "turns_with", "fills_body", "shear_measures")
 
 
 def describe(model: Model, at: np.ndarray) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from beamfem import postprocess
 from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import faces, reference_axis
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -54,17 +55,18 @@ def write_pvd(solution: "Solution", path: str | PathLike[str]) -> None:
 class _Samples:
     """Points (xi, y) of every element of a beam, in the order that VTK wants them in a cell.
 
-    degree: intervals along an element; y (heights,) [m]; order: places in the table (degree + 1, heights), flattened.
+    degree: intervals along an element; whole: lower and upper face, or the axis; order: places in the
+    table (degree + 1, heights), flattened.
     """
 
-    def __init__(self, mesh: BeamMesh, degree: int, y: np.ndarray, order: np.ndarray) -> None:
-        self.mesh, self.degree, self.y, self.order = mesh, degree, y, order
+    def __init__(self, mesh: BeamMesh, degree: int, whole: bool, order: np.ndarray) -> None:
+        self.mesh, self.degree, self.order = mesh, degree, order
         self.element = np.repeat(np.arange(mesh.elements), degree + 1)
         self.xi = np.tile(np.arange(degree + 1) / degree, mesh.elements)
-        arc = mesh.vertices[self.element] + self.xi * mesh.lengths[self.element]
-        tangent = mesh.beam.curve.tangent(arc)
-        normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
-        self.reference = self._at_heights(mesh.beam.curve.position(arc), normal)
+        self.y = faces(mesh, self.element, self.xi) if whole else np.zeros((len(self.xi), 1))
+        self.axis = reference_axis(mesh, self.element, self.xi)
+        first = mesh.position[mesh.node[self.element, 0]]
+        self.reference = self._at_heights(first + self.axis.r, self.axis.d)
         self.turned: np.ndarray | None = None
 
     def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
@@ -77,9 +79,9 @@ class _Samples:
             "points": position,
             "displacement": position - self.reference,
             "velocity": self._at_heights(rate.r, rate.d),
-            "rotation": np.repeat(self._rotation(p, now)[..., None], len(self.y), axis=-1),
+            "rotation": np.repeat(self._rotation(p, now)[..., None], self.y.shape[-1], axis=-1),
         }
-        strain = postprocess.green_strain(now, self.y)
+        strain = postprocess.green_strain(now, self.axis, self.y)
         stress = postprocess.stress(self.mesh, strain)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
@@ -96,7 +98,7 @@ class _Samples:
         return turned
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:
-        return np.asarray(r[..., None, :] + self.y[:, None] * d[..., None, :])
+        return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
 
     def _by_cell(self, values: np.ndarray) -> np.ndarray:
         """Order values (steps, points of the axis, heights, ...) by cells; vectors get z = 0."""
@@ -111,12 +113,12 @@ def _body(mesh: BeamMesh) -> _Samples:
     bottom = 2 * np.arange(n + 1)
     # VTK: corners counter-clockwise, then the inner points of the bottom edge, then those of the top edge.
     order = np.concatenate([[0, 2 * n, 2 * n + 1, 1], bottom[1:-1], bottom[1:-1] + 1])
-    return _Samples(mesh, n, 0.5 * mesh.beam.section.height * np.array([-1.0, 1.0]), order)
+    return _Samples(mesh, n, True, order)
 
 
 def _centreline(mesh: BeamMesh) -> _Samples:
     # Straight pieces, because ParaView 5.11 crashes on Lagrange curves.
-    return _Samples(mesh, _LINES_PER_ELEMENT, np.zeros(1), np.arange(_LINES_PER_ELEMENT + 1))
+    return _Samples(mesh, _LINES_PER_ELEMENT, False, np.arange(_LINES_PER_ELEMENT + 1))
 
 
 class _Series:

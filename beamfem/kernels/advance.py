@@ -6,11 +6,12 @@ from numba import njit
 from beamfem.kernels.assemble import assemble
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.loads import assemble_point_loads
+from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 
 @njit(cache=True, error_model="numpy")
-def advance(blocks, loads, layout, free, held, turned, state, inputs, rule, limits, scale, saved, statistics):
+def advance(blocks, loads, springs, layout, free, held, turned, state, inputs, rule, limits, scale, saved, statistics):
     """March through the steps of `inputs`; return how many were completed.
 
     turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
@@ -51,6 +52,7 @@ def advance(blocks, loads, layout, free, held, turned, state, inputs, rule, limi
                 if loads[i].element.shape[0] > 0:
                     values = point_values[i][step]
                     assemble_point_loads(blocks[i], loads[i], layout, p, values, 1.0, residual, matrix)
+            assemble_springs(springs, p, 1.0, residual, matrix)
             for i in range(unknown):
                 right[i] = -residual[free[i]]
             lu = matrix.reshape(unknown, width)

@@ -7,8 +7,10 @@ changes p, p', p'' by ck, cv, ca times itself (see `coordinates`).
 import numpy as np
 from numba import njit
 
+from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.kernels.coordinates import node_map
 from beamfem.kernels.measures import measure, measure_hessian
+from beamfem.kernels.reduce import add_force, add_matrix
 
 
 @njit(cache=True, error_model="numpy")
@@ -20,7 +22,7 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
     geometric_stress: (ne, nq, ns) stress resultants for the geometric part of the tangent, or ne = 0 for the true ones.
     matrix: empty where only the residual is wanted.
     """
-    ne, nn = block.frame.shape[0], block.frame.shape[1]
+    ne, nn = block.carrier.shape[0], block.carrier.shape[1]
     nv = block.scale.shape[1]
     nr, nd, nq = block.r_slots.shape[0], block.d_slots.shape[0], block.jacobian.shape[1]
     ns = block.stiffness.shape[2]
@@ -33,18 +35,20 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
     ck, ca = coefficients[0], coefficients[2]
     inertia = ca != 0.0
     stiff = wanted and ck != 0.0
+    second = block.measures == ELASTIC_LINE
+    m = 8 if second else 6
 
-    pe, ve, ae = np.empty(npe), np.empty(npe), np.empty(npe)
+    pe, ve, ae = np.zeros(npe), np.zeros(npe), np.zeros(npe)
     e, acc = np.empty((nv, 2)), np.empty((nv, 2))
     b, c = np.zeros((npe, per_node)), np.zeros((npe, per_node))
     force, force_geo = np.empty((nv, 2)), np.empty((nv, 2))
     k = np.empty((size, size))
     kc = np.empty((size, npe))
-    q, eps, grad = np.empty(6), np.empty(ns), np.empty((ns, 6))
+    q, eps, grad = np.empty(m), np.empty(ns), np.empty((ns, m))
     sigma, sigma_geo = np.empty(ns), np.empty(ns)
-    cg, h = np.empty((ns, 6)), np.empty((6, 6))
-    f6, g6 = np.empty(6), np.empty(6)
-    phi_r, phi_d, phi_x = np.empty(nr), np.empty(nd), np.empty(nd)
+    cg, h = np.empty((ns, m)), np.empty((m, m))
+    f6, g6 = np.empty(m), np.empty(m)
+    phi_r, phi_rr, phi_d, phi_x = np.empty(nr), np.empty(nr), np.empty(nd), np.empty(nd)
     flat_e, flat_acc = e.reshape(size), acc.reshape(size)
     flat_force, flat_geo = force.reshape(size), force_geo.reshape(size)
 
@@ -52,17 +56,17 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
         kind = block.kind[element]
         for i in range(npe):
             dof = block.dof[element, i]
-            pe[i], ve[i], ae[i] = p[dof], v[dof], a[dof]
+            if dof >= 0:
+                pe[i], ve[i], ae[i] = p[dof], v[dof], a[dof]
         for node in range(nn):
             lo, hi = node * npn, (node + 1) * npn
             elo, ehi = node * per_node, (node + 1) * per_node
             node_map(
-                block.coordinates,
+                block.carrier[element, node],
                 pe[lo:hi],
                 ve[lo:hi],
                 ae[lo:hi],
-                block.frame[element, node, 0],
-                block.frame[element, node, 1],
+                block.frame[element, node],
                 coefficients,
                 flat_e[elo:ehi],
                 flat_acc[elo:ehi],
@@ -76,15 +80,16 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                 force[i, x] = -body[beam, x] * block.gravity[kind, i] - body[beam, 2 + x] * block.length[kind, i]
             if inertia:
                 for j in range(nv):
-                    m = block.mass[kind, i, j]
-                    force[i, 0] += m * acc[j, 0]
-                    force[i, 1] += m * acc[j, 1]
+                    mass = block.mass[kind, i, j]
+                    force[i, 0] += mass * acc[j, 0]
+                    force[i, 1] += mass * acc[j, 1]
             force_geo[i, 0], force_geo[i, 1] = force[i, 0], force[i, 1]
         if stiff:
             k[:, :] = 0.0
 
         for point in range(nq):
             inverse = 1.0 / block.jacobian[kind, point]
+            bend = block.jacobian_xi[kind, point] * inverse
             w = block.weight[kind, point]
             q[:] = 0.0
             for i in range(nr):
@@ -92,6 +97,13 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                 phi_r[i] = block.r_xi[point, i] * block.scale[kind, slot] * inverse
                 q[0] += phi_r[i] * e[slot, 0]
                 q[1] += phi_r[i] * e[slot, 1]
+            if second:
+                for i in range(nr):
+                    slot = block.r_slots[i]
+                    curved = block.r_xixi[point, i] - bend * block.r_xi[point, i]
+                    phi_rr[i] = curved * block.scale[kind, slot] * inverse * inverse
+                    q[6] += phi_rr[i] * e[slot, 0]
+                    q[7] += phi_rr[i] * e[slot, 1]
             for i in range(nd):
                 slot = block.d_slots[i]
                 phi_d[i] = block.d[point, i]
@@ -110,7 +122,7 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                     total += stiffness[i, j] * eps[j]
                 sigma[i] = w * total
                 sigma_geo[i] = w * geometric_stress[element, point, i] if predicted else sigma[i]
-            for x in range(6):
+            for x in range(m):
                 total, total_geo = 0.0, 0.0
                 for i in range(ns):
                     total += grad[i, x] * sigma[i]
@@ -121,6 +133,9 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                 for x in range(2):
                     force[slot, x] += phi_r[i] * f6[x]
                     force_geo[slot, x] += phi_r[i] * g6[x]
+                    if second:
+                        force[slot, x] += phi_rr[i] * f6[6 + x]
+                        force_geo[slot, x] += phi_rr[i] * g6[6 + x]
             for i in range(nd):
                 slot = block.d_slots[i]
                 for x in range(2):
@@ -129,13 +144,13 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
             if not stiff:
                 continue
             for i in range(ns):
-                for x in range(6):
+                for x in range(m):
                     total = 0.0
                     for j in range(ns):
                         total += stiffness[i, j] * grad[j, x]
                     cg[i, x] = w * total
-            for x in range(6):
-                for z in range(x, 6):
+            for x in range(m):
+                for z in range(x, m):
                     total = 0.0
                     for i in range(ns):
                         total += grad[i, x] * cg[i, z]
@@ -143,38 +158,12 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                     h[z, x] = total
             measure_hessian(block.measures, q, sigma_geo, h)
             _spread(block, phi_r, phi_d, phi_x, h, k)
+            if second:
+                _spread_second(block, phi_r, phi_rr, h, k)
 
-        for i in range(npe):
-            node = i // npn
-            lo, hi = block.column_start[i % npn], block.column_stop[i % npn]
-            total = 0.0
-            for x in range(lo, hi):
-                total += b[i, x] * flat_force[node * per_node + x]
-            residual[block.dof[element, i]] += total
-        if not wanted:
-            continue
-        _columns(block, kind, k, b, c, ck, ca, npn, per_node, kc)
-        for i in range(npe):
-            row = layout.free[block.dof[element, i]]
-            if row < 0:
-                continue
-            node = i // npn
-            lo, hi = block.column_start[i % npn], block.column_stop[i % npn]
-            for j in range(npe):
-                column = layout.free[block.dof[element, j]]
-                if column < 0:
-                    continue
-                total = 0.0
-                for x in range(lo, hi):
-                    total += b[i, x] * kc[node * per_node + x, j]
-                if i == j and ck != 0.0 and hi - lo == 2:
-                    # d2 e / dt2 = -e of the components that turn
-                    for x in range(lo, hi):
-                        total -= ck * flat_e[node * per_node + x] * flat_geo[node * per_node + x]
-                if layout.half_width >= 0:
-                    matrix[row * (2 * layout.half_width + 1) + layout.half_width + column - row] += total
-                else:
-                    matrix[layout.slot[element, i, j]] += total
+        add_force(block, element, b, flat_force, residual)
+        if wanted:
+            add_matrix(block, layout, element, k, b, c, flat_e, flat_geo, ck, ca, kc, matrix)
 
 
 @njit(cache=True, inline="always", error_model="numpy")
@@ -202,19 +191,15 @@ def _spread(block, phi_r, phi_d, phi_x, h, k):
 
 
 @njit(cache=True, inline="always", error_model="numpy")
-def _columns(block, kind, k, b, c, ck, ca, npn, per_node, kc):
-    """Fill kc = ck K B + M C; the change of the element's force with each coordinate, e components in rows."""
-    size, npe = kc.shape
-    stiff = ck != 0.0
-    kc[:, :] = 0.0
-    for j in range(npe):
-        first = (j // npn) * per_node
-        for y in range(block.column_start[j % npn], block.column_stop[j % npn]):
-            if stiff:
-                factor = ck * b[j, y]
-                for x in range(size):
-                    kc[x, j] += k[x, first + y] * factor
-            if ca != 0.0:
-                slot, component = (first + y) // 2, (first + y) % 2
-                for i in range(size // 2):
-                    kc[2 * i + component, j] += block.mass[kind, i, slot] * c[j, y]
+def _spread_second(block, phi_r, phi_rr, h, k):
+    """Add what r0'' gives to the element matrix; nothing couples it with d or d'."""
+    nr = phi_r.shape[0]
+    for x in range(2):
+        for z in range(2):
+            mixed, both = h[x, 6 + z], h[6 + x, 6 + z]
+            for i in range(nr):
+                row = 2 * block.r_slots[i] + x
+                for j in range(nr):
+                    column = 2 * block.r_slots[j] + z
+                    k[row, column] += phi_rr[i] * both * phi_rr[j] + phi_r[i] * mixed * phi_rr[j]
+                    k[column, row] += phi_r[i] * mixed * phi_rr[j]

@@ -1,13 +1,15 @@
 """Strain measures, their gradients and their second derivatives, at one point of the beam axis.
 
-q = (r0', d, d') holds six numbers; a measure is a function eps(q). Written once readable in `beamfem.element.forces`.
+q = (r0', d, d') holds six numbers, and two more, r0'', for the elastic line; a measure is a function eps(q), written
+once readable in `beamfem.element.forces`.
 """
 
 import math
 
 from numba import njit
 
-from beamfem.kernels.block import GREEN_LAGRANGE
+from beamfem.kernels.block import GREEN_LAGRANGE, STRUCTURAL
+from beamfem.kernels.elastic_line import elastic_line, elastic_line_hessian
 
 
 @njit(cache=True, inline="always", error_model="numpy")
@@ -109,17 +111,21 @@ def structural_hessian(q, s, h):
 
 @njit(cache=True, inline="always", error_model="numpy")
 def measure(kind, q, eps, grad):
-    """Fill strain measures eps (ns,) and their gradients (ns, 6) of the kind that a block asks for."""
+    """Fill strain measures eps (ns,) and their gradients (ns, 6 or 8) of the kind that a block asks for."""
     if kind == GREEN_LAGRANGE:
         green_lagrange(q, eps, grad)
-    else:
+    elif kind == STRUCTURAL:
         structural(q, eps, grad)
+    else:
+        elastic_line(q, eps, grad)
 
 
 @njit(cache=True, inline="always", error_model="numpy")
 def measure_hessian(kind, q, s, h):
-    """Add the stress-weighted second derivatives of the kind that a block asks for to h (6, 6)."""
+    """Add the stress-weighted second derivatives of the kind that a block asks for to h (6, 6) or (8, 8)."""
     if kind == GREEN_LAGRANGE:
         green_lagrange_hessian(s, h)
-    else:
+    elif kind == STRUCTURAL:
         structural_hessian(q, s, h)
+    else:
+        elastic_line_hessian(q, s, h)

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.kernels.coordinates import element_map
 from beamfem.kernels.measures import measure
 
@@ -13,7 +14,7 @@ def predict_stress(block, p, step, stress):
 
     The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
     """
-    ne, nn = block.frame.shape[0], block.frame.shape[1]
+    ne, nn = block.carrier.shape[0], block.carrier.shape[1]
     nv = block.scale.shape[1]
     nr, nd, nq = block.r_slots.shape[0], block.d_slots.shape[0], block.jacobian.shape[1]
     ns = block.stiffness.shape[2]
@@ -21,26 +22,39 @@ def predict_stress(block, p, step, stress):
     npn, per_node = npe // nn, 2 * nv // nn
     e, de = np.empty(2 * nv), np.empty(2 * nv)
     b = np.zeros((npe, per_node))
-    q, dq, eps, grad = np.empty(6), np.empty(6), np.empty(ns), np.empty((ns, 6))
+    second = block.measures == ELASTIC_LINE
+    m = 8 if second else 6
+    q, dq, eps, grad = np.empty(m), np.empty(m), np.empty(ns), np.empty((ns, m))
     for element in range(ne):
         kind = block.kind[element]
         de[:] = 0.0
         element_map(block, element, p, e, b)
         for node in range(nn):
             lo, hi, elo = node * npn, (node + 1) * npn, node * per_node
+            carrier = block.carrier[element, node]
             for i in range(lo, hi):
-                for x in range(block.column_start[i - lo], block.column_stop[i - lo]):
-                    de[elo + x] += b[i, x] * step[block.dof[element, i]]
+                dof = block.dof[element, i]
+                if dof < 0:
+                    continue
+                for x in range(block.column_start[carrier, i - lo], block.column_stop[carrier, i - lo]):
+                    de[elo + x] += b[i, x] * step[dof]
         for point in range(nq):
             inverse = 1.0 / block.jacobian[kind, point]
+            bend = block.jacobian_xi[kind, point] * inverse
             q[:] = 0.0
             dq[:] = 0.0
             for i in range(nr):
                 slot = block.r_slots[i]
-                phi = block.r_xi[point, i] * block.scale[kind, slot] * inverse
+                scale = block.scale[kind, slot] * inverse
+                phi = block.r_xi[point, i] * scale
                 for x in range(2):
                     q[x] += phi * e[2 * slot + x]
                     dq[x] += phi * de[2 * slot + x]
+                if second:
+                    phi = (block.r_xixi[point, i] - bend * block.r_xi[point, i]) * scale * inverse
+                    for x in range(2):
+                        q[6 + x] += phi * e[2 * slot + x]
+                        dq[6 + x] += phi * de[2 * slot + x]
             for i in range(nd):
                 slot = block.d_slots[i]
                 phi, slope = block.d[point, i], block.d_xi[point, i] * inverse
@@ -52,7 +66,7 @@ def predict_stress(block, p, step, stress):
             measure(block.measures, q, eps, grad)
             for i in range(ns):
                 eps[i] -= block.reference[kind, point, i]
-                for x in range(6):
+                for x in range(m):
                     eps[i] += grad[i, x] * dq[x]
             for i in range(ns):
                 total = 0.0

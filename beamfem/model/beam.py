@@ -1,5 +1,6 @@
 """A beam: an axis, a mesh, an element, a section and a material."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,31 +9,54 @@ from beamfem.curves import Curve
 from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.section import Section
+from beamfem.section.protocol import CrossSection
 from beamfem.validation import count, finite
+
+Tapered = Callable[[float], CrossSection]
 
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A prismatic beam along a curve.
+    """A beam along a curve, free of stress there.
 
-    curve: stress-free axis; elements: number of equal elements; element: see `beamfem.element`.
-    Raises InputError.
+    elements: number of equal elements, or the fractions of the arc length from 0 to 1 where elements end; element: see
+    `beamfem.element`; section: a section, or a function of the arc length [m] from the start that gives one; material:
+    not needed where the section brings its own. Raises InputError.
     """
 
     curve: Curve
-    elements: int
+    elements: int | Sequence[float]
     element: Element
-    section: Section
-    material: Material
+    section: CrossSection | Tapered
+    material: Material | None = None
 
     def __post_init__(self) -> None:
-        count("elements", self.elements)
-        for name, kind in (("element", Element), ("section", Section), ("material", Material)):
-            if not isinstance(getattr(self, name), kind):
-                raise InputError(f"{name} of a Beam must be a {kind.__name__}, got {getattr(self, name)!r}")
-        if not hasattr(self.curve, "tangent"):
+        if isinstance(self.elements, Sequence | np.ndarray) and not isinstance(self.elements, str):
+            object.__setattr__(self, "elements", _fractions(self.elements))
+        else:
+            object.__setattr__(self, "elements", count("elements", self.elements))
+        if not isinstance(self.element, Element):
+            raise InputError(f"element of a Beam must be an Element, got {self.element!r}")
+        if not isinstance(self.curve, Curve):
             raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
+        if self.material is not None and not isinstance(self.material, Material):
+            raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
+        if not isinstance(self.section, CrossSection) and not callable(self.section):
+            raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
+        for share in (0.0, 0.5, 1.0):
+            section = self.section_at(share * self.curve.length)
+            section.inertia(self.material)
+            if self.element.forces.fills_body:
+                section.moments(self.material)
+
+    def section_at(self, arc_length: float) -> CrossSection:
+        """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
+        if isinstance(self.section, CrossSection):
+            return self.section
+        section = self.section(arc_length)
+        if not isinstance(section, CrossSection):
+            raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
+        return section
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction in [0, 1] of the arc length."""
@@ -65,3 +89,11 @@ class Point:
     def __str__(self) -> str:
         x, y = self.reference
         return f"({x:g}, {y:g}), fraction {self.fraction:g} of its beam"
+
+
+def _fractions(values: Sequence[float]) -> tuple[float, ...]:
+    """Check the ends of elements that a user gives."""
+    ends = tuple(finite("elements", value) for value in values)
+    if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or np.any(np.diff(ends) <= 0.0):
+        raise InputError(f"elements as a list must rise from 0 to 1, the fractions where elements end, got {ends!r}")
+    return ends

@@ -1,4 +1,4 @@
-"""What acts on a beam. All loads here are dead: they keep their direction."""
+"""What acts on a beam."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -50,12 +50,16 @@ class Gravity:
 
 @dataclass(frozen=True)
 class DistributedLoad:
-    """Force per reference length (qx, qy) [N/m] along the axis of a beam."""
+    """Force per reference length (qx, qy) [N/m] along the axis of a beam.
+
+    follower: (qx, qy) acts in the reference and turns with the section, as a pressure does.
+    """
 
     beam: Beam
     vector: tuple[float, float]
     amplitude: Amplitude = None
     scale: bool = True
+    follower: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vector", vector("vector of DistributedLoad", self.vector))
@@ -64,12 +68,13 @@ class DistributedLoad:
 
 @dataclass(frozen=True)
 class PointForce:
-    """Force (fx, fy) [N] on the axis at a point."""
+    """Force (fx, fy) [N] on the axis at a point; follower: it turns with the section."""
 
     point: Point
     vector: tuple[float, float]
     amplitude: Amplitude = None
     scale: bool = True
+    follower: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vector", vector("vector of PointForce", self.vector))
@@ -83,12 +88,16 @@ class PointForce:
 
 @dataclass(frozen=True)
 class PointMoment:
-    """Moment [N m], counter-clockwise, on d: virtual work M dtheta with dtheta = d x delta d / |d|^2."""
+    """Moment [N m], counter-clockwise, on the section's direction: virtual work M dtheta.
+
+    follower: accepted for the sake of likeness; in the plane a moment that turns with the section is the same moment.
+    """
 
     point: Point
     moment: float
     amplitude: Amplitude = None
     scale: bool = True
+    follower: bool = False
 
     def __post_init__(self) -> None:
         finite("moment", self.moment)

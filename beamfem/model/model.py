@@ -1,86 +1,138 @@
-"""A model: beams, what holds them and what acts on them."""
+"""A model: beams, what holds and joins them and what acts on them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point
+from beamfem.model.grid import Grid, make_grid
+from beamfem.model.joints import Hinge, Joint, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment
-from beamfem.model.mesh import BeamMesh, vertices_with
-from beamfem.model.supports import Clamp, Pin, Prescribed, Roller, Support
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.numbering import number_nodes
+from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
+
+_AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
+_ON_BEAM = DistributedLoad | Foundation
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """Beams with supports and loads, meshed and numbered.
+    """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports put a mesh node at their point; loads act anywhere. Raises InputError, UnknownPointError.
+    Supports and joints put a mesh node at their point; loads act anywhere. Raises InputError, UnknownPointError.
     """
 
     beams: Sequence[Beam]
     supports: Sequence[Support] = ()
     loads: Sequence[Load] = ()
+    joints: Sequence[Joint] = ()
 
     def __post_init__(self) -> None:
-        for name in ("beams", "supports", "loads"):
+        for name, kinds in (("beams", Beam), ("supports", Support), ("loads", Load), ("joints", Joint)):
             if not isinstance(getattr(self, name), Sequence):
                 raise InputError(f"{name} of a Model must be a list, got {getattr(self, name)!r}")
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        if not self.beams:
-            raise InputError("a Model needs at least one beam")
-        for name, kinds in (("beams", Beam), ("supports", Support), ("loads", Load)):
             for item in getattr(self, name):
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {item!r}")
+        if not self.beams:
+            raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
         for item in (*self.supports, *self.loads):
-            for place, kind in (("point", Point), ("beam", Beam)):
-                if not isinstance(getattr(item, place, None), kind | None):
-                    what = f"{place} of {type(item).__name__} must be a {kind.__name__}"
-                    raise InputError(f"{what} such as beam.end or beam, got {getattr(item, place)!r}")
-            if isinstance(item, Clamp | Pin | Roller | Prescribed | PointForce | PointMoment):
-                self._require(item.point.beam, type(item).__name__, f" at {item.point}")
-            elif isinstance(item, DistributedLoad):
-                self._require(item.beam, "DistributedLoad", "")
+            if isinstance(item, _AT_POINT):
+                self._require(item, "point", item.point)
+            elif isinstance(item, _ON_BEAM):
+                self._require(item, "beam", item.beam)
+        for joint in self.joints:
+            self._require(joint, "a", joint.a)
+            self._require(joint, "b", joint.b)
+            self._require_touch(joint)
 
-    def _require(self, beam: Beam, what: str, where: str) -> None:
-        if not any(beam is own for own in self.beams):
-            raise UnknownPointError(f"{what}{where} is on a beam that is not in this model; add it to beams")
+    def _require(self, item: object, name: str, place: object) -> None:
+        kind = type(item).__name__
+        wanted = Beam if name == "beam" else Point
+        if not isinstance(place, wanted):
+            raise InputError(f"{name} of {kind} must be a {wanted.__name__} such as beam.end or beam, got {place!r}")
+        beam = place.beam if isinstance(place, Point) else place
+        if id(beam) not in self._numbers:
+            where = f" at {place}" if isinstance(place, Point) else ""
+            raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; add it to beams")
+
+    def _require_touch(self, joint: Joint) -> None:
+        kind = type(joint).__name__
+        if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
+            raise InputError(f"{kind} joins the point {joint.a} with itself")
+        gap = float(np.linalg.norm(joint.a.reference - joint.b.reference))
+        if gap > 1e-9 * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
+            raise InputError(
+                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide"
+            )
 
     @cached_property
+    def _numbers(self) -> dict[int, int]:
+        return {id(beam): number for number, beam in enumerate(self.beams)}
+
+    @cached_property
+    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int]:
+        fractions: list[list[float]] = [[] for _ in self.beams]
+        places = [support.point for support in self.point_supports]
+        places += [point for joint in self.joints for point in (joint.a, joint.b)]
+        for point in places:
+            fractions[self._numbers[id(point.beam)]].append(point.fraction)
+        grids = [make_grid(beam, own) for beam, own in zip(self.beams, fractions, strict=True)]
+        angled = [self._place(grids, support.point) for support in self.point_supports if _turns(support)]
+        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
+        rigid = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Rigid)]
+        hinged = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Hinge)]
+        turning = np.array([*corners, *rigid], dtype=np.int64).reshape(-1, 4)
+        moving = np.array([*corners, *rigid, *hinged], dtype=np.int64).reshape(-1, 4)
+        nodes, size = number_nodes(grids, angled, moving, turning)
+        filled = [0] * len(self.groups)
+        block_of = {element: number for number, element in enumerate(self.groups)}
+        meshes = []
+        for grid, carried in zip(grids, nodes, strict=True):
+            block = block_of[grid.beam.element]
+            parts = {name: getattr(grid, name) for name in Grid.__dataclass_fields__}
+            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
+            filled[block] += grid.elements
+        return tuple(meshes), size
+
+    def _place(self, grids: Sequence[Grid], point: Point) -> tuple[int, int]:
+        number = self._numbers[id(point.beam)]
+        return number, grids[number].node_at(point.fraction)
+
+    @property
     def meshes(self) -> tuple[BeamMesh, ...]:
         """One mesh a beam, numbered in the order of the beams."""
-        groups = self.groups
-        filled = [0] * len(groups)
-        first_dof = 0
-        meshes = []
-        for beam in self.beams:
-            fractions = [s.point.fraction for s in self.supports if s.point.beam is beam]
-            block = groups.index(beam.element)
-            mesh = BeamMesh(beam, vertices_with(beam, fractions), first_dof, filled[block], block)
-            first_dof += mesh.size
-            filled[block] += mesh.elements
-            meshes.append(mesh)
-        return tuple(meshes)
-
-    @cached_property
-    def groups(self) -> tuple:
-        """The different elements of the beams, in order of appearance."""
-        return tuple(dict.fromkeys(beam.element for beam in self.beams))
+        return self._numbered[0]
 
     @property
     def size(self) -> int:
-        """Number of coordinates, held ones included."""
-        return sum(mesh.size for mesh in self.meshes)
+        """Number of coordinates, held ones included, shared ones once."""
+        return self._numbered[1]
+
+    @cached_property
+    def groups(self) -> tuple[Element, ...]:
+        """The different elements of the beams, in order of appearance."""
+        return tuple(dict.fromkeys(beam.element for beam in self.beams))
+
+    def number_of(self, beam: Beam) -> int:
+        """Return the place of a beam among the beams. Raises UnknownPointError."""
+        if id(beam) not in self._numbers:
+            raise UnknownPointError(f"the beam {beam!r} is not in this model")
+        return self._numbers[id(beam)]
 
     def mesh_of(self, point: Point) -> BeamMesh:
         """Return the mesh that a point lies on. Raises UnknownPointError."""
-        for mesh in self.meshes:
-            if mesh.beam is point.beam:
-                return mesh
-        raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
+        if id(point.beam) not in self._numbers:
+            raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
+        return self.meshes[self._numbers[id(point.beam)]]
 
     @property
     def gravity(self) -> tuple[Gravity, ...]:
@@ -93,3 +145,21 @@ class Model:
     @property
     def point_loads(self) -> tuple[PointForce | PointMoment, ...]:
         return tuple(load for load in self.loads if isinstance(load, PointForce | PointMoment))
+
+    @property
+    def point_supports(self) -> tuple[PointSupport, ...]:
+        return tuple(support for support in self.supports if not isinstance(support, Foundation))
+
+    @property
+    def foundations(self) -> tuple[Foundation, ...]:
+        return tuple(support for support in self.supports if isinstance(support, Foundation))
+
+
+def _turns(support: PointSupport) -> bool:
+    """Tell whether a support has to do with the rotation."""
+    return support.rotational > 0.0 if isinstance(support, Spring) else "rotation" in support.held()
+
+
+def _corners(grid: Grid) -> np.ndarray:
+    """First of the two nodes at each corner."""
+    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]

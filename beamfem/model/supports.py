@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Point
+from beamfem.model.beam import Beam, Point
 from beamfem.validation import finite, vector
 
 Value = float | Callable[[float], float]
@@ -14,7 +14,7 @@ Value = float | Callable[[float], float]
 
 @dataclass(frozen=True)
 class Clamp:
-    """Hold the position and the section direction r_y; r_x stays free, it carries stretch and shear."""
+    """Hold the position and the section's direction; r_x stays free to stretch and, off the elastic line, to shear."""
 
     point: Point
 
@@ -77,4 +77,42 @@ class Prescribed:
         return {name: value for name, value in given.items() if value is not None}
 
 
-Support = Clamp | Pin | Roller | Prescribed
+@dataclass(frozen=True)
+class Spring:
+    """Spring to the ground against displacement (kx, ky) [N/m] and rotation [N m/rad], at rest in the reference.
+
+    Raises InputError for a negative stiffness, or where there is none at all.
+    """
+
+    point: Point
+    stiffness: tuple[float, float] = (0.0, 0.0)
+    rotational: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stiffness", vector("stiffness of Spring", self.stiffness))
+        values = (*self.stiffness, finite("rotational", self.rotational))
+        if min(values) < 0.0 or max(values) == 0.0:
+            raise InputError(f"the stiffness of a Spring must not be negative, and somewhere positive, got {values}")
+
+    def held(self) -> dict[str, Value]:
+        return {}
+
+
+@dataclass(frozen=True)
+class Foundation:
+    """Winkler foundation along a beam, (kx, ky) [N/m^2] per reference length, at rest in the reference.
+
+    Raises InputError for a negative stiffness, or where there is none at all.
+    """
+
+    beam: Beam
+    stiffness: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stiffness", vector("stiffness of Foundation", self.stiffness))
+        if min(self.stiffness) < 0.0 or max(self.stiffness) == 0.0:
+            raise InputError(f"the stiffness of a Foundation must not be negative, and somewhere positive: {self}")
+
+
+PointSupport = Clamp | Pin | Roller | Prescribed | Spring
+Support = PointSupport | Foundation

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem import postprocess
+from beamfem.model.reference import faces
 from beamfem.validation import count
 
 if TYPE_CHECKING:
@@ -47,12 +48,12 @@ def plot_shapes(solution: "Solution", path: str | PathLike[str] | None = None, s
     figure, axes = new_figure()
     rows = np.unique(np.linspace(0, len(solution) - 1, min(shapes, len(solution))).astype(int))
     for mesh in solution.model.meshes:
-        height = mesh.beam.section.height
         element = np.repeat(np.arange(mesh.elements), 9)
         xi = np.tile(np.linspace(0.0, 1.0, 9), mesh.elements)
+        low, high = faces(mesh, element, xi).T[:, :, None]
         now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p[rows]), element, xi)
         for order, row in enumerate(rows):
-            top, bottom = now.r[order] + 0.5 * height * now.d[order], now.r[order] - 0.5 * height * now.d[order]
+            top, bottom = now.r[order] + high * now.d[order], now.r[order] + low * now.d[order]
             outline = np.concatenate([top, bottom[::-1]])
             share = (order + 1) / len(rows)
             axes.fill(*outline.T, color=COLOURS[0], alpha=0.15 + 0.35 * share, linewidth=0)
@@ -60,7 +61,7 @@ def plot_shapes(solution: "Solution", path: str | PathLike[str] | None = None, s
             label = f"load factor {value:.3g}" if solution.static else f"t = {value:.3g} s"
             ends = len(rows) > 1 and order in (0, len(rows) - 1) and mesh is solution.model.meshes[0]
             axes.plot(*now.r[order].T, color=str(0.7 * (1 - share)), linewidth=1.2, label=label if ends else None)
-    for support in solution.model.supports:
+    for support in solution.model.point_supports:
         axes.plot(*support.point.reference, "^", color="black", markersize=8)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x [m]")

@@ -1,0 +1,26 @@
+"""The beam axis at points: what strain measures are formed of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Axis:
+    """r0, r0', r0'', d and d' (..., 2) at points of the axis; primes are by arc length of the reference."""
+
+    r: np.ndarray
+    r_s: np.ndarray
+    r_ss: np.ndarray
+    d: np.ndarray
+    d_s: np.ndarray
+
+
+def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Inner product over the last axis."""
+    return np.asarray((u * v).sum(axis=-1))
+
+
+def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Planar cross product over the last axis."""
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

@@ -1,0 +1,182 @@
+"""Elastic forces of the whole body."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.element.structural import section_frame
+from beamfem.kernels.block import GREEN_LAGRANGE
+from beamfem.material import Material
+from beamfem.section.protocol import CrossSection
+
+# a law maps a material to the stiffness (3, 3) of (exx, eyy, 2 exy) in the volume
+Law = Callable[[Material], np.ndarray]
+
+
+@dataclass(frozen=True)
+class _Body:
+    """Green-Lagrange strain of the body r0 + y d."""
+
+    @property
+    def code(self) -> int:
+        return GREEN_LAGRANGE
+
+    @property
+    def turns_with(self) -> str:
+        return "r_y"
+
+    @property
+    def fills_body(self) -> bool:
+        return True
+
+    @property
+    def shear_measures(self) -> tuple[bool, ...]:
+        return (False, False, False, False, True, True)
+
+    def strains(self, at: Axis) -> np.ndarray:
+        """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
+        return np.stack(
+            [
+                0.5 * (dot(at.r_s, at.r_s) - 1.0),
+                dot(at.r_s, at.d_s),
+                0.5 * dot(at.d_s, at.d_s),
+                0.5 * (dot(at.d, at.d) - 1.0),
+                dot(at.r_s, at.d),
+                dot(at.d, at.d_s),
+            ],
+            axis=-1,
+        )
+
+    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return dW/dr0' (..., 2) [N], the moment d x dW/dd' (...) [N m], the section's normal (..., 2)."""
+        s = resultants[..., None]
+        force = s[..., 0, :] * at.r_s + s[..., 1, :] * at.d_s + s[..., 4, :] * at.d
+        couple = s[..., 1, :] * at.r_s + s[..., 2, :] * at.d_s + s[..., 5, :] * at.d
+        return force, cross(at.d, couple), section_frame(at.d)[0]
+
+    def points(self, degree: int, director_degree: int) -> int:
+        """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
+        return 2 * max(degree - 1, director_degree) + 1
+
+
+@dataclass(frozen=True)
+class ContinuumMechanics(_Body):
+    """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body; paper, section 3.3.
+
+    plane_stress: take E nu / (1 - nu^2) for lambda instead of the 3D value. Bends with E I times
+    (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy cannot vary over y.
+    """
+
+    plane_stress: bool = False
+    name: str = "continuum"
+
+    def stiffness(
+        self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
+    ) -> np.ndarray:
+        """Return the section stiffness (..., 6, 6) at points of the reference axis."""
+        return _over_section(section, material, reference, self._law)
+
+    def _law(self, material: Material) -> np.ndarray:
+        lam, mu = material.lame_lambda(self.plane_stress), material.shear_modulus
+        return np.array([[lam + 2.0 * mu, lam, 0.0], [lam, lam + 2.0 * mu, 0.0], [0.0, 0.0, mu]])
+
+    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
+        """Return second Piola-Kirchhoff stress xx, yy, xy [Pa] of Green strain components."""
+        mu = material.shear_modulus
+        trace = material.lame_lambda(self.plane_stress) * (xx + yy)
+        return trace + 2 * mu * xx, trace + 2 * mu * yy, 2 * mu * xy
+
+
+@dataclass(frozen=True)
+class SplitContinuum(_Body):
+    """Green-Lagrange strain, Poisson coupling on the centreline only; Gerstmayr, Matikainen and Mikkola 2008.
+
+    Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline comes what is missing to plane stress.
+    Bends with E I. Where rotations hold the thickness the centreline has nothing to couple with and stretches with E A.
+    """
+
+    name: str = "split"
+
+    def stiffness(
+        self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
+    ) -> np.ndarray:
+        """Return the section stiffness (..., 6, 6) at points of the reference axis."""
+
+        def uncoupled(part: Material) -> np.ndarray:
+            modulus = part.youngs_modulus
+            return np.diag([modulus, modulus, section.shear_factor * part.shear_modulus])
+
+        matrix = _over_section(section, material, reference, uncoupled).copy()
+        if isinstance(coordinates, Gradients):
+            for part, moments in section.moments(material):
+                ratio = part.poisson_ratio
+                extra = part.youngs_modulus * ratio / (1.0 - ratio**2) * moments[0]
+                matrix[..., 0, 0] += ratio * extra
+                matrix[..., 3, 3] += ratio * extra
+                matrix[..., 0, 3] += extra
+                matrix[..., 3, 0] += extra
+        return matrix
+
+    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
+        """Return stress xx, yy, xy [Pa] of strain components away from the centreline, without Poisson coupling."""
+        modulus = material.youngs_modulus
+        return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
+
+
+def _over_section(section: CrossSection, material: Material | None, reference: Axis, law: Law) -> np.ndarray:
+    """Integrate a law over the section: stiffness (..., 6, 6) of (a, b, c, eyy, g0, g1).
+
+    A reference that is straight takes the section's moments; a curved one the equivalent rectangle, on which the body
+    has the metric of its own reference, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
+    """
+    low, high = section.bounds
+    if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:
+        total = np.zeros((6, 6))
+        for part, moments in section.moments(material):
+            stiffness = law(part)
+            for m, left in _POWERS.items():
+                for n, right in _POWERS.items():
+                    total += moments[m + n] * left.T @ stiffness @ right
+        return np.broadcast_to(total, (*reference.r_s.shape[:-1], 6, 6))
+    result = np.zeros((*reference.r_s.shape[:-1], 6, 6))
+    for part, heights, weights in section.strips(material):
+        stiffness = law(part)
+        for y, weight in zip(heights, weights, strict=True):
+            to_strain, volume = _cartesian(reference, y)
+            strain = to_strain @ sum(y**n * table for n, table in _POWERS.items())
+            result += weight * volume[..., None, None] * np.swapaxes(strain, -1, -2) @ stiffness @ strain
+    return result
+
+
+_STRAIGHT = 1e-13  # curvature times height below which a reference is straight to round-off
+
+
+def _table(places: list[tuple[int, int]]) -> np.ndarray:
+    table = np.zeros((3, 6))
+    for row, column in places:
+        table[row, column] = 1.0
+    return table
+
+
+# (exx, eyy, 2 exy) = sum over n of y^n times a table (3, 6) of (a, b, c, eyy, g0, g1)
+_POWERS = {0: _table([(0, 0), (1, 3), (2, 4)]), 1: _table([(0, 1), (2, 5)]), 2: _table([(0, 2)])}
+
+
+def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
+    """Map convected strain (exx, eyy, 2 exy) to the reference's own frame (..., 3, 3); and det J (...)."""
+    along, across = section_frame(reference.d)
+    first = reference.r_s + y * reference.d_s
+    j11, j21, j22 = dot(first, along), dot(first, across), np.linalg.norm(reference.d, axis=-1)
+    # d defines the second axis, so J = [[j11, 0], [j21, j22]]
+    k11, k22 = 1.0 / j11, 1.0 / j22
+    k21 = -j21 * k11 * k22
+    zero = np.zeros_like(k11)
+    rows = (
+        np.stack([k11**2, k21**2, k11 * k21], axis=-1),
+        np.stack([zero, k22**2, zero], axis=-1),
+        np.stack([zero, 2.0 * k21 * k22, k11 * k22], axis=-1),
+    )
+    return np.stack(rows, axis=-2), j11 * j22

@@ -1,0 +1,57 @@
+"""Elastic forces of a line whose curvature comes from r_xx."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.material import Material
+from beamfem.section.protocol import CrossSection
+
+
+@dataclass(frozen=True)
+class ElasticLine:
+    """Stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2; paper, section 3.4.
+
+    Resists them with E A, E I, G A and, with gradients, E A. The curvature is the change of the angle of r_x along the
+    reference, so that M = E I dtheta/ds; the section stands across r_x, and r_y only follows it.
+    """
+
+    name: str = "elastic-line"
+    code: int = ELASTIC_LINE
+    turns_with: str = "r_x"
+    fills_body: bool = False
+    shear_measures: tuple[bool, ...] = (False, False, True, False)
+
+    def strains(self, at: Axis) -> np.ndarray:
+        """Return (..., 4): stretch, curvature [1/m], shear, thickness strain."""
+        square = dot(at.r_s, at.r_s)
+        curvature = cross(at.r_s, at.r_ss) / square
+        return np.stack([np.sqrt(square) - 1.0, curvature, dot(at.r_s, at.d), 0.5 * (dot(at.d, at.d) - 1.0)], axis=-1)
+
+    def stiffness(
+        self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
+    ) -> np.ndarray:
+        """Return the section stiffness (..., 4, 4) at points of the reference axis."""
+        rigidity = section.rigidity(material)
+        thickness = rigidity.axial if isinstance(coordinates, Gradients) else 0.0
+        matrix = np.diag([rigidity.axial, rigidity.bending, rigidity.shear / section.shear_factor, thickness])
+        matrix[0, 1] = matrix[1, 0] = rigidity.coupling
+        return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
+
+    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the force (..., 2) [N] without that of M', the moment (...) [N m], the unit vector of r_x (..., 2)."""
+        along = at.r_s / np.linalg.norm(at.r_s, axis=-1, keepdims=True)
+        s = resultants[..., None]
+        return s[..., 0, :] * along + s[..., 2, :] * at.d, resultants[..., 1], along
+
+    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
+        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        modulus = material.youngs_modulus
+        return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
+
+    def points(self, degree: int, director_degree: int) -> int:
+        """Gauss points of full integration: exact for curvature and shear of a straight line at small strain."""
+        return degree + 1

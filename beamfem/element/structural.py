@@ -1,0 +1,68 @@
+"""Elastic forces of the geometrically exact beam."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.coordinates import Coordinates, Gradients
+from beamfem.kernels.block import STRUCTURAL
+from beamfem.material import Material
+from beamfem.section.protocol import CrossSection
+
+
+@dataclass(frozen=True)
+class Structural:
+    """Geometrically exact beam of Reissner 1972 and Simo and Vu-Quoc 1986, section along d.
+
+    Resists stretch with E A, shear with k_s G A, curvature with E I; with gradients, thickness stretch with E A.
+    """
+
+    name: str = "structural"
+    code: int = STRUCTURAL
+    turns_with: str = "r_y"
+    fills_body: bool = False
+    shear_measures: tuple[bool, ...] = (False, True, False, False)
+
+    def strains(self, at: Axis) -> np.ndarray:
+        """Return (..., 4): stretch, shear, curvature [1/m], thickness stretch."""
+        size = np.linalg.norm(at.d, axis=-1)
+        along, across = section_frame(at.d)
+        turn = cross(at.d, at.d_s) / size**2
+        return np.stack([dot(at.r_s, along) - 1.0, dot(at.r_s, across), turn, size - 1.0], axis=-1)
+
+    def stiffness(
+        self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
+    ) -> np.ndarray:
+        """Return the section stiffness (..., 4, 4) at points of the reference axis.
+
+        E A, k_s G A, E I, E A on the diagonal and the section's coupling of stretch with curvature; the last E A is
+        zero where the nodes hold the length of d.
+        """
+        rigidity = section.rigidity(material)
+        matrix = np.diag([rigidity.axial, rigidity.shear, rigidity.bending, rigidity.axial])
+        matrix[0, 2] = matrix[2, 0] = rigidity.coupling
+        if not isinstance(coordinates, Gradients):
+            matrix[3, 3] = 0.0
+        return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
+
+    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return dW/dr0' (..., 2) [N] and the moment (...) [N m] of stress resultants (..., 4)."""
+        along, across = section_frame(at.d)
+        s = resultants[..., None]
+        return s[..., 0, :] * along + s[..., 1, :] * across, resultants[..., 2], along
+
+    def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
+        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        modulus = material.youngs_modulus
+        return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
+
+    def points(self, degree: int, director_degree: int) -> int:
+        """Gauss points of full integration, as many as for the continuum."""
+        return 2 * max(degree - 1, director_degree) + 1
+
+
+def section_frame(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors along the section's normal and along d (..., 2)."""
+    across = d / np.linalg.norm(d, axis=-1, keepdims=True)
+    return np.stack([across[..., 1], -across[..., 0]], axis=-1), across

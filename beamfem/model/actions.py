@@ -1,0 +1,111 @@
+"""Forces, moments and springs at points of elements, as the kernels take them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.kernels.block import PointLoads
+from beamfem.model.beam import Beam
+from beamfem.model.loads import DistributedLoad, PointLoad, factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.reference import jacobians, length_points, scales
+
+
+@dataclass(frozen=True)
+class Actions:
+    """Point loads of a block and what they are at a time.
+
+    unit (nl, 3): force [N] and moment [N m] of each before its factor; source (nl,): number of its load, -1 for none.
+    """
+
+    points: PointLoads
+    unit: np.ndarray
+    source: np.ndarray
+    loads: tuple[PointLoad | DistributedLoad, ...]
+
+    def values(self, time: float, static: bool) -> np.ndarray:
+        """Return forces and moments (nl, 3) at a time."""
+        factors = np.array([*(factor(load, time, static) for load in self.loads), 1.0])
+        return self.unit * factors[self.source][:, None]
+
+
+def build_actions(model: Model, block: int) -> Actions:
+    """Return everything that acts at points of the elements of a block."""
+    loads = (*model.point_loads, *(load for load in model.distributed if load.follower))
+    parts: list[dict[str, np.ndarray]] = []
+    for number, load in enumerate(loads):
+        if isinstance(load, DistributedLoad):
+            mesh = _mesh(model, load.beam, block)
+            if mesh is not None:
+                element, xi, weight = length_points(mesh)
+                unit = np.outer(weight, (*load.vector, 0.0))
+                parts.append(_part(mesh, element, xi, unit, number, True))
+        else:
+            mesh = _mesh(model, load.point.beam, block)
+            if mesh is not None:
+                where, at = mesh.locate(load.point.fraction)
+                unit = np.array([load.value])
+                parts.append(_part(mesh, np.array([where]), np.array([at]), unit, number, load.follower))
+    for foundation in model.foundations:
+        mesh = _mesh(model, foundation.beam, block)
+        if mesh is not None:
+            element, xi, weight = length_points(mesh)
+            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False)
+            part["spring"] = np.outer(weight, foundation.stiffness)
+            parts.append(part)
+    size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
+    joined = {name: np.concatenate([empty, *(part[name] for part in parts)]) for name, empty in _empty(size).items()}
+    unit, source = joined.pop("unit"), joined.pop("source")
+    return Actions(PointLoads(**joined), unit, source, loads)
+
+
+def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
+    mesh = model.mesh_of(beam.start)
+    return mesh if mesh.block == block else None
+
+
+def _empty(size: int) -> dict[str, np.ndarray]:
+    pair = np.zeros((0, 2))
+    whole = np.zeros(0, dtype=np.int64)
+    table = np.zeros((0, size))
+    return {
+        "element": whole,
+        "position": table,
+        "direction": table,
+        "follows": pair,
+        "spring": pair,
+        "anchor": pair,
+        "unit": np.zeros((0, 3)),
+        "source": whole,
+    }
+
+
+def _part(
+    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool
+) -> dict[str, np.ndarray]:
+    """Rows of the point loads for points (element, xi) of a beam."""
+    own = mesh.beam.element
+    field, count = own.field, len(element)
+    scale = scales(own, mesh.lengths[element])
+    position = np.zeros_like(scale)
+    position[:, r_slots(field)] = field.centreline(xi)
+    direction = np.zeros_like(scale)
+    if own.forces.turns_with == "r_x":
+        direction[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
+    else:
+        direction[:, d_slots(field)] = field.director(xi)
+    arc = mesh.arc_length(element, xi)
+    tangent = mesh.beam.curve.tangent(arc)
+    along = tangent if own.forces.turns_with == "r_x" else np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+    return {
+        "element": mesh.first_element + element,
+        "position": position * scale,
+        "direction": direction * scale,
+        "follows": along if follower else np.zeros((count, 2)),
+        "spring": np.zeros((count, 2)),
+        "anchor": mesh.beam.curve.position(arc),
+        "unit": unit,
+        "source": np.full(count, source),
+    }

@@ -1,0 +1,79 @@
+"""Classes of identical elements of a beam, and what the kernels need of each."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.model.grid import Grid
+from beamfem.model.reference import energy_points, inertia_points, jacobians, length_points, scales, stiffness_at
+from beamfem.section.protocol import CrossSection
+
+
+@dataclass(frozen=True)
+class Classes:
+    """nc classes; kind (ne,) is the class of an element, the rest as in `kernels.block.Block`."""
+
+    kind: np.ndarray
+    scale: np.ndarray
+    jacobian: np.ndarray
+    jacobian_xi: np.ndarray
+    weight: np.ndarray
+    stiffness: np.ndarray
+    reference: np.ndarray
+    mass: np.ndarray
+    gravity: np.ndarray
+    length: np.ndarray
+
+
+def element_classes(grid: Grid) -> Classes:
+    """Return the classes of a grid: elements of equal length of a straight prismatic beam, else each its own."""
+    if grid.straight and isinstance(grid.beam.section, CrossSection):
+        _, first, kind = np.unique(
+            np.round(grid.lengths / grid.lengths.max(), 9), return_index=True, return_inverse=True
+        )
+    else:
+        first = kind = np.arange(grid.elements)
+    element, xi, weight, counted = energy_points(grid, first)
+    count, size = len(first), len(element) // len(first)
+    jacobian, jacobian_xi = jacobians(grid, element, xi)
+    stiffness, reference = stiffness_at(grid, element, xi)
+    stiffness = stiffness * (counted[:, :, None] & counted[:, None, :])
+    scale = scales(grid.beam.element, grid.lengths[first])
+    mass, gravity, length = _inertia(grid, first, scale)
+
+    def by_class(values: np.ndarray) -> np.ndarray:
+        return values.reshape(count, size, *values.shape[1:])
+
+    return Classes(
+        kind.astype(np.int64),
+        scale,
+        by_class(jacobian),
+        by_class(jacobian_xi),
+        by_class(weight),
+        by_class(stiffness),
+        by_class(reference),
+        mass,
+        gravity,
+        length,
+    )
+
+
+def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass (nc, nv, nv), its sum against a uniform acceleration (nc, nv) and the loaded length (nc, nv)."""
+    field = grid.beam.element.field
+    where, xi, inertia = inertia_points(grid, chosen)
+    count = len(chosen)
+    r = np.zeros((count, len(where) // count, scale.shape[1]))
+    d = np.zeros_like(r)
+    r[:, :, r_slots(field)] = field.centreline(xi).reshape(count, r.shape[1], -1)
+    d[:, :, d_slots(field)] = field.director(xi).reshape(count, r.shape[1], -1)
+    r *= scale[:, None, :]
+    mass, first, rotary = np.moveaxis(inertia.reshape(count, r.shape[1], 3), -1, 0)
+    mixed = np.einsum("cq,cqi,cqj->cij", first, r, d)
+    matrix = np.einsum("cq,cqi,cqj->cij", mass, r, r) + np.einsum("cq,cqi,cqj->cij", rotary, d, d)
+    matrix += mixed + np.swapaxes(mixed, 1, 2)
+    gravity = np.einsum("cq,cqi->ci", mass, r) + np.einsum("cq,cqi->ci", first, d)
+    _, _, weight = length_points(grid, chosen)
+    length = np.einsum("cq,cqi->ci", weight.reshape(count, -1), r)
+    return matrix, gravity, length

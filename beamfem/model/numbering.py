@@ -1,0 +1,126 @@
+"""Which coordinate is whose: carriers and numbers of every node, shared where nodes are joined."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from beamfem.element.coordinates import labels
+from beamfem.kernels.block import GRADIENTS, ROTATION, STRETCH, TURNED_GRADIENTS
+from beamfem.model.grid import Grid
+from beamfem.model.reference import reference_angle
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Nodes of a beam: carrier (nodes,), coordinates (nodes, npn), -1 where there are fewer, frame (nodes, 3)."""
+
+    carrier: np.ndarray
+    dof: np.ndarray
+    frame: np.ndarray
+
+
+def number_nodes(
+    grids: Sequence[Grid],
+    angled: Sequence[tuple[int, int]],
+    moving: np.ndarray,
+    turning: np.ndarray,
+) -> tuple[list[Nodes], int]:
+    """Return the nodes of each grid and the number of coordinates in all.
+
+    angled: (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
+    moving, turning (n, 4): pairs (grid, node, grid, node) that move alike, and that turn alike.
+    """
+    first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
+    owner = np.repeat(np.arange(len(grids)), np.diff(first))
+    total = first[-1]
+    own_code = np.array([grid.beam.element.coordinates.code for grid in grids])
+    follows_slope = np.array([grid.beam.element.forces.turns_with == "r_x" for grid in grids])
+    carrier = own_code[owner]
+    moves = _groups(total, first, moving)
+    turns = _groups(total, first, turning)
+
+    as_angle = np.zeros(total, dtype=bool)
+    as_angle[[first[grid] + node for grid, node in angled]] = True
+    joined = np.bincount(turns, minlength=total)[turns] > 1
+    # gradients that are joined with gradients only share r_y as a vector; all others share an angle
+    plain = (carrier == GRADIENTS) & ~follows_slope[owner] & ~as_angle
+    all_plain = np.bincount(turns, weights=~plain, minlength=total)[turns] == 0
+    angle = as_angle | (joined & ~all_plain)
+    angle = np.bincount(turns, weights=angle, minlength=total)[turns] > 0
+    sloped = angle & follows_slope[owner] & ((carrier == GRADIENTS) | (carrier == ROTATION))
+    carrier = np.where(sloped, STRETCH, np.where(angle & (carrier == GRADIENTS), ROTATION, carrier))
+
+    leader_moves, leader_turns = _leaders(moves), _leaders(turns)
+    turned = joined & all_plain & (leader_turns != np.arange(total))
+    carrier = np.where(turned, TURNED_GRADIENTS, carrier)
+
+    width = max(2 * len(grid.beam.element.field.vectors) for grid in grids)
+    own, last, turn_size = _ownership(grids, owner, carrier, width)
+    follower_moves, follower_turns = leader_moves != np.arange(total), leader_turns != np.arange(total)
+    own[follower_moves, :2] = False
+    for offset in (1, 2):
+        rows = np.flatnonzero(follower_turns & (turn_size >= offset))
+        own[rows, last[rows] - offset + 1] = False
+    dof = np.where(own, np.cumsum(own).reshape(own.shape) - 1, -1)
+    dof[follower_moves, :2] = dof[leader_moves[follower_moves], :2]
+    for offset in (1, 2):
+        rows = np.flatnonzero(follower_turns & (turn_size >= offset))
+        leaders = leader_turns[rows]
+        dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
+
+    frame = _frames(grids, carrier, leader_turns)
+    nodes = []
+    for begin, end in pairwise(first):
+        widest = int(last[begin:end].max()) + 1
+        nodes.append(Nodes(carrier[begin:end], dof[begin:end, :widest], frame[begin:end]))
+    return nodes, int(own.sum())
+
+
+def _groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Number of the group (total,) that each node belongs to."""
+    if not len(pairs):
+        return np.arange(total)
+    a, b = first[pairs[:, 0]] + pairs[:, 1], first[pairs[:, 2]] + pairs[:, 3]
+    return connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(total, total)), directed=False)[1]
+
+
+def _leaders(group: np.ndarray) -> np.ndarray:
+    """First node (total,) of the group of each node."""
+    leader = np.full(group.max() + 1, len(group))
+    np.minimum.at(leader, group, np.arange(len(group)))
+    return leader[group]
+
+
+def _ownership(
+    grids: Sequence[Grid], owner: np.ndarray, carrier: np.ndarray, width: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return which columns a node has (total, width), its last column and how many columns its rotation takes."""
+    own = np.zeros((len(owner), width), dtype=bool)
+    last, turn_size = np.empty(len(owner), dtype=np.int64), np.empty(len(owner), dtype=np.int64)
+    vectors = [grid.beam.element.field.vectors for grid in grids]
+    has_slope = np.array([len(names) == 3 for names in vectors])[owner]
+    for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
+        for code in range(TURNED_GRADIENTS + 1):
+            rows = (has_slope == slope) & (carrier == code)
+            own_names = labels(code, names)
+            if rows.any():
+                own[np.ix_(rows, np.arange(len(own_names)))] = True
+            last[rows] = len(own_names) - 1
+            turn_size[rows] = 1 if own_names[-1] == "theta" else 2
+    return own, last, turn_size
+
+
+def _frames(grids: Sequence[Grid], carrier: np.ndarray, leader: np.ndarray) -> np.ndarray:
+    """Cosine and sine of each node's angle in the reference, of turned gradients against their leader's; and |r_x|."""
+    angle = np.concatenate([reference_angle(grid) for grid in grids])
+    tangent = np.concatenate([grid.tangent for grid in grids])
+    frame = np.ones((len(angle), 3))
+    frame[:, :2] = tangent
+    turned = carrier == TURNED_GRADIENTS
+    between = angle[turned] - angle[leader[turned]]
+    frame[turned, 0], frame[turned, 1] = np.cos(between), np.sin(between)
+    return frame

@@ -1,0 +1,163 @@
+"""The stress-free reference of a beam: its axis, its sections' stiffness and inertia at points of elements."""
+
+import numpy as np
+
+from beamfem.element.axis import Axis, dot
+from beamfem.element.coordinates import across
+from beamfem.element.element import Element
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.structural import section_frame
+from beamfem.model.grid import Grid
+from beamfem.section.protocol import CrossSection
+
+
+def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
+    """Return the factor (n, nv) of each nodal vector for mesh lengths (n,): the length where it is r_x."""
+    vectors = element.field.vectors * len(element.field.nodes)
+    return np.stack([lengths if name == "r_x" else np.ones_like(lengths) for name in vectors], axis=1)
+
+
+def reference_vectors(grid: Grid, element: np.ndarray) -> np.ndarray:
+    """Return the nodal vectors e (n, nv, 2) of elements (n,), positions from the element's first node."""
+    node = grid.node[element]
+    tangent = grid.tangent[node]
+    if grid.straight:
+        # exact: differences of positions far away would leave strain behind
+        along = grid.lengths[element][:, None] * grid.beam.element.field.nodes
+        position = along[:, :, None] * tangent
+    else:
+        position = grid.position[node] - grid.position[node[:, :1]]
+    values = {"r": position, "r_x": tangent, "r_y": across(tangent)}
+    stacked = np.stack([values[name] for name in grid.beam.element.field.vectors], axis=2)
+    return np.asarray(stacked.reshape(len(element), -1, 2))
+
+
+def jacobians(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return ds/dxi and its derivative by xi (n,) [m] of the reference at points (element, xi)."""
+    if grid.straight:
+        lengths = grid.lengths[element]
+        return lengths, np.zeros_like(lengths)
+    field = grid.beam.element.field
+    local = reference_vectors(grid, element) * scales(grid.beam.element, grid.lengths[element])[:, :, None]
+    r = local[:, r_slots(field)]
+    slope = np.einsum("qi,qic->qc", field.centreline(xi, 1), r)
+    bend = np.einsum("qi,qic->qc", field.centreline(xi, 2), r)
+    size = np.linalg.norm(slope, axis=-1)
+    return size, dot(slope, bend) / size
+
+
+def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Return the axis (steps, n, 2) that nodal vectors of elements (steps, n, nv, 2) give at points (element, xi)."""
+    own = grid.beam.element
+    field = own.field
+    local = vectors * scales(own, grid.lengths[element])[:, :, None]
+    r, d = local[:, :, r_slots(field)], local[:, :, d_slots(field)]
+    size, bend = jacobians(grid, element, xi)
+    slope = 1.0 / size[:, None]
+
+    def sum_over(table: np.ndarray, values: np.ndarray) -> np.ndarray:
+        return np.einsum("qi,sqic->sqc", table, values)
+
+    first = field.centreline(xi, 1) * slope
+    if own.forces.turns_with == "r_x":
+        second = (field.centreline(xi, 2) - (bend / size)[:, None] * field.centreline(xi, 1)) * slope**2
+        r_ss = sum_over(second, r)
+    else:
+        r_ss = np.zeros((len(vectors), len(element), 2))
+    return Axis(
+        sum_over(field.centreline(xi), r),
+        sum_over(first, r),
+        r_ss,
+        sum_over(field.director(xi), d),
+        sum_over(field.director(xi, 1) * slope, d),
+    )
+
+
+def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Return the axis (n, 2) of the reference at points (element, xi), positions from the element's first node."""
+    found = interpolate(grid, reference_vectors(grid, element)[None], element, xi)
+    return Axis(*(getattr(found, name)[0] for name in Axis.__dataclass_fields__))
+
+
+def stations(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Return element and xi of the points where section forces are evaluated."""
+    element, xi, _ = _points(grid, None, *grid.beam.element.quadrature())
+    return element, xi
+
+
+def energy_points(
+    grid: Grid, element: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return element, xi, weight [m] (n,) and which strain measures (n, ns) count there, of all elements or some."""
+    rules = grid.beam.element.energy_rules()
+    xi = np.concatenate([rule[0] for rule in rules])
+    weights = np.concatenate([rule[1] for rule in rules])
+    counts = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in rules])
+    where, at, weight = _points(grid, element, xi, weights)
+    return where, at, weight, np.tile(counts, (len(where) // len(xi), 1))
+
+
+def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return element, xi and weight [m] of the points that integrate mass exactly on a straight prismatic beam."""
+    field = grid.beam.element.field
+    xi, weights = np.polynomial.legendre.leggauss(max(field.degree, field.director_degree) + 1)
+    return _points(grid, element, 0.5 * (xi + 1.0), 0.5 * weights)
+
+
+def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return section stiffness (n, ns, ns) and strain measures (n, ns) of the reference at points (element, xi)."""
+    beam, forces = grid.beam, grid.beam.element.forces
+    at = reference_axis(grid, element, xi)
+    strains = forces.strains(at)
+    if isinstance(beam.section, CrossSection):
+        return forces.stiffness(beam.section, beam.material, beam.element.coordinates, at), strains
+    parts = []
+    for i, arc in enumerate(grid.arc_length(element, xi)):
+        here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis.__dataclass_fields__))
+        parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, here))
+    return np.concatenate(parts), strains
+
+
+def faces(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return lower and upper y [m] of the body (n, 2) at points (element, xi)."""
+    section = grid.beam.section
+    if isinstance(section, CrossSection):
+        return np.broadcast_to(section.bounds, (len(element), 2))
+    return np.array([grid.beam.section_at(arc).bounds for arc in grid.arc_length(element, xi)])
+
+
+def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return element, xi and inertia (n, 3) of the points that integrate mass.
+
+    inertia: mass [kg], its first moment [kg m] and its second [kg m^2] over y, quadrature weight included.
+    """
+    beam = grid.beam
+    where, at, weight = length_points(grid, element)
+    if isinstance(beam.section, CrossSection):
+        own = beam.section.inertia(beam.material)
+        inertia = np.broadcast_to([own.mass, own.first_moment, own.rotary], (len(where), 3))
+    else:
+        found = [beam.section_at(arc).inertia(beam.material) for arc in grid.arc_length(where, at)]
+        inertia = np.array([[own.mass, own.first_moment, own.rotary] for own in found])
+    if beam.element.forces.fills_body and not grid.straight:
+        # det J = alpha + beta y of the curved body; the third moment of the section is left out
+        reference = reference_axis(grid, where, at)
+        along, _ = section_frame(reference.d)
+        size = np.linalg.norm(reference.d, axis=-1)
+        alpha, beta = dot(reference.r_s, along) * size, dot(reference.d_s, along) * size
+        mass, first, rotary = inertia.T
+        inertia = np.stack([alpha * mass + beta * first, alpha * first + beta * rotary, alpha * rotary], axis=1)
+    return where, at, inertia * weight[:, None]
+
+
+def reference_angle(grid: Grid) -> np.ndarray:
+    """Return the angle of each node's tangent (nodes,) [rad]."""
+    return np.arctan2(grid.tangent[:, 1], grid.tangent[:, 0])
+
+
+def _points(
+    grid: Grid, element: np.ndarray | None, xi: np.ndarray, weights: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    chosen = np.arange(grid.elements) if element is None else element
+    where, at = np.repeat(chosen, len(xi)), np.tile(xi, len(chosen))
+    return where, at, np.tile(weights, len(chosen)) * jacobians(grid, where, at)[0]

@@ -1,0 +1,8 @@
+"""Cross-sections: by area moments, by shape, by layers, by stiffness."""
+
+from beamfem.section.layered import Layer, Layered
+from beamfem.section.moments import Section
+from beamfem.section.shapes import Circle, Rectangle, Tube
+from beamfem.section.stiffness import StiffnessSection
+
+__all__ = ["Circle", "Layer", "Layered", "Rectangle", "Section", "StiffnessSection", "Tube"]

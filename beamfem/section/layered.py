@@ -1,0 +1,100 @@
+"""Sections of layers of different materials."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.section.moments import gauss_between
+from beamfem.section.protocol import Inertia, Rigidity
+from beamfem.validation import finite, positive
+
+_STRIPS = 6  # Gauss points over each layer
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer of a material and a thickness [m]. Raises InputError."""
+
+    material: Material
+    thickness: float
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.material, Material):
+            raise InputError(f"material of a Layer must be a Material, got {self.material!r}")
+        positive("thickness", self.thickness)
+
+
+@dataclass(frozen=True)
+class Layered:
+    """Rectangular layers of one width [m], the first at the bottom (y < 0); the beam brings no material.
+
+    The beam's axis is at mid-height, or `axis` [m] above the bottom; a neutral axis elsewhere couples stretch with
+    curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis. Raises InputError.
+    """
+
+    layers: Sequence[Layer]
+    width: float
+    axis: float | None = None
+    shear_factor: float = 5 / 6
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "layers", tuple(self.layers))
+        if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
+            raise InputError(f"layers of a Layered section must be a list of Layer, got {self.layers!r}")
+        positive("width", self.width)
+        positive("shear_factor", self.shear_factor)
+        if self.axis is None:
+            object.__setattr__(self, "axis", 0.5 * self.height)
+        finite("axis", self.axis)
+
+    @property
+    def height(self) -> float:
+        """Height of all layers [m]."""
+        return float(sum(layer.thickness for layer in self.layers))
+
+    @property
+    def area(self) -> float:
+        """Area of all layers [m^2]."""
+        return self.width * self.height
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper y of the layers [m]."""
+        return float(self._edges[0]), float(self._edges[-1])
+
+    def rigidity(self, material: Material | None = None) -> Rigidity:
+        """Return the resistance of all layers; y d' points against the tangent, hence the sign of the coupling."""
+        parts = self.moments(material)
+        axial, first, bending = (sum(m.youngs_modulus * moments[n] for m, moments in parts) for n in range(3))
+        shear = self.shear_factor * sum(m.shear_modulus * moments[0] for m, moments in parts)
+        return Rigidity(float(axial), float(shear), float(bending), -float(first))
+
+    def inertia(self, material: Material | None = None) -> Inertia:
+        """Return the mass moments of all layers."""
+        mass, first, rotary = (
+            float(sum(m.density * moments[n] for m, moments in self.moments(material))) for n in range(3)
+        )
+        return Inertia(mass, first, rotary)
+
+    def moments(self, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
+        """Return the material of each layer with its integrals of 1, y, ..., y^4."""
+        edges = self._edges
+        return [
+            (layer.material, self.width * np.array([(high**n - low**n) / n for n in range(1, 6)]))
+            for layer, low, high in zip(self.layers, edges[:-1], edges[1:], strict=True)
+        ]
+
+    def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
+        """Return the material of each layer with heights and weights."""
+        result = []
+        for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
+            heights, weights = gauss_between(low, high, _STRIPS)
+            result.append((layer.material, heights, self.width * weights))
+        return result
+
+    @property
+    def _edges(self) -> np.ndarray:
+        return np.concatenate([[0.0], np.cumsum([layer.thickness for layer in self.layers])]) - self.axis

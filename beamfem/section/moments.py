@@ -1,0 +1,95 @@
+"""Sections of one material, by their area moments."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.section.protocol import Inertia, Rigidity
+from beamfem.section.stiffness import StiffnessSection
+from beamfem.validation import positive
+
+_STRIPS = 8  # Gauss points over the height, for a body whose reference is curved
+
+
+@dataclass(frozen=True)
+class Section:
+    """Section by its area moments; without `fourth_moment` that of the rectangle of the same area and second moment.
+
+    area A [m^2], second_moment I [m^4], shear_factor k_s [-], fourth_moment I4 = integral of y^4 dA [m^6].
+    For a rectangle h = sqrt(12 I / A) and I4 = A h^4 / 80. Raises InputError.
+    """
+
+    area: float
+    second_moment: float
+    shear_factor: float = 5 / 6
+    fourth_moment: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("area", "second_moment", "shear_factor"):
+            positive(name, getattr(self, name))
+        if self.fourth_moment is None:
+            object.__setattr__(self, "fourth_moment", self.area * self.height**4 / 80.0)
+        positive("fourth_moment", self.fourth_moment)
+
+    @staticmethod
+    def from_stiffness(
+        axial: float, shear: float, bending: float, mass: float, rotary_inertia: float, coupling: float = 0.0
+    ) -> StiffnessSection:
+        """Return a section by its stiffness: E A [N], k_s G A [N], E I [N m^2], mass [kg/m], rotary inertia [kg m].
+
+        coupling [N m] of stretch with curvature, from a neutral axis off the beam's axis: N = E A eps + C kappa,
+        M = C eps + E I kappa. Needs no material. Raises InputError.
+        """
+        return StiffnessSection(axial, shear, bending, mass, rotary_inertia, coupling)
+
+    @property
+    def height(self) -> float:
+        """Height of the equivalent rectangle [m]."""
+        return float(np.sqrt(12.0 * self.second_moment / self.area))
+
+    @property
+    def width(self) -> float:
+        """Width of the equivalent rectangle [m]."""
+        return self.area / self.height
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper y of the equivalent rectangle [m]."""
+        return -0.5 * self.height, 0.5 * self.height
+
+    def rigidity(self, material: Material | None) -> Rigidity:
+        """Return E A, k_s G A and E I. Raises InputError without a material."""
+        own = required(material)
+        modulus = own.youngs_modulus
+        shear = self.shear_factor * own.shear_modulus * self.area
+        return Rigidity(modulus * self.area, shear, modulus * self.second_moment)
+
+    def inertia(self, material: Material | None) -> Inertia:
+        """Return density times area and second moment. Raises InputError without a material."""
+        density = required(material).density
+        return Inertia(density * self.area, 0.0, density * self.second_moment)
+
+    def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Return the material with A, 0, I, 0, I4. Raises InputError without a material."""
+        return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
+
+    def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
+        """Return the material with heights and weights over the equivalent rectangle."""
+        half = 0.5 * self.height
+        heights, weights = gauss_between(-half, half, _STRIPS)
+        return [(required(material), heights, self.width * weights)]
+
+
+def required(material: Material | None) -> Material:
+    """Return the material, or raise InputError where a section needs one and has none."""
+    if material is None:
+        raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
+    return material
+
+
+def gauss_between(low: float, high: float, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points (points,) between two heights and their weights."""
+    at, weights = np.polynomial.legendre.leggauss(points)
+    return 0.5 * (low + high) + 0.5 * (high - low) * at, 0.5 * (high - low) * weights

@@ -1,0 +1,69 @@
+"""A section that is given by its stiffness."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.section.protocol import Inertia, Rigidity
+from beamfem.validation import finite, positive
+
+
+@dataclass(frozen=True)
+class StiffnessSection:
+    """Section by its stiffness and mass; see `Section.from_stiffness`.
+
+    It is drawn as high as the rectangle of its E I and E A. Raises InputError.
+    """
+
+    axial: float
+    shear: float
+    bending: float
+    mass: float
+    rotary_inertia: float
+    coupling: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("axial", "shear", "bending", "mass", "rotary_inertia"):
+            positive(name, getattr(self, name))
+        coupling = finite("coupling", self.coupling)
+        if coupling**2 >= self.axial * self.bending:
+            raise InputError(
+                f"coupling ({coupling:g}) must be smaller than sqrt(axial * bending) = "
+                f"{np.sqrt(self.axial * self.bending):g}: the section would gain energy by deforming"
+            )
+
+    @property
+    def shear_factor(self) -> float:
+        """The shear stiffness is given as it is."""
+        return 1.0
+
+    @property
+    def height(self) -> float:
+        """Height of the equivalent rectangle [m], for pictures."""
+        return float(np.sqrt(12.0 * self.bending / self.axial))
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper y of the equivalent rectangle [m]."""
+        return -0.5 * self.height, 0.5 * self.height
+
+    def rigidity(self, material: Material | None) -> Rigidity:
+        """Return what was given."""
+        return Rigidity(self.axial, self.shear, self.bending, self.coupling)
+
+    def inertia(self, material: Material | None) -> Inertia:
+        """Return what was given."""
+        return Inertia(self.mass, 0.0, self.rotary_inertia)
+
+    def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Raise InputError: a stiffness tells nothing of the body."""
+        raise InputError(
+            "continuum forces integrate over a body, but a section from its stiffness has none: "
+            "use Structural or ElasticLine forces, or a Section with a material"
+        )
+
+    def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
+        """Raise InputError: a stiffness tells nothing of the body."""
+        return [(part, moments, moments) for part, moments in self.moments(material)]

@@ -19,8 +19,8 @@ class Element:
     """A field, the nodal coordinates that carry it and the elastic forces that resist it.
 
     integration: "full" integrates the energy of a straight element exactly, "reduced" takes as many Gauss points as
-    the order of the field, and 2 (for a stretch coordinate 3, but for shear 2) where the nodes have no shear. Raises InputError for a combination
-    that makes no sense.
+    the order of the field, and 2 where its nodes have no shear (3 for all but shear, with a stretch coordinate).
+    Raises InputError for a combination that makes no sense.
     """
 
     field: Field

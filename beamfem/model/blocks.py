@@ -17,7 +17,7 @@ _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kin
 def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
     """Return the block of all beams (number, mesh) that share an element."""
     field = element.field
-    xi, _ = element.quadrature()
+    xi = np.concatenate([rule[0] for rule in element.energy_rules()])
     width = max(mesh.carried.dof.shape[1] for _, mesh in meshes)
     start, stop = columns(field.vectors)
     first_kind = 0

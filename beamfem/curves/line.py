@@ -1,21 +1,11 @@
-"""Stress-free shapes of a beam axis."""
+"""A straight axis."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.validation import vector
-
-
-class Curve(Protocol):
-    """A planar curve by arc length."""
-
-    @property
-    def length(self) -> float: ...  # [m]
-    def position(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) [m]
-    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) unit vectors
 
 
 @dataclass(frozen=True)
@@ -34,6 +24,10 @@ class Line:
     @property
     def length(self) -> float:
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         share = np.asarray(arc_length)[:, None] / self.length

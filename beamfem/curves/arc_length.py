@@ -15,6 +15,8 @@ _NODES = _NODES + 0.5
 # kept, are then better by about 2^-32.
 _CHANGE = 4e-15
 _HALVINGS = 48
+# a curve shorter than this share of its coordinates is a point and round-off
+_POINT = 1e-13
 _NEWTON = 60
 # a speed below this share of the largest in its span counts as zero: the place of a minimum is known to 1e-8
 _ZERO = 1e-7
@@ -67,15 +69,15 @@ class ArcLength:
         return u
 
 
-def measure(speed: Speed, breaks: np.ndarray, where: Callable[[float], str]) -> ArcLength:
+def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
     """Return the arc length over spans between increasing breaks (m + 1,), inside of which the speed is smooth.
 
-    where: name of a parameter for messages. Raises InputError where the speed vanishes.
+    size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError where the speed vanishes.
     """
     low, high = breaks[:-1], breaks[1:]
     whole = _integral(speed, low, high)
     total = whole.sum()
-    if not total > 0.0:
+    if not total > _POINT * size:
         raise InputError("all points of the curve coincide: it has no length")
     starts, ends, lengths = [], [], []
     for _ in range(_HALVINGS):

@@ -100,7 +100,8 @@ class BSpline:
 
     @cached_property
     def _arc_length(self) -> ArcLength:
-        return measure(self._speed, self.breaks, "u = {:g}".format)
+        size = float(np.abs(np.array(self.control_points)).max())
+        return measure(self._speed, self.breaks, size, "u = {:g}".format)
 
     def _speed(self, u: np.ndarray) -> np.ndarray:
         rate = self.derivative(u)

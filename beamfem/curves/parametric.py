@@ -42,8 +42,8 @@ class Parametric:
         object.__setattr__(self, "end", finite("end", self.end))
         if self.start == self.end:
             raise InputError(f"a Parametric needs two different parameters, start and end are both {self.start}")
-        self._check_derivative()
         _ = self._arc_length  # refuses cusps
+        self._check_derivative()
 
     @property
     def length(self) -> float:
@@ -91,7 +91,9 @@ class Parametric:
 
     @cached_property
     def _arc_length(self) -> ArcLength:
-        return measure(self._speed, self._panels.ends, self._name)
+        ends = self._panels.ends
+        size = float(np.abs(self._panels(ends)[:, :2]).max())
+        return measure(self._speed, ends, size, self._name)
 
     def _speed(self, v: np.ndarray) -> np.ndarray:
         rate = self._rate(v)
@@ -106,8 +108,7 @@ class Parametric:
     def _check_derivative(self) -> None:
         ends = self._panels.ends
         before, after = self._rate(np.nextafter(ends[1:-1], 0.0)), self._rate(ends[1:-1])
-        moving = (np.hypot(*before.T) > 0.0) & (np.hypot(*after.T) > 0.0)
-        corner = ends[1:-1][moving][turned(unit(before[moving]), unit(after[moving]), _AGREES)]
+        corner = ends[1:-1][turned(unit(before), unit(after), _AGREES)]
         if len(corner):
             raise InputError(f"the function has a corner at {self._name(corner[0])}; join two Parametric by a Chain")
         if self.derivative is not None:

@@ -73,7 +73,7 @@ def _flat(vector: Any) -> tuple[float, float]:
 def _side(entity: Any) -> float:
     """Return 1 where the entity is drawn in world coordinates, -1 where it is mirrored: seen from below, x = -x."""
     axis = entity.dxf.extrusion.normalize()
-    if abs(abs(axis.z) - 1.0) > _FLAT**2 + 4 * np.finfo(float).eps:
+    if np.hypot(axis.x, axis.y) > _FLAT:
         raise InputError(f"it must lie in the plane z = 0, but its normal is ({axis.x:g}, {axis.y:g}, {axis.z:g})")
     return 1.0 if axis.z > 0 else -1.0
 
@@ -88,10 +88,16 @@ def _arc(entity: Any) -> Curve:
     start, turn = 0.0, 360.0
     if entity.dxftype() == "ARC":
         start = entity.dxf.start_angle
-        turn = (entity.dxf.end_angle - start) % 360.0 or 360.0
+        turn = _turn(start, entity.dxf.end_angle, 360.0)
     angles = np.radians([start, start + turn])
     begin, end = angles if side > 0 else np.pi - angles
     return Arc((side * x, y), entity.dxf.radius, begin, end)
+
+
+def _turn(start: float, end: float, full: float) -> float:
+    """Return the angle from start to end, counter-clockwise; a full turn where they are the same direction."""
+    turn = (end - start) % full
+    return full if turn < _FLAT * full else turn
 
 
 def _light_polyline(entity: Any) -> Curve:
@@ -105,6 +111,7 @@ def _polyline(entity: Any) -> Curve:
     if not (entity.is_2d_polyline or entity.is_3d_polyline):
         raise InputError(f"it is a {entity.get_mode()}, not a curve")
     side = _side(entity) if entity.is_2d_polyline else 1.0
+    _flat(entity.dxf.elevation)
     # the control frame of a smoothed polyline is kept among its vertices
     vertices = [vertex for vertex in entity.vertices if not vertex.is_spline_frame_vertex]
     table = [(*_flat(vertex.dxf.location), vertex.dxf.get("bulge", 0.0)) for vertex in vertices]
@@ -163,7 +170,7 @@ def _ellipse(entity: Any) -> Curve:
     x, y = _flat(entity.dxf.major_axis)
     start, end = entity.dxf.start_param, entity.dxf.end_param
     ratio = side * entity.dxf.ratio
-    turn = (end - start) % (2 * np.pi) or 2 * np.pi
+    turn = _turn(start, end, 2 * np.pi)
     return elliptic_arc(_flat(entity.dxf.center), (x, y), (-ratio * y, ratio * x), start, start + turn)
 
 

@@ -17,6 +17,8 @@ from beamfem.errors import BeamfemError, InputError
 _FLAT = 1e-9
 # below this bulge the center of an arc is so far away that a rational parabola is the more accurate circle
 _SMALL_BULGE = 1e-4
+# flag of a vertex (group code 70) that a smoothed polyline only remembers
+_FRAME = 16
 
 
 def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
@@ -113,7 +115,7 @@ def _polyline(entity: Any) -> Curve:
     side = _side(entity) if entity.is_2d_polyline else 1.0
     _flat(entity.dxf.elevation)
     # the control frame of a smoothed polyline is kept among its vertices
-    vertices = [vertex for vertex in entity.vertices if not vertex.is_spline_frame_vertex]
+    vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
     table = [(*_flat(vertex.dxf.location), vertex.dxf.get("bulge", 0.0)) for vertex in vertices]
     return _pieces(table, entity.is_closed, side)
 

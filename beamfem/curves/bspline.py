@@ -67,7 +67,7 @@ class BSpline:
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:
         """Return r at parameters (n,), from knots[degree] to knots[n] (n, 2) [m]."""
-        return self._homogeneous(u)[0]
+        return np.array(self.control_points[0]) + self._homogeneous(u)[0]
 
     def derivative(self, u: np.ndarray) -> np.ndarray:
         """Return dr/du at parameters (n,); where it jumps, the one after (n, 2) [m]."""
@@ -96,7 +96,7 @@ class BSpline:
                     f"the derivative may jump at knot {knot:g}, which appears {self.multiplicity(knot)} times; a cubic "
                     f"through values and derivatives needs it at most twice: split the spline there"
                 )
-        return self.breaks, self.evaluate(self.breaks), self.derivative(self.breaks)
+        return self.breaks.copy(), self.evaluate(self.breaks), self.derivative(self.breaks)
 
     @cached_property
     def _arc_length(self) -> ArcLength:
@@ -109,15 +109,16 @@ class BSpline:
 
     @cached_property
     def _spline(self) -> Any:
-        """Spline of (w x, w y, w)."""
+        """Spline of (w x, w y, w), x and y from the first control point: drawings lie far from their origin."""
         from scipy.interpolate import BSpline as Spline  # slow to import, and most models are straight
 
         weights = np.ones(len(self.control_points)) if self.weights is None else np.array(self.weights)
-        table = np.column_stack([weights[:, None] * np.array(self.control_points), weights])
+        control = np.array(self.control_points) - self.control_points[0]
+        table = np.column_stack([weights[:, None] * control, weights])
         return Spline(np.array(self.knots), table, self.degree)
 
     def _homogeneous(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return r, the derivatives of (w x, w y, w), and w at parameters (n,)."""
+        """Return r from the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
         start, end = self.breaks[0], self.breaks[-1]
         if self.multiplicity(end) > 1 and self.knots[len(self.control_points) - 1] == end:
             end = np.nextafter(end, start)  # the span that would be evaluated at the end is empty

@@ -1,24 +1,11 @@
-"""Stress-free shapes of a beam axis."""
+"""A straight axis."""
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.validation import vector
-
-
-@runtime_checkable
-class Curve(Protocol):
-    """A planar curve by arc length."""
-
-    @property
-    def length(self) -> float: ...  # [m]
-    @property
-    def corners(self) -> tuple[float, ...]: ...  # arc lengths where the tangent jumps [m]
-    def position(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) [m]
-    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...  # (n, 2) unit vectors
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,54 @@
+"""A circular axis."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.validation import finite, positive, vector
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Circular axis about a center (x, y) [m] of a radius [m], from start_angle to end_angle [rad] against the x-axis.
+
+    Clockwise where end_angle < start_angle; more than a full turn is allowed.
+    Raises InputError where the radius is not positive or the angles are equal.
+    """
+
+    center: tuple[float, float]
+    radius: float
+    start_angle: float
+    end_angle: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center", vector("center", self.center))
+        object.__setattr__(self, "radius", positive("radius", self.radius))
+        object.__setattr__(self, "start_angle", finite("start_angle", self.start_angle))
+        object.__setattr__(self, "end_angle", finite("end_angle", self.end_angle))
+        if self.start_angle == self.end_angle:
+            raise InputError(f"an Arc needs two different angles, start_angle and end_angle are both {self.end_angle}")
+
+    @property
+    def length(self) -> float:
+        return self.radius * abs(self.end_angle - self.start_angle)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        return ()
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        angle = self._angle(arc_length)
+        return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        angle = self._angle(arc_length)
+        return self._sense * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+
+    @property
+    def _sense(self) -> float:
+        """1 where it runs counter-clockwise, -1 clockwise."""
+        return float(np.sign(self.end_angle - self.start_angle))
+
+    def _angle(self, arc_length: np.ndarray) -> np.ndarray:
+        return self.start_angle + self._sense * np.asarray(arc_length, dtype=float) / self.radius

@@ -1,0 +1,140 @@
+"""Arc length of a curve given by a parameter, and the parameter at an arc length."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+
+Speed = Callable[[np.ndarray], np.ndarray]
+
+_NODES, _WEIGHTS = (values / 2 for values in np.polynomial.legendre.leggauss(16))
+_NODES = _NODES + 0.5
+# A panel is fine enough where halving it changes its length by less than this share of the whole: its halves, which are
+# kept, are then better by about 2^-32.
+_CHANGE = 4e-15
+_HALVINGS = 48
+# a curve shorter than this share of its coordinates is a point and round-off
+_POINT = 1e-13
+_NEWTON = 60
+# a speed below this share of the largest in its span counts as zero: the place of a minimum is known to 1e-8
+_ZERO = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class ArcLength:
+    """Arc length s(u) = integral of speed(u) du, panel by panel.
+
+    speed: |dr/du| at u (n,), to the right of a break where it jumps; ends: parameters of the panels' ends (m + 1,);
+    sums: arc lengths there (m + 1,) [m].
+    """
+
+    speed: Speed
+    ends: np.ndarray
+    sums: np.ndarray
+
+    @property
+    def length(self) -> float:
+        return float(self.sums[-1])
+
+    def at(self, u: np.ndarray) -> np.ndarray:
+        """Return the arc lengths at parameters (n,) [m]."""
+        panel = _panel(self.ends, u)
+        return self.sums[panel] + _integral(self.speed, self.ends[panel], u)
+
+    def parameter(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the parameters at arc lengths (n,) [m] to round-off; outside of the curve those of its ends.
+
+        Newton from a linear guess, bisection where it would leave the panel.
+        """
+        s = np.clip(np.asarray(arc_length, dtype=float), 0.0, self.length)
+        panel = _panel(self.sums, s)
+        low, high = self.ends[panel], self.ends[panel + 1]
+        u = low + (high - low) * (s - self.sums[panel]) / (self.sums[panel + 1] - self.sums[panel])
+        # what is short of a break must be evaluated before it, whatever the round-off
+        last = np.where(panel == len(self.sums) - 2, high, np.nextafter(high, low))
+        u = np.minimum(u, last)
+        left, right = low, last
+        for _ in range(_NEWTON):
+            miss = self.sums[panel] + _integral(self.speed, low, u) - s
+            left, right = np.where(miss < 0.0, u, left), np.where(miss > 0.0, u, right)
+            new = u - miss / self.speed(u)
+            new = np.where((left <= new) & (new <= right), new, (left + right) / 2)
+            eps = np.finfo(float).eps
+            done = (np.abs(miss) <= 2 * eps * self.length) | (np.abs(new - u) <= eps * np.abs(u))
+            u = np.where(done, u, new)
+            if done.all():
+                break
+        return u
+
+
+def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
+    """Return the arc length over spans between increasing breaks (m + 1,), inside of which the speed is smooth.
+
+    size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError where the speed vanishes.
+    """
+    low, high = breaks[:-1], breaks[1:]
+    whole = _integral(speed, low, high)
+    total = whole.sum()
+    if not total > _POINT * size:
+        raise InputError("all points of the curve coincide: it has no length")
+    starts, ends, lengths = [], [], []
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        first, second = _integral(speed, low, middle), _integral(speed, middle, high)
+        fine = np.abs(first + second - whole) <= _CHANGE * total
+        for a, b, length in ((low, middle, first), (middle, high, second)):
+            starts.append(a[fine])
+            ends.append(b[fine])
+            lengths.append(length[fine])
+        low, high = np.concatenate([low[~fine], middle[~fine]]), np.concatenate([middle[~fine], high[~fine]])
+        whole = np.concatenate([first[~fine], second[~fine]])
+        if fine.all():
+            break
+    else:
+        raise InputError(f"the curve is not smooth near {where(float(low[0]))}: its arc length cannot be found there")
+    order = np.argsort(np.concatenate(starts))
+    panels = np.append(np.concatenate(starts)[order], breaks[-1])
+    _refuse_standstill(speed, breaks, panels, where)
+    return ArcLength(speed, panels, np.append(0.0, np.cumsum(np.concatenate(lengths)[order])))
+
+
+def _panel(ends: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return np.clip(np.searchsorted(ends, values, side="right") - 1, 0, len(ends) - 2)
+
+
+def _integral(speed: Speed, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    u = low[:, None] + (high - low)[:, None] * _NODES
+    return (high - low) * (speed(u.ravel()).reshape(u.shape) @ _WEIGHTS)
+
+
+def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, where: Callable[[float], str]) -> None:
+    """Raise InputError where the speed vanishes: there a curve may turn back, and its tangent is undefined."""
+    from scipy.optimize import minimize_scalar  # slow to import, and seldom needed
+
+    low, high = panels[:-1, None], panels[1:, None]
+    u = np.hstack([low, low + (high - low) * _NODES, np.nextafter(high, low)]).ravel()
+    values = speed(u)
+    span = _panel(breaks, u)
+    largest = np.zeros(len(breaks) - 1)
+    np.maximum.at(largest, span, values)
+    around = np.concatenate([[np.inf], values, [np.inf]])
+    low_points = (values <= around[:-2]) & (values <= around[2:]) & (values < 0.2 * largest[span])
+    for i in np.flatnonzero(low_points).tolist():
+        begin, end = u[max(i - 1, 0)], u[min(i + 1, len(u) - 1)]
+        least, at = values[i], u[i]
+        if least > _ZERO * largest[span[i]]:
+            # from `begin`, so that the place is found to a share of the bracket
+            found = minimize_scalar(
+                lambda step, begin=begin: float(speed(np.array([begin + step]))[0]) ** 2,
+                bounds=(0.0, end - begin),
+                method="bounded",
+                options={"xatol": 1e-12 * (end - begin)},
+            )
+            least, at = np.sqrt(found.fun), begin + found.x
+        if least <= _ZERO * largest[span[i]]:
+            raise InputError(
+                f"the curve stands still at {where(float(at))} (a cusp, or points that coincide): it has no tangent "
+                f"there; move or remove a point, or give the parts before and after as curves of a Chain"
+            )

@@ -1,0 +1,157 @@
+"""An axis along a B-spline, rational (NURBS) or not."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beamfem.curves.arc_length import ArcLength, measure
+from beamfem.curves.curve import numbers, points, turned, unit
+from beamfem.errors import InputError
+from beamfem.validation import count
+
+
+@dataclass(frozen=True)
+class BSpline:
+    """Axis along the spline r(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i, by arc length.
+
+    degree: of the pieces; knots (n + degree + 1,): not decreasing, clamped or not, u runs from knots[degree] to
+    knots[n]; control_points P (n, 2) [m]; weights w (n,) > 0, None for ones. An interior knot as often as the degree at
+    which the tangent jumps is a corner.
+    Raises InputError for data that is no connected spline, and where dr/du vanishes (a cusp).
+    Source: L. Piegl, W. Tiller, The NURBS Book, 2nd ed., Springer 1997, chapters 2 to 4.
+    """
+
+    degree: int
+    knots: tuple[float, ...]
+    control_points: tuple[tuple[float, float], ...]
+    weights: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "degree", count("degree", self.degree))
+        object.__setattr__(self, "knots", numbers("knots", self.knots))
+        object.__setattr__(self, "control_points", points("control_points", self.control_points))
+        if self.weights is not None:
+            object.__setattr__(self, "weights", numbers("weights", self.weights))
+        self._check_counts()
+        self._check_knots()
+        _ = self._arc_length  # refuses cusps
+
+    @property
+    def length(self) -> float:
+        return self._arc_length.length
+
+    @cached_property
+    def corners(self) -> tuple[float, ...]:
+        inner = self.breaks[1:-1]
+        ends = inner[[self.multiplicity(u) == self.degree for u in inner]] if len(inner) else inner
+        jumps = turned(unit(self.derivative(np.nextafter(ends, -np.inf))), unit(self.derivative(ends)))
+        return tuple(self._arc_length.at(ends[jumps]).tolist())
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        return self.evaluate(self._arc_length.parameter(arc_length))
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        return unit(self.derivative(self._arc_length.parameter(arc_length)))
+
+    @cached_property
+    def breaks(self) -> np.ndarray:
+        """Different knots from start to end (m + 1,)."""
+        inside = np.array(self.knots[self.degree : len(self.control_points) + 1])
+        return np.unique(inside)
+
+    def multiplicity(self, knot: float) -> int:
+        """Return how often a number is among the knots."""
+        return self.knots.count(float(knot))
+
+    def evaluate(self, u: np.ndarray) -> np.ndarray:
+        """Return r at parameters (n,), from knots[degree] to knots[n] (n, 2) [m]."""
+        return np.array(self.control_points[0]) + self._homogeneous(u)[0]
+
+    def derivative(self, u: np.ndarray) -> np.ndarray:
+        """Return dr/du at parameters (n,); where it jumps, the one after (n, 2) [m]."""
+        position, rate, weight = self._homogeneous(u)
+        return (rate[:, :2] - rate[:, 2:] * position) / weight
+
+    def hermite(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the ends u (m + 1,) of the knot spans, r (m + 1, 2) [m] and dr/du (m + 1, 2) [m] there.
+
+        Between two ends the spline is the cubic with these values. Raises InputError unless it is a cubic without
+        weights whose interior knots appear at most twice.
+        """
+        advice = (
+            "; a cubic close to it goes through positions and tangents at arc lengths s: "
+            "spline_through_hermite(s, curve.position(s), curve.tangent(s))"
+        )
+        if self.degree != 3:
+            raise InputError(
+                f"only a spline of degree 3 is one cubic a span, this one has degree {self.degree}{advice}"
+            )
+        if self.weights is not None and len(set(self.weights)) > 1:
+            raise InputError(f"a spline with different weights is a quotient of cubics, not a cubic{advice}")
+        for knot in self.breaks[1:-1]:
+            if self.multiplicity(knot) > 2:
+                raise InputError(
+                    f"the derivative may jump at knot {knot:g}, which appears {self.multiplicity(knot)} times; a cubic "
+                    f"through values and derivatives needs it at most twice: split the spline there"
+                )
+        return self.breaks.copy(), self.evaluate(self.breaks), self.derivative(self.breaks)
+
+    @cached_property
+    def _arc_length(self) -> ArcLength:
+        size = float(np.abs(np.array(self.control_points)).max())
+        return measure(self._speed, self.breaks, size, "u = {:g}".format)
+
+    def _speed(self, u: np.ndarray) -> np.ndarray:
+        rate = self.derivative(u)
+        return np.hypot(rate[:, 0], rate[:, 1])
+
+    @cached_property
+    def _spline(self) -> Any:
+        """Spline of (w x, w y, w), x and y from the first control point: drawings lie far from their origin."""
+        from scipy.interpolate import BSpline as Spline  # slow to import, and most models are straight
+
+        weights = np.ones(len(self.control_points)) if self.weights is None else np.array(self.weights)
+        control = np.array(self.control_points) - self.control_points[0]
+        table = np.column_stack([weights[:, None] * control, weights])
+        return Spline(np.array(self.knots), table, self.degree)
+
+    def _homogeneous(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return r from the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
+        start, end = self.breaks[0], self.breaks[-1]
+        if self.multiplicity(end) > 1 and self.knots[len(self.control_points) - 1] == end:
+            end = np.nextafter(end, start)  # the span that would be evaluated at the end is empty
+        u = np.clip(u, start, end)
+        value = self._spline(u)
+        return value[:, :2] / value[:, 2:], self._spline(u, nu=1), value[:, 2:]
+
+    def _check_counts(self) -> None:
+        size, knots = len(self.control_points), len(self.knots)
+        if size < self.degree + 1:
+            raise InputError(f"control_points: degree {self.degree} needs at least {self.degree + 1}, got {size}")
+        if knots != size + self.degree + 1:
+            raise InputError(
+                f"knots: {size} control points of degree {self.degree} need {size + self.degree + 1}, got {knots}"
+            )
+        if self.weights is not None:
+            if len(self.weights) != size:
+                raise InputError(f"weights: {size} control points need {size}, got {len(self.weights)}")
+            for i, weight in enumerate(self.weights):
+                if weight <= 0.0:
+                    raise InputError(f"weights[{i}] must be greater than zero, got {weight}")
+
+    def _check_knots(self) -> None:
+        for i, (one, other) in enumerate(zip(self.knots, self.knots[1:], strict=False)):
+            if other < one:
+                raise InputError(f"knots must not decrease: knots[{i + 1}] is {other}, knots[{i}] is {one}")
+        if len(self.breaks) < 2:
+            raise InputError(f"knots[{self.degree}] to knots[{len(self.control_points)}], where u runs, are all equal")
+        for knot in set(self.knots):
+            inside = self.breaks[0] < knot < self.breaks[-1]
+            allowed = self.degree if inside else self.degree + 1
+            if self.multiplicity(knot) > allowed:
+                raise InputError(
+                    f"knot {knot:g} appears {self.multiplicity(knot)} times; a spline of degree {self.degree} "
+                    f"{'falls apart' if inside else 'has points without use'} beyond {allowed}"
+                )

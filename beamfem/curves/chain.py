@@ -1,0 +1,71 @@
+"""An axis of several curves, each beginning where the one before ends."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.curves.curve import Curve, turned
+from beamfem.errors import InputError
+
+# largest gap between two curves, as a share of the length of the whole
+_GAP = 1e-9
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Axis that runs through curves one after the other; a corner wherever the tangent jumps between two.
+
+    Raises InputError where a curve begins further than 1e-9 of the whole length from the end of the one before.
+    """
+
+    curves: tuple[Curve, ...]
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.curves, tuple | list) or not self.curves:
+            raise InputError(f"a Chain needs a list of at least one curve, got {self.curves!r}")
+        for i, curve in enumerate(self.curves):
+            if not all(hasattr(curve, name) for name in ("length", "corners", "position", "tangent")):
+                raise InputError(f"curves[{i}] of a Chain must be a curve such as Line, got {curve!r}")
+        object.__setattr__(self, "curves", tuple(self.curves))
+        for i, (one, other) in enumerate(zip(self.curves, self.curves[1:], strict=False)):
+            end, start = one.position(np.array([one.length]))[0], other.position(np.array([0.0]))[0]
+            if np.hypot(*(start - end)) > _GAP * self.length:
+                raise InputError(
+                    f"curves[{i + 1}] of a Chain must start where curves[{i}] ends, at ({end[0]:.12g}, {end[1]:.12g}); "
+                    f"it starts at ({start[0]:.12g}, {start[1]:.12g})"
+                )
+
+    @property
+    def length(self) -> float:
+        return float(self._ends[-1])
+
+    @cached_property
+    def corners(self) -> tuple[float, ...]:
+        found = [self._ends[i] + corner for i, curve in enumerate(self.curves) for corner in curve.corners]
+        for one, other, joint in zip(self.curves, self.curves[1:], self._ends[1:-1], strict=False):
+            if turned(one.tangent(np.array([one.length])), other.tangent(np.array([0.0])))[0]:
+                found.append(joint)
+        return tuple(sorted(float(corner) for corner in found))
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        return self._each(arc_length, lambda curve, arc: curve.position(arc))
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        return self._each(arc_length, lambda curve, arc: curve.tangent(arc))
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        """Arc lengths at which the curves begin, and the whole length (n + 1,)."""
+        return np.append(0.0, np.cumsum([curve.length for curve in self.curves]))
+
+    def _each(self, arc_length: np.ndarray, ask: Callable[[Curve, np.ndarray], np.ndarray]) -> np.ndarray:
+        arc_length = np.asarray(arc_length, dtype=float)
+        piece = np.clip(np.searchsorted(self._ends, arc_length, side="right") - 1, 0, len(self.curves) - 1)
+        values = np.empty((len(arc_length), 2))
+        for i in np.unique(piece):
+            here = piece == i
+            curve = self.curves[i]
+            values[here] = ask(curve, np.clip(arc_length[here] - self._ends[i], 0.0, curve.length))
+        return values

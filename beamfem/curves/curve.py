@@ -1,0 +1,58 @@
+"""What every curve can be asked, and what the kinds of curve share."""
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.validation import finite, vector
+
+# A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
+CORNER = 1e-8
+
+
+class Curve(Protocol):
+    """A planar curve by arc length s in [0, length] [m].
+
+    length [m]; position(s (n,)) (n, 2) [m]; tangent(s (n,)) (n, 2) unit vectors; corners: arc lengths strictly inside
+    at which the tangent jumps [m]. At a corner the tangent is the one after it; just before a corner, the one before.
+    """
+
+    @property
+    def length(self) -> float: ...
+
+    @property
+    def corners(self) -> tuple[float, ...]: ...
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray: ...
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 2) at length one."""
+    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+
+
+def turned(before: np.ndarray, after: np.ndarray, limit: float = CORNER) -> np.ndarray:
+    """Return where unit tangents before and after a point (n, 2) differ by more than `limit` [rad] (n,)."""
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.abs(np.arctan2(cross, np.sum(before * after, axis=1))) > limit
+
+
+def points(name: str, values: Sequence[Any] | np.ndarray) -> tuple[tuple[float, float], ...]:
+    """Return `values` as a tuple of finite points, or raise InputError naming the one that is none."""
+    return tuple(vector(f"{name}[{i}]", value) for i, value in enumerate(_sequence(name, values)))
+
+
+def numbers(name: str, values: Sequence[Any] | np.ndarray) -> tuple[float, ...]:
+    """Return `values` as a tuple of finite floats, or raise InputError naming the one that is none."""
+    return tuple(finite(f"{name}[{i}]", value) for i, value in enumerate(_sequence(name, values)))
+
+
+def _sequence(name: str, values: Any) -> list[Any]:
+    try:
+        return list(values)
+    except TypeError:
+        raise InputError(f"{name} must be a list, got {values!r}") from None

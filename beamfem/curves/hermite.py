@@ -1,0 +1,79 @@
+"""Cubics through values and derivatives as splines: the shape of a beam of cubic elements for a CAD program."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from beamfem.curves.bspline import BSpline
+from beamfem.curves.curve import points
+from beamfem.errors import InputError
+
+# Largest distance between two splines, as a share of their largest coordinate (times the ratio of neighbouring spans),
+# up to which they are the same: about a hundred times the round-off that was measured.
+_SAME = 1e-13
+
+
+def spline_through_hermite(
+    u: Sequence[float] | np.ndarray,
+    r: Sequence[Sequence[float]] | np.ndarray,
+    r_u: Sequence[Sequence[float]] | np.ndarray,
+) -> BSpline:
+    """Return the cubic spline with positions r (m + 1, 2) [m] and derivatives r_u = dr/du (m + 1, 2) at u (m + 1,).
+
+    Exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
+    Raises InputError where u does not increase or the numbers do not match.
+    """
+    knots, position, rate = (np.asarray(values, dtype=float) for values in (u, r, r_u))
+    if knots.ndim != 1 or len(knots) < 2 or not np.all(np.diff(knots) > 0.0):
+        raise InputError(f"u must be at least two increasing numbers, got {u!r}")
+    for name, values in (("r", position), ("r_u", rate)):
+        if values.shape != (len(knots), 2) or not np.isfinite(values).all():
+            raise InputError(f"{name} must be {len(knots)} finite points (x, y), one for each u, got {values!r}")
+    return _spline(knots, _bezier(knots, position, rate), np.full(len(knots) - 2, 2))
+
+
+def without_removable_knots(spline: BSpline) -> BSpline:
+    """Return the same cubic with one knot in place of two wherever its second derivative does not jump.
+
+    A knot goes where that moves no control point by more than 1e-13 of the largest coordinate, times the ratio of the
+    spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends come back clamped.
+    Raises InputError unless `spline.hermite()` exists.
+    """
+    u, r, r_u = spline.hermite()
+    bezier = _bezier(u, r, r_u)
+    h = np.diff(u)[:, None]
+    second_left = 6.0 * (bezier[:-1, 1] - 2.0 * bezier[:-1, 2] + bezier[:-1, 3]) / h[:-1] ** 2
+    second_right = 6.0 * (bezier[1:, 0] - 2.0 * bezier[1:, 1] + bezier[1:, 2]) / h[1:] ** 2
+    distance = np.linalg.norm(second_right - second_left, axis=1) * (h[:-1] * h[1:])[:, 0] / 6.0
+    ratio = np.maximum(h[:-1] / h[1:], h[1:] / h[:-1])[:, 0]
+    return _spline(u, bezier, np.where(distance <= _SAME * ratio * np.abs(bezier).max(), 1, 2))
+
+
+def _bezier(u: np.ndarray, r: np.ndarray, r_u: np.ndarray) -> np.ndarray:
+    """Bezier points of each span (m, 4, 2)."""
+    third = np.diff(u)[:, None] / 3.0
+    return np.stack([r[:-1], r[:-1] + third * r_u[:-1], r[1:] - third * r_u[1:], r[1:]], axis=1)
+
+
+def _spline(u: np.ndarray, bezier: np.ndarray, multiplicities: np.ndarray) -> BSpline:
+    """Return the cubic spline over spans with Bezier points, with interior knots as often as said.
+
+    A control point is the polar form of a span's cubic at three knots in a row. Every span between these has the same;
+    the longest needs the least extrapolation.
+    """
+    times = np.concatenate([[4], multiplicities, [4]])
+    place = np.repeat(np.arange(len(u)), times)
+    control = []
+    for triple in zip(place[1:-3], place[2:-2], place[3:-1], strict=True):
+        spans = np.arange(triple[0], triple[2]) if triple[2] > triple[0] else np.array([min(triple[0], len(u) - 2)])
+        span = int(spans[np.argmax(np.diff(u)[spans])])
+        control.append(_polar(bezier[span], (u[list(triple)] - u[span]) / (u[span + 1] - u[span])))
+    return BSpline(3, tuple(u[place]), points("control_points", control))
+
+
+def _polar(bezier: np.ndarray, arguments: np.ndarray) -> np.ndarray:
+    """Polar form of a cubic with Bezier points (4, 2) at three arguments in units of the span (2,)."""
+    table = bezier
+    for t in arguments:
+        table = (1.0 - t) * table[:-1] + t * table[1:]
+    return table[0]

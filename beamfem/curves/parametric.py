@@ -1,0 +1,163 @@
+"""An axis along a function of the user's."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beamfem.curves.arc_length import ArcLength, measure
+from beamfem.curves.bspline import BSpline
+from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
+from beamfem.curves.curve import points, turned, unit
+from beamfem.errors import InputError
+from beamfem.validation import finite
+
+PlaneFunction = Callable[[Any], Any]
+
+# the derivative of the panels is this good at the least, in units of the largest speed and as an angle
+_AGREES = 1e-6
+
+
+@dataclass(frozen=True)
+class Parametric:
+    """Smooth axis r(u) = function(u) = (x, y) [m] from u = start to u = end, by arc length.
+
+    function: of a number or of numbers (n,); derivative: dr/du in the same form, None to take it from polynomials of
+    degree 12 that follow the function to round-off. Backwards where end < start. For a file, take `spline()`.
+    Raises InputError for values that are not finite, a corner or kink (make a Chain), and where dr/du vanishes.
+    """
+
+    function: PlaneFunction
+    start: float
+    end: float
+    derivative: PlaneFunction | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in (("function", self.function), ("derivative", self.derivative)):
+            if not callable(value) and not (name == "derivative" and value is None):
+                raise InputError(f"{name} of a Parametric must be a function of u, got {value!r}")
+        object.__setattr__(self, "start", finite("start", self.start))
+        object.__setattr__(self, "end", finite("end", self.end))
+        if self.start == self.end:
+            raise InputError(f"a Parametric needs two different parameters, start and end are both {self.start}")
+        _ = self._arc_length  # refuses cusps
+        self._check_derivative()
+
+    @property
+    def length(self) -> float:
+        return self._arc_length.length
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        return ()
+
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        return self._panels.columns(slice(0, 2))(self._arc_length.parameter(arc_length))
+
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        return unit(self._rate(self._arc_length.parameter(arc_length)))
+
+    def spline(self) -> BSpline:
+        """Return the spline of degree 12 that is the same curve to round-off; it can be saved."""
+        bezier = bernstein(self._panels.coefficients[:, :, :2])
+        control = np.concatenate([bezier[:-1].transpose(1, 0, 2).reshape(-1, 2), bezier[-1:, -1]])
+        ends = self._panels.ends
+        inner = np.repeat(ends[1:-1], DEGREE)
+        return BSpline(
+            DEGREE, (*[0.0] * (DEGREE + 1), *inner, *[1.0] * (DEGREE + 1)), points("control_points", control)
+        )
+
+    @cached_property
+    def _panels(self) -> Panels:
+        """Position and, where it is given, derivative over v = (u - start) / (end - start)."""
+        functions = [_plane("function", self.function, self._parameter)]
+        if self.derivative is not None:
+            functions.append(_plane("derivative", self.derivative, self._parameter))
+        scales = (1.0, self.end - self.start)
+
+        def values(v: np.ndarray) -> np.ndarray:
+            return np.hstack([scale * part(v) for scale, part in zip(scales, functions, strict=False)])
+
+        return approximate(values, self._name)
+
+    @cached_property
+    def _rate(self) -> Panels:
+        """Derivative dr/dv."""
+        if self.derivative is None:
+            return self._panels.derivative()
+        return self._panels.columns(slice(2, 4))
+
+    @cached_property
+    def _arc_length(self) -> ArcLength:
+        ends = self._panels.ends
+        size = float(np.abs(self._panels(ends)[:, :2]).max())
+        return measure(self._speed, ends, size, self._name)
+
+    def _speed(self, v: np.ndarray) -> np.ndarray:
+        rate = self._rate(v)
+        return np.hypot(rate[:, 0], rate[:, 1])
+
+    def _parameter(self, v: np.ndarray) -> np.ndarray:
+        return (1.0 - v) * self.start + v * self.end
+
+    def _name(self, v: float) -> str:
+        return f"u = {(1.0 - v) * self.start + v * self.end:g}"
+
+    def _check_derivative(self) -> None:
+        ends = self._panels.ends
+        before, after = self._rate(np.nextafter(ends[1:-1], 0.0)), self._rate(ends[1:-1])
+        corner = ends[1:-1][turned(unit(before), unit(after), _AGREES)]
+        if len(corner):
+            raise InputError(f"the function has a corner at {self._name(corner[0])}; join two Parametric by a Chain")
+        if self.derivative is not None:
+            v = (ends[:-1] + ends[1:]) / 2
+            expected = self._panels.columns(slice(0, 2)).derivative()(v)
+            wrong = np.abs(self._rate(v) - expected).max(axis=1) > _AGREES * np.abs(expected).max()
+            if wrong.any():
+                at = int(np.argmax(wrong))
+                given, due = (part[at] / (self.end - self.start) for part in (self._rate(v), expected))
+                raise InputError(
+                    f"derivative is not that of function at {self._name(v[at])}: it gives "
+                    f"({given[0]:g}, {given[1]:g}), the function changes by ({due[0]:g}, {due[1]:g})"
+                )
+
+
+def _plane(
+    name: str, function: PlaneFunction, parameter: Callable[[np.ndarray], np.ndarray]
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the user's function as one of v (n,) with finite values (n, 2)."""
+    at_once = _takes_arrays(function, parameter(np.array([0.1, 0.5, 0.8])))
+
+    def values(v: np.ndarray) -> np.ndarray:
+        u = parameter(v)
+        table = _table(function, u) if at_once else np.array([_point(name, function, float(each)) for each in u])
+        bad = ~np.isfinite(table).all(axis=1)
+        if bad.any():
+            at = int(np.argmax(bad))
+            raise InputError(f"{name}({u[at]:g}) must be two finite numbers (x, y), got {tuple(table[at].tolist())}")
+        return table
+
+    return values
+
+
+def _takes_arrays(function: PlaneFunction, u: np.ndarray) -> bool:
+    """Return whether a function gives for three numbers at once what it gives for each."""
+    try:
+        return np.allclose(_table(function, u), [function(float(each)) for each in u], rtol=1e-12, atol=0.0)
+    except (TypeError, ValueError):  # what functions of one number raise for an array
+        return False
+
+
+def _table(function: PlaneFunction, u: np.ndarray) -> np.ndarray:
+    x, y = function(u)
+    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), u.shape) for part in (x, y)], axis=1)
+
+
+def _point(name: str, function: PlaneFunction, u: float) -> tuple[float, float]:
+    try:
+        x, y = (float(part) for part in function(u))
+    except (TypeError, ValueError):
+        raise InputError(f"{name}({u:g}) must be two numbers (x, y), got {function(u)!r}") from None
+    return x, y

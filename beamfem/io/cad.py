@@ -1,0 +1,187 @@
+"""Beam axes from drawings: the curves of a DXF file.
+
+Source: Autodesk, DXF Reference (entities, object coordinate systems, bulges), read through ezdxf.
+"""
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc
+from beamfem.errors import BeamfemError, InputError
+
+# distance from the plane z = 0, tilt against it and length of a piece that count as none, as a share of the coordinates
+_FLAT = 1e-9
+# below this bulge the center of an arc is so far away that a rational parabola is the more accurate circle
+_SMALL_BULGE = 1e-4
+# flag of a vertex (group code 70) that a smoothed polyline only remembers
+_FRAME = 16
+
+
+def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
+    """Return the curves in the modelspace of a DXF file, of one layer or of all, in the units and order of the drawing.
+
+    LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines), all
+    exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does.
+    Raises FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the plane z = 0,
+    and where there is no curve; BeamfemError without ezdxf.
+    """
+    ezdxf = _ezdxf()
+    source = Path(path)
+    if not source.is_file():
+        raise FileNotFoundError(f"there is no file {source}")
+    try:
+        entities = list(ezdxf.readfile(source).modelspace())
+    except (OSError, UnicodeDecodeError, ezdxf.DXFError) as error:
+        raise InputError(f"{source} is not a DXF file that can be read: {error}") from error
+    chosen = [entity for entity in entities if layer is None or entity.dxf.layer.lower() == layer.lower()]
+    if not chosen:
+        layers = ", ".join(sorted({entity.dxf.layer for entity in entities})) or "none"
+        wanted = "modelspace" if layer is None else f"layer {layer!r}"
+        raise InputError(f"{source}: nothing is drawn in {wanted}; layers with entities: {layers}")
+    return tuple(_curve(entity) for entity in chosen)
+
+
+def _ezdxf() -> Any:
+    try:
+        import ezdxf
+    except ImportError:
+        raise BeamfemError("reading drawings needs ezdxf: pip install beamfem[cad]") from None
+    return ezdxf
+
+
+def _curve(entity: Any) -> Curve:
+    kind = entity.dxftype()
+    name = f"{kind} on layer {entity.dxf.layer!r}, handle {entity.dxf.handle}"
+    if kind not in _READERS:
+        advice = "; explode it in the drawing program" if kind == "INSERT" else ""
+        raise InputError(f"{name}, is no curve that can be read{advice}; those that can are {', '.join(_READERS)}")
+    try:
+        return _READERS[kind](entity)
+    except (InputError, ValueError) as error:
+        raise InputError(f"{name}: {error}") from error
+
+
+def _flat(vector: Any) -> tuple[float, float]:
+    """Return x and y of a point or direction in world coordinates."""
+    if abs(vector.z) > _FLAT * max(abs(vector.x), abs(vector.y), 1.0):
+        raise InputError(f"it must lie in the plane z = 0, but it reaches z = {vector.z:g}")
+    return vector.x, vector.y
+
+
+def _side(entity: Any) -> float:
+    """Return 1 where the entity is drawn in world coordinates, -1 where it is mirrored: seen from below, x = -x."""
+    axis = entity.dxf.extrusion.normalize()
+    if np.hypot(axis.x, axis.y) > _FLAT:
+        raise InputError(f"it must lie in the plane z = 0, but its normal is ({axis.x:g}, {axis.y:g}, {axis.z:g})")
+    return 1.0 if axis.z > 0 else -1.0
+
+
+def _line(entity: Any) -> Curve:
+    return Line(_flat(entity.dxf.start), _flat(entity.dxf.end))
+
+
+def _arc(entity: Any) -> Curve:
+    side = _side(entity)
+    x, y = _flat(entity.dxf.center)
+    start, turn = 0.0, 360.0
+    if entity.dxftype() == "ARC":
+        start = entity.dxf.start_angle
+        turn = _turn(start, entity.dxf.end_angle, 360.0)
+    angles = np.radians([start, start + turn])
+    begin, end = angles if side > 0 else np.pi - angles
+    return Arc((side * x, y), entity.dxf.radius, begin, end)
+
+
+def _turn(start: float, end: float, full: float) -> float:
+    """Return the angle from start to end, counter-clockwise; a full turn where they are the same direction."""
+    turn = (end - start) % full
+    return full if turn < _FLAT * full else turn
+
+
+def _light_polyline(entity: Any) -> Curve:
+    elevation = entity.dxf.elevation
+    if elevation != 0.0:
+        raise InputError(f"it must lie in the plane z = 0, but its elevation is {elevation:g}")
+    return _pieces(entity.get_points("xyb"), entity.closed, _side(entity))
+
+
+def _polyline(entity: Any) -> Curve:
+    if not (entity.is_2d_polyline or entity.is_3d_polyline):
+        raise InputError(f"it is a {entity.get_mode()}, not a curve")
+    side = _side(entity) if entity.is_2d_polyline else 1.0
+    _flat(entity.dxf.elevation)
+    # the control frame of a smoothed polyline is kept among its vertices
+    vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
+    table = [(*_flat(vertex.dxf.location), vertex.dxf.get("bulge", 0.0)) for vertex in vertices]
+    return _pieces(table, entity.is_closed, side)
+
+
+def _pieces(table: list[tuple[float, float, float]], closed: bool, side: float) -> Curve:
+    """Return the curve through points (x, y, bulge of the piece that begins there)."""
+    points = [np.array([side * x, y]) for x, y, _ in table]
+    bulges = [side * bulge for *_, bulge in table]
+    if closed:
+        points.append(points[0])
+    size = max(float(np.max(np.abs(points))), np.finfo(float).tiny)
+    kept, between = [points[0]], []
+    for point, bulge in zip(points[1:], bulges, strict=False):
+        if np.hypot(*(point - kept[-1])) > _FLAT * size:  # drawings hold points twice
+            kept.append(point)
+            between.append(bulge)
+    if not any(between):
+        return Polyline(tuple((float(x), float(y)) for x, y in kept))
+    curves = tuple(_piece(*part) for part in zip(kept, kept[1:], between, strict=False))
+    return curves[0] if len(curves) == 1 else Chain(curves)
+
+
+def _piece(start: np.ndarray, end: np.ndarray, bulge: float) -> Curve:
+    """Return a piece of a polyline; bulge: tangent of a quarter of the angle it turns through, > 0 to the left."""
+    first, last = (tuple(point.tolist()) for point in (start, end))
+    if bulge == 0.0:
+        return Line(first, last)
+    turn = 4.0 * np.arctan(bulge)
+    middle, left = (start + end) / 2, np.array([start[1] - end[1], end[0] - start[0]]) / 2
+    if abs(bulge) < _SMALL_BULGE:
+        top = tuple((middle - left * np.tan(turn / 2)).tolist())
+        return BSpline(2, (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), (first, top, last), (1.0, float(np.cos(turn / 2)), 1.0))
+    center = middle + left * (1.0 - bulge**2) / (2.0 * bulge)
+    spoke = start - center
+    begin = float(np.arctan2(spoke[1], spoke[0]))
+    return Arc(tuple(center.tolist()), float(np.hypot(*spoke)), begin, begin + float(turn))
+
+
+def _spline(entity: Any) -> Curve:
+    points = entity.control_points if len(entity.control_points) else entity.fit_points
+    for x, y, z in points:
+        _flat(_ezdxf().math.Vec3(x, y, z))
+    if len(entity.control_points) and len(entity.knots):
+        weights = tuple(entity.weights) if len(entity.weights) else None
+        control = tuple((float(x), float(y)) for x, y, _ in points)
+        return BSpline(entity.dxf.degree, tuple(entity.knots), control, weights)
+    drawn = entity.construction_tool()
+    control = tuple(_flat(point) for point in drawn.control_points)
+    return BSpline(drawn.degree, tuple(drawn.knots()), control, tuple(drawn.weights()) or None)
+
+
+def _ellipse(entity: Any) -> Curve:
+    side = _side(entity)
+    x, y = _flat(entity.dxf.major_axis)
+    start, end = entity.dxf.start_param, entity.dxf.end_param
+    ratio = side * entity.dxf.ratio
+    turn = _turn(start, end, 2 * np.pi)
+    return elliptic_arc(_flat(entity.dxf.center), (x, y), (-ratio * y, ratio * x), start, start + turn)
+
+
+_READERS: dict[str, Callable[[Any], Curve]] = {
+    "LINE": _line,
+    "ARC": _arc,
+    "CIRCLE": _arc,
+    "LWPOLYLINE": _light_polyline,
+    "POLYLINE": _polyline,
+    "SPLINE": _spline,
+    "ELLIPSE": _ellipse,
+}

@@ -1,0 +1,337 @@
+"""Curves: closed forms of arc length and tangent, splines, and data that describes no curve."""
+
+import json
+import math
+import pickle
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline as Spline
+from scipy.special import ellipeinc
+
+from beamfem.curves import (
+    Arc,
+    BSpline,
+    Chain,
+    Curve,
+    Line,
+    Parametric,
+    Polyline,
+    elliptic_arc,
+    spline_through_hermite,
+    without_removable_knots,
+)
+from beamfem.errors import InputError
+
+QUARTER = BSpline(2, (0, 0, 0, 1, 1, 1), ((2, 0), (2, 2), (0, 2)), (1, math.sqrt(0.5), 1))
+WAVE = BSpline(3, (0, 0, 0, 0, 0.2, 0.7, 1, 1, 1, 1), ((0, 0), (1, 2), (2, -1), (3, 1), (4, 0), (5, 1)))
+UNCLAMPED = BSpline(3, (-3, -2.5, -1, 0, 1, 1.5, 3, 4, 5), ((0, 0), (1, 2), (2, -1), (3, 1), (4, 0)))
+ANGULAR = BSpline(2, (0, 0, 0, 0.5, 0.5, 1, 1, 1), ((0, 0), (1, 0), (1, 1), (2, 1), (2, 3)))
+CURVES = {
+    "line": Line((1, 2), (4, -2)),
+    "arc": Arc((1, 2), 0.7, 0.3, 4.0),
+    "clockwise arc of two turns": Arc((1, 2), 0.7, 0.3, -13.0),
+    "polyline": Polyline(((0, 0), (1, 0), (2, 0), (2, 3))),
+    "wave": WAVE,
+    "unclamped": UNCLAMPED,
+    "rational": QUARTER,
+    "spline with a corner": ANGULAR,
+    "chain": Chain((Line((0, 0), (1, 0)), Arc((1, 1), 1, -np.pi / 2, 0), Polyline(((2, 1), (2, 2), (3, 2))))),
+    "function": Parametric(lambda u: (u, np.sin(3 * u)), 0.0, 2.0),
+    "function of one number, backwards": Parametric(lambda u: (u, math.exp(u)), 1.0, -1.0),
+}
+
+
+@pytest.fixture(params=CURVES)
+def curve(request) -> Curve:
+    return CURVES[request.param]
+
+
+def stations(curve, reach):
+    """Arc lengths at which differences do not reach over an end, a corner or a jump of a higher derivative."""
+    rough = list(curve.corners)
+    if isinstance(curve, BSpline):
+        rough += list(curve._arc_length.at(curve.breaks))
+    if isinstance(curve, Chain):
+        rough += np.cumsum([part.length for part in curve.curves]).tolist()
+    s = np.linspace(2 * reach, curve.length - 2 * reach, 97)
+    return s[[all(abs(each - place) > 2 * reach for place in rough) for each in s]]
+
+
+def test_tangents_are_unit_vectors(curve):
+    tangent = curve.tangent(np.linspace(0.0, curve.length, 101))
+    assert np.abs(np.hypot(*tangent.T) - 1.0).max() < 1e-15 * 4
+
+
+def test_the_tangent_is_the_derivative_by_arc_length(curve):
+    """Central differences of sixth order; round-off of positions of 1e-15 over the step, truncation below it."""
+    step = 2e-4 * curve.length
+    s = stations(curve, 3 * step)
+    weights = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+    rate = sum(w * (curve.position(s + k * step) - curve.position(s - k * step)) for k, w in weights.items()) / step
+    assert np.abs(rate - curve.tangent(s)).max() < 2e-11
+    assert np.abs(np.hypot(*rate.T) - 1.0).max() < 2e-11
+
+
+def test_saved_members_make_the_same_curve(curve):
+    if isinstance(curve, Parametric):
+        curve = curve.spline()
+    if isinstance(curve, Chain):
+        curve = curve.curves[1]
+    members = {field.name: getattr(curve, field.name) for field in fields(curve)}
+    assert type(curve)(**json.loads(json.dumps(members))) == curve
+    assert pickle.loads(pickle.dumps(curve)) == curve
+
+
+def test_questions_without_points_have_answers_without_points(curve):
+    assert curve.position(np.array([])).shape == curve.tangent(np.array([])).shape == (0, 2)
+
+
+def test_full_turns_of_an_arc():
+    arc = Arc((1.0, 2.0), 0.5, np.pi / 2, -5 * np.pi)
+    assert arc.length == pytest.approx(0.5 * 5.5 * np.pi, rel=1e-15)
+    quarter = 0.25 * np.pi
+    assert np.allclose(arc.position(np.array([0.0, quarter, 9 * quarter])), [(1, 2.5), (1.5, 2), (1.5, 2)], atol=1e-15)
+    assert np.allclose(arc.tangent(np.array([0.0, quarter])), [(1, 0), (0, -1)], atol=1e-15)
+
+
+def test_quarter_circle_as_a_rational_spline_is_the_arc():
+    arc = Arc((0, 0), 2.0, 0.0, np.pi / 2)
+    s = np.linspace(0.0, arc.length, 57)
+    assert QUARTER.length == pytest.approx(arc.length, rel=1e-14)
+    assert np.abs(QUARTER.position(s) - arc.position(s)).max() < 1e-13
+    assert np.abs(QUARTER.tangent(s) - arc.tangent(s)).max() < 1e-13
+    assert elliptic_arc((0, 0), (2, 0), (0, 2), 0, np.pi / 2) == BSpline(
+        2, QUARTER.knots, elliptic_arc((0, 0), (2, 0), (0, 2), 0, np.pi / 2).control_points, QUARTER.weights
+    )
+
+
+def parabola(x):
+    """Arc length of y = x^2 from the origin."""
+    return x * math.sqrt(1 + 4 * x * x) / 2 + math.asinh(2 * x) / 4
+
+
+def ellipse(a, b, start, end):
+    """Arc length of (a cos t, b sin t), a > b."""
+    m = 1 - b * b / a / a
+    return a * (ellipeinc(np.pi / 2 - start, m) - ellipeinc(np.pi / 2 - end, m))
+
+
+CLOSED_FORMS = {
+    "circle": (Parametric(lambda u: (np.cos(u), np.sin(u)), 0, 2 * np.pi), 2 * np.pi),
+    "parabola": (Parametric(lambda u: (u, u * u), 0, 1.5), parabola(1.5)),
+    "parabola, derivative given": (Parametric(lambda u: (u, u**2), 0, 1.5, lambda u: (1, 2 * u)), parabola(1.5)),
+    "parabola as a spline": (BSpline(2, (0, 0, 0, 1.5, 1.5, 1.5), ((0, 0), (0.75, 0), (1.5, 2.25))), parabola(1.5)),
+    "ellipse": (Parametric(lambda u: (3 * math.cos(u), math.sin(u)), 0.3, 4.0), ellipse(3, 1, 0.3, 4.0)),
+    "ellipse as a spline": (elliptic_arc((1, 2), (3, 0), (0, 1), 0.3, 4.0), ellipse(3, 1, 0.3, 4.0)),
+    "flat ellipse": (elliptic_arc((1, 2), (3, 0), (0, 0.01), 0.0, 2 * np.pi), ellipse(3, 0.01, 0, 2 * np.pi)),
+    "line, then parabola": (Parametric(lambda u: (u, np.maximum(u - 0.3, 0) ** 2), 0, 1), 0.3 + parabola(0.7)),
+}
+
+
+@pytest.mark.parametrize("case", CLOSED_FORMS)
+def test_arc_length_in_closed_form(case):
+    curve, length = CLOSED_FORMS[case]
+    assert curve.length == pytest.approx(length, rel=2e-15 * 4)
+
+
+def test_positions_at_arc_lengths_in_closed_form():
+    """Logarithmic spiral r = e^(u): s = sqrt(2) (e^u - 1); over e^3 in speed."""
+    spiral = Parametric(lambda u: (np.exp(u) * np.cos(u), np.exp(u) * np.sin(u)), 0.0, 3.0)
+    s = np.linspace(0.0, spiral.length, 301)
+    u = np.log1p(s / math.sqrt(2))
+    expected = np.exp(u)[:, None] * np.stack([np.cos(u), np.sin(u)], axis=1)
+    assert np.abs(spiral.position(s) - expected).max() < 1e-13 * spiral.length
+    angle = u + np.pi / 4
+    assert np.abs(spiral.tangent(s) - np.stack([np.cos(angle), np.sin(angle)], axis=1)).max() < 1e-12
+
+
+def test_a_function_as_a_spline_is_the_same_curve():
+    curve = CURVES["function"]
+    spline = curve.spline()
+    s = np.linspace(0.0, curve.length, 201)
+    assert spline.length == pytest.approx(curve.length, rel=1e-14)
+    assert np.abs(spline.position(s) - curve.position(s)).max() < 1e-13
+    assert np.abs(spline.tangent(s) - curve.tangent(s)).max() < 1e-11
+    assert spline.corners == ()
+
+
+@pytest.mark.parametrize(
+    "spline",
+    [
+        BSpline(1, (0, 0, 1, 1), ((1, 2), (4, -2))),
+        BSpline(1, (0, 0, 0.1, 0.4, 1, 1), ((1, 2), (1.3, 1.6), (3.1, -0.8), (4, -2))),
+        BSpline(3, (0, 0, 0, 0, 0.3, 1, 1, 1, 1), ((1, 2), (1.3, 1.6), (2.2, 0.4), (3.7, -1.6), (4, -2))),
+        BSpline(2, (0, 0, 0, 1, 1, 1), ((1, 2), (1.6, 1.2), (4, -2)), (1, 5, 2)),
+    ],
+    ids=["degree 1", "degree 1 in pieces", "cubic", "rational"],
+)
+def test_a_straight_spline_is_the_line(spline):
+    line = Line((1, 2), (4, -2))
+    s = np.linspace(0.0, line.length, 211)
+    assert spline.length == pytest.approx(line.length, rel=1e-15)
+    assert np.abs(spline.position(s) - line.position(s)).max() < 1e-14
+    assert np.abs(spline.tangent(s) - line.tangent(s)).max() < 1e-14
+    assert spline.corners == ()
+
+
+def test_an_unclamped_spline_is_the_one_of_scipy():
+    reference = Spline(np.array(UNCLAMPED.knots), np.array(UNCLAMPED.control_points), 3)
+    ends = UNCLAMPED.position(np.array([0.0, UNCLAMPED.length]))
+    assert np.abs(ends - reference([0.0, 1.5])).max() < 1e-14
+
+
+def test_a_double_knot_at_the_end_of_an_unclamped_spline():
+    """The span before the last knot is empty; the limit from inside counts."""
+    spline = BSpline(2, (0, 1, 2, 3, 3, 4), ((0, 0), (1, 1), (2, 0)))
+    reference = Spline(np.array(spline.knots), np.array(spline.control_points), 2)
+    assert spline.length > 0
+    assert np.abs(spline.position(np.array([spline.length])) - reference([np.nextafter(3, 2)])).max() < 1e-15
+
+
+def sides(curve, corner):
+    return curve.tangent(np.array([corner - 1e-12 * curve.length, corner, corner + 1e-12 * curve.length]))
+
+
+@pytest.mark.parametrize(
+    ("name", "corners", "before", "after"),
+    [
+        ("polyline", (2.0,), (1, 0), (0, 1)),
+        ("chain", (2 + np.pi / 2,), (0, 1), (1, 0)),
+        ("spline with a corner", (parabola(1.0),), (0, 1), (1, 0)),
+    ],
+)
+def test_corners_and_the_tangents_beside_them(name, corners, before, after):
+    curve = CURVES[name]
+    if name == "spline with a corner":
+        # from (0, 0) over (1, 0) to (1, 1): half of sqrt(2) times a parabola y = x^2 on both sides of its vertex
+        corners = (math.sqrt(2) * parabola(0.5) * 2,)
+    assert curve.corners == pytest.approx(corners, rel=1e-14)
+    assert np.abs(sides(curve, curve.corners[0]) - [before, after, after]).max() < 1e-11
+
+
+def test_a_degree_one_spline_is_a_polyline():
+    points = ((0, 0), (1, 0), (3, 0), (3, 2), (1, 3))
+    spline, polyline = BSpline(1, (0, 0, 1, 3, 4, 5, 5), points), Polyline(points)
+    s = np.linspace(0, polyline.length, 83)
+    assert spline.corners == pytest.approx(polyline.corners, rel=1e-15)
+    assert polyline.corners == (3.0, 5.0)
+    assert np.abs(spline.position(s) - polyline.position(s)).max() < 1e-14
+    assert np.abs(sides(spline, spline.corners[1]) - sides(polyline, polyline.corners[1])).max() < 1e-14
+
+
+def random_cubic(rng, multiplicities, weights=None):
+    u = np.cumsum(rng.uniform(0.2, 2.0, len(multiplicities) + 2))
+    knots = np.repeat(u, [4, *multiplicities, 4])
+    control = np.column_stack([np.arange(len(knots) - 4), rng.uniform(-1, 1, len(knots) - 4)])
+    return BSpline(3, knots, control, weights)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_cubic_spline_survives_the_road_through_hermite(seed):
+    rng = np.random.default_rng(seed)
+    multiplicities = [[1] * 6, [2] * 6, [1, 2, 1, 1, 2, 2, 1], []][seed % 4]
+    spline = random_cubic(rng, multiplicities)
+    u, r, r_u = spline.hermite()
+    exact = spline_through_hermite(u, r, r_u)
+    assert exact.knots == tuple(np.repeat(u, [4, *[2] * (len(u) - 2), 4]))
+    back = without_removable_knots(exact)
+    assert back.knots == spline.knots
+    assert np.abs(np.array(back.control_points) - spline.control_points).max() < 1e-13
+    s = np.linspace(0.0, spline.length, 101)
+    assert np.abs(exact.position(s) - spline.position(s)).max() < 1e-13
+
+
+def test_hermite_data_are_the_cubic_on_every_span():
+    u, r, r_u = WAVE.hermite()
+    reference = Spline(np.array(WAVE.knots), np.array(WAVE.control_points), 3)
+    assert np.abs(r - reference(u)).max() < 1e-15
+    assert np.abs(r_u - reference(u, nu=1)).max() < 1e-14
+    x = 0.37  # xi of a span; Hermite polynomials
+    h = np.diff(u)[:, None]
+    values = (
+        (1 - 3 * x**2 + 2 * x**3) * r[:-1]
+        + h * (x - 2 * x**2 + x**3) * r_u[:-1]
+        + (3 * x**2 - 2 * x**3) * r[1:]
+        + h * (x**3 - x**2) * r_u[1:]
+    )
+    assert np.abs(values - reference(u[:-1] + x * h[:, 0])).max() < 1e-14
+
+
+def test_a_knot_with_a_small_jump_of_the_second_derivative_stays():
+    u, r, r_u = WAVE.hermite()
+    r_u[1, 0] += 1e-9
+    assert without_removable_knots(spline_through_hermite(u, r, r_u)).multiplicity(u[1]) == 2
+
+
+K = (0, 0, 0, 0, 1, 1, 1, 1)
+P = ((0, 0), (1, 1), (2, 1), (3, 0))
+BAD = {
+    "arc without radius": (lambda: Arc((0, 0), 0.0, 0, 1), "radius"),
+    "arc with a center of one number": (lambda: Arc((0,), 1.0, 0, 1), "center"),
+    "arc with text": (lambda: Arc((0, 0), 1.0, "0", 1), "start_angle"),
+    "arc that ends where it starts": (lambda: Arc((0, 0), 1.0, 1, 1), "two different angles"),
+    "polyline of one point": (lambda: Polyline(((0, 0),)), "at least two points"),
+    "polyline that stands still": (lambda: Polyline(((0, 0), (1, 1), (1, 1))), "points 1 and 2"),
+    "polyline of numbers": (lambda: Polyline((0, 1)), r"points\[0\]"),
+    "polyline of one number": (lambda: Polyline(3), "points must be a list"),
+    "chain of nothing": (lambda: Chain(()), "at least one curve"),
+    "chain of points": (lambda: Chain(((0, 0), (1, 1))), r"curves\[0\]"),
+    "chain with a gap": (
+        lambda: Chain((Line((0, 0), (1, 0)), Line((1, 1e-8), (2, 0)))),
+        r"curves\[1\] of a Chain must start where curves\[0\] ends",
+    ),
+    "degree zero": (lambda: BSpline(0, (0, 1), ((0, 0),)), "degree"),
+    "too few points": (lambda: BSpline(3, K[1:], P[1:]), "control_points: degree 3 needs at least 4, got 3"),
+    "a knot too few": (lambda: BSpline(3, K[1:], P), "4 control points of degree 3 need 8, got 7"),
+    "knots that decrease": (lambda: BSpline(3, (0, 0, 0, 0, 1, 1, 2, 1), P), r"knots\[7\] is 1"),
+    "a knot of nan": (lambda: BSpline(3, (0, 0, 0, math.nan, 1, 1, 1, 1), P), r"knots\[3\]"),
+    "equal knots": (lambda: BSpline(3, (0, 0, 0, 1, 1, 1, 2, 2), P), "all equal"),
+    "a spline in two parts": (lambda: BSpline(1, (0, 0, 1, 1, 2, 2), P), "falls apart beyond 1"),
+    "points without use": (lambda: BSpline(1, (0, 0, 1, 2, 2, 2), P), "without use"),
+    "a weight too many": (lambda: BSpline(3, K, P, (1,) * 5), "weights: 4 control points need 4, got 5"),
+    "a weight of zero": (lambda: BSpline(3, K, P, (1, 1, 0, 1)), r"weights\[2\]"),
+    "a point of three numbers": (lambda: BSpline(3, K, (*P[:3], (1, 2, 3))), r"control_points\[3\]"),
+    "a cusp inside": (lambda: BSpline(3, K, ((0, 0), (1, 1), (0, 1), (1, 0))), r"stands still at u = 0\.5"),
+    "a cusp at the start": (lambda: BSpline(3, K, ((0, 0), (0, 0), (0, 1), (1, 0))), "stands still at u = 0"),
+    "a straight spline that turns back": (lambda: BSpline(2, (0, 0, 0, 1, 1, 1), ((0, 0), (2, 0), (0, 0))), "u = 0.5"),
+    "no length": (lambda: BSpline(3, K, ((1, 1),) * 4), "no length"),
+    "parallel half diameters": (lambda: elliptic_arc((0, 0), (1, 1), (2, 2), 0, 1), "parallel"),
+    "an elliptic arc without end": (lambda: elliptic_arc((0, 0), (1, 0), (0, 2), 1, 1), "two different angles"),
+    "no function": (lambda: Parametric(3, 0, 1), "function of a Parametric"),
+    "no derivative": (lambda: Parametric(lambda u: (u, u), 0, 1, 3), "derivative of a Parametric"),
+    "a function without range": (lambda: Parametric(lambda u: (u, u), 1, 1), "two different parameters"),
+    "a function of one value": (lambda: Parametric(lambda u: u, 0, 1), "must be two numbers"),
+    "a function of nan": (lambda: Parametric(lambda u: (u, math.nan), 0, 1), "two finite numbers"),
+    "a function with a corner": (lambda: Parametric(lambda u: (u, abs(u - 0.5)), 0, 1), r"corner at u = 0\.5"),
+    "a function with a corner elsewhere": (lambda: Parametric(lambda u: (u, abs(u - 0.3)), 0, 1), "not smooth near"),
+    "a function with a cusp": (lambda: Parametric(lambda u: (u**2, u**3), -1, 1.3), "stands still"),
+    "a function at rest": (lambda: Parametric(lambda u: (0 * u, 1), 0, 1), "no length"),
+    "a wrong derivative": (lambda: Parametric(lambda u: (u, u**2), 0, 1, lambda u: (1, u)), "not that of function"),
+    "hermite of degree 2": (QUARTER.hermite, "degree 3.*degree 2.*spline_through_hermite"),
+    "hermite with weights": (lambda: BSpline(3, K, P, (1, 2, 1, 1)).hermite(), "weights"),
+    "hermite with a triple knot": (
+        lambda: BSpline(3, (0, 0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1, 1), (*P, (4, 1), (5, 1), (6, 0))).hermite(),
+        r"knot 0\.5, which appears 3 times",
+    ),
+    "hermite backwards": (lambda: spline_through_hermite((1, 0), P[:2], P[1:3]), "increasing"),
+    "hermite with a point too many": (lambda: spline_through_hermite((0, 1), P[:3], P[1:3]), "r must be 2"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_named(case):
+    make, words = BAD[case]
+    with pytest.raises(InputError, match=words):
+        make()
+
+
+def test_the_advice_for_other_splines_makes_a_close_cubic():
+    s = np.linspace(0.0, QUARTER.length, 17)
+    cubic = spline_through_hermite(s, QUARTER.position(s), QUARTER.tangent(s))
+    # error of cubic Hermite interpolation: h^4 / 384 |r''''|, here r'''' = 1 / R^3
+    limit = s[1] ** 4 / 384 / 8
+    middle = QUARTER.length * np.linspace(0, 1, 101)
+    assert np.abs(np.hypot(*cubic.position(middle).T) - 2.0).max() < limit
+    assert len(cubic.hermite()[0]) == 17

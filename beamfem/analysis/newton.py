@@ -75,15 +75,24 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
             stresses = predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
-        if not np.isfinite(size) or size > 1e3:
-            return NewtonResult(start, iteration, Ended.DIVERGED)
-        stagnant = iteration > 2 and size > 0.25 * last and size < _STAGNANT
-        if size <= newton.tolerance or stagnant:
-            ended = _judge(system, p, load_factor, newton, size)
-            if ended is not None:
-                return NewtonResult(p, iteration, ended)
+        ended = verdict(system, p, load_factor, newton, iteration, (size, last))
+        if ended is not None:
+            return NewtonResult(start if ended is Ended.DIVERGED else p, iteration, ended)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def verdict(
+    system: System, p: np.ndarray, load_factor: float, newton: Newton, iteration: int, sizes: tuple[float, float]
+) -> Ended | None:
+    """Say how an iteration ended whose last two corrections have these sizes; None where it shall go on."""
+    size, before = sizes
+    if not np.isfinite(size) or size > 1e3:
+        return Ended.DIVERGED
+    stagnant = iteration > 2 and size > 0.25 * before and size < _STAGNANT
+    if size <= newton.tolerance or stagnant:
+        return _judge(system, p, load_factor, newton, size)
+    return None
 
 
 def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, size: float) -> Ended | None:

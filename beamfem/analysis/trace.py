@@ -1,0 +1,220 @@
+"""Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.branches import leave
+from beamfem.analysis.continuation import Continuation, PathPoint, begin
+from beamfem.analysis.critical_points import Segment, SegmentLostError
+from beamfem.analysis.free_motion import require_support
+from beamfem.analysis.newton import Newton
+from beamfem.analysis.statics import first_equilibrium
+from beamfem.analysis.steps import Refused, Step, longest_step, take_step, too_small
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.model import Model
+from beamfem.model.system import System
+from beamfem.path import Bifurcation, Path, PathState
+from beamfem.progress import progress
+from beamfem.solution import Statistics
+from beamfem.validation import count, finite, positive
+
+_FIRST_STEP = 2e-3  # along the path, see Continuation
+
+Until = float | Callable[[PathState], bool] | None
+
+
+def trace_equilibrium(
+    model: Model,
+    until: Until = None,
+    *,
+    start: Bifurcation | None = None,
+    direction: int = 1,
+    step: float | None = None,
+    points: int = 500,
+    newton: Newton | None = None,
+) -> Path:
+    """Return the equilibria along the path that leaves load factor 0 towards larger ones, past limit points.
+
+    until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
+    path ends after so many `points`. start: a bifurcation of a path of this model, to follow the branch that crosses
+    there to the side of its mode (direction 1) or to the other (-1). step: load factor of the second point.
+    Steps are cut and grown as the iterations and the turning of the path need.
+    Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
+    cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
+    Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
+    """
+    if until is not None and not callable(until):
+        until = finite("until", until)
+    if step is not None:
+        positive("step", step)
+    count("points", points)
+    if direction not in (1, -1):
+        raise InputError(f"direction must be 1 or -1, got {direction!r}")
+    system = System(model, static=True)
+    require_support(system)
+    _require_load(system)
+    _require_crossing(model, start)
+    record = _Record(model)
+    with _kept(record), progress("points of the path", points) as report:
+        line, point = _first(system, newton or Newton(), start, record)
+        if start is None:
+            size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
+        elif points > 1 and not _met(until, record.state(point)):
+            point, size = _branch(line, point, start, direction, record)
+        while len(record.points) < points and not _met(until, record.state(point)):
+            taken = _step(line, point, size, record)
+            size = taken.next_size
+            landing = _landing(line, taken, until) if isinstance(until, float) else None
+            point = taken.segment.after if landing is None else landing
+            record.add(point)
+            record.add_critical(line, taken, point)
+            report(len(record.points))
+            if landing is not None:
+                break
+        record.ended = f"{len(record.points)} of {points} points"
+    return record.path()
+
+
+class _Record:
+    """What has been found so far."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.points: list[np.ndarray] = []
+        self.limit_points: list[PathState] = []
+        self.bifurcations: list[Bifurcation] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = "the path was not followed to its end"
+
+    def add(self, point: PathPoint) -> None:
+        self.points.append(point.y)
+
+    def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
+        """Add the limit points and bifurcations of a step up to its last point."""
+        segment = step.segment
+        share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
+        for x in step.limits:
+            if x <= share:
+                self.limit_points.append(self.state(segment.at(x)))
+        for x in step.bifurcations:
+            if x <= share:
+                point = segment.at(x)
+                mode = line.softest(point.factors)[:-1]
+                self.bifurcations.append(Bifurcation(**vars(self.state(point)), mode=mode))
+
+    def state(self, point: PathPoint) -> PathState:
+        rest = np.zeros(self.model.size)
+        return PathState(point.y[:-1], rest, rest, point.load_factor, self.model)
+
+    def path(self) -> Path:
+        rows = np.array(self.points).reshape(len(self.points), -1)
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
+        rest = np.zeros((len(rows), self.model.size))
+        states = rows[:, :-1], rest, rest.copy()
+        critical = tuple(self.limit_points), tuple(self.bifurcations)
+        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
+
+
+@contextmanager
+def _kept(record: _Record) -> Iterator[None]:
+    """Give the path so far to whatever exception ends it."""
+    try:
+        yield
+    except BaseException as error:
+        if record.points:
+            error.solution = record.path()  # type: ignore[attr-defined]
+            if not isinstance(error, ConvergenceError):
+                error.add_note("The path found before is the `solution` of this exception.")
+        raise
+
+
+def _require_load(system: System) -> None:
+    """Raise InputError where nothing changes with the load factor."""
+    for at in (0.37, 1.0):
+        changes = [(system.body(at), system.body(0.0)), (system.held_values(at), system.held_values(0.0))]
+        changes += zip(system.point_values(at), system.point_values(0.0), strict=True)
+        if any(not np.array_equal(now, before) for now, before in changes):
+            return
+    raise InputError(
+        "no load and no prescribed motion of this model changes with the load factor, so there is no path to follow"
+    )
+
+
+def _require_crossing(model: Model, start: Bifurcation | None) -> None:
+    """Raise InputError where `start` is no bifurcation of this model."""
+    if start is None:
+        return
+    if not isinstance(start, Bifurcation):
+        raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
+    if start.model is not model:
+        raise InputError("start is a bifurcation of another model; trace the path of this one first")
+
+
+def _first(
+    system: System, newton: Newton, start: Bifurcation | None, record: _Record
+) -> tuple[Continuation, PathPoint]:
+    """Return the continuation and the first point: at load factor 0, or the bifurcation `start`."""
+    first = first_equilibrium(system, newton)
+    record.iterations += first.iterations
+    if not first.ended.good:
+        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
+    try:
+        line, point = begin(system, first.state, 0.0, newton)
+        if start is not None:
+            point = line.linearised(np.append(start.p, start.at), point.tangent)
+    except (LinAlgError, ValueError):
+        at = 0.0 if start is None else start.at
+        raise ConvergenceError(f"there is no path from load factor {at:.6g}: the tangent is singular") from None
+    record.add(point)
+    return line, point
+
+
+def _branch(
+    line: Continuation, point: PathPoint, start: Bifurcation, direction: int, record: _Record
+) -> tuple[PathPoint, float]:
+    """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
+    found = leave(line, point, start, direction)
+    if isinstance(found, str):
+        raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
+    record.add(found)
+    return found, line.length(found.y - point.y)
+
+
+def _step(line: Continuation, point: PathPoint, size: float, record: _Record) -> Step:
+    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
+    size = min(size, longest_step(line, point))
+    while True:
+        taken = take_step(line, point, size)
+        record.iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken
+        record.cuts += 1
+        size *= 0.5
+        if too_small(line, point, size):
+            record.ended = taken.reason
+            raise ConvergenceError(
+                f"the path ends at load factor {point.load_factor:.6g} after {len(record.points)} points: "
+                f"{taken.reason}, with steps along it down to {size:.1e}",
+                record.path(),
+            )
+
+
+def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
+    """Return the first point of a step with the load factor, None where it does not come to it."""
+    shares = [0.0, *step.limits, 1.0]
+    stops = [step.segment.at(x) for x in shares]
+    for before, after in zip(stops[:-1], stops[1:], strict=True):
+        low, high = before.load_factor - load_factor, after.load_factor - load_factor
+        if high == 0.0:
+            return after
+        if low * high < 0.0:
+            return Segment(line, before, after).at_load(load_factor)
+    return None
+
+
+def _met(until: Until, state: PathState) -> bool:
+    return callable(until) and bool(until(state))

@@ -123,15 +123,18 @@ def inverted(system: System, p: np.ndarray) -> bool:
 def round_off_floor(system: System, p: np.ndarray) -> float:
     """Return the residual [N] that is left by cancellation when strains are formed from positions.
 
-    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l, and the
-    section answers with its largest axial stiffness.
+    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l times
+    the slopes of the shape functions; the section answers with its largest axial stiffness, again times slopes.
     """
     worst = 0.0
     for block in system.blocks:
         stiffest = float(block.stiffness[:, :, 0, 0].max())
-        worst = max(worst, stiffest / float(block.jacobian.min()))
+        slopes = np.abs(block.r_xi)
+        share = (block.weight[0] / block.weight[0].sum()) @ slopes
+        slope = float(slopes.sum(axis=1).max() * share.max())
+        worst = max(worst, slope * stiffest / float(block.jacobian.min()))
     reach = max(float(np.max(np.abs(p))), max(beam.curve.length for beam in system.model.beams))
-    return 8.0 * np.finfo(float).eps * worst * reach
+    return 4.0 * np.finfo(float).eps * worst * reach
 
 
 def _load_size(system: System, load_factor: float) -> float:

@@ -14,7 +14,7 @@ _LARGEST_GROWTH = 0.25  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_CORRECTION = 0.5  # of the step
-_WANTED_ITERATIONS = 5
+_WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
 
 
@@ -72,9 +72,7 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     except SegmentLostError as error:
         return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
     increase = min(
-        _WANTED_TURN / max(turn, 1e-12), np.sqrt(_WANTED_ITERATIONS / corrected.iterations), _LARGEST_INCREASE
+        _WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE
     )
-    if corrected.iterations <= _WANTED_ITERATIONS - 2:
-        increase = min(_WANTED_TURN / max(turn, 1e-12), _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, bifurcations, iterations, size * max(increase, 0.25))

@@ -22,6 +22,7 @@ from beamfem.solution import Statistics
 from beamfem.validation import count, finite, positive
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
+_ITERATIONS = 15  # a shorter step is cheaper than more
 
 Until = float | Callable[[PathState], bool] | None
 
@@ -59,7 +60,7 @@ def trace_equilibrium(
     _require_crossing(model, start)
     record = _Record(model)
     with _kept(record), progress("points of the path", points) as report:
-        line, point = _first(system, newton or Newton(), start, record)
+        line, point = _first(system, newton or Newton(iterations=_ITERATIONS), start, record)
         if start is None:
             size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         elif points > 1 and not _met(until, record.state(point)):

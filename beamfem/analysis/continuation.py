@@ -164,16 +164,24 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     Raises LinAlgError where the tangent is singular.
     """
     plain = Continuation(system, newton, 1.0)
-    rest, free, held = np.zeros(len(p)), system.free_dofs, system.held_dofs
+    rest = np.zeros(len(p))
     _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
     factors = tangent.factorised(system.turned)
     mode = plain.softest(factors)
-    stiffness = 1.0 / abs(plain.softness(factors, mode))
-    stiffness /= float(np.max(np.abs(mode) / plain.scale)) ** 2
-    force = (residual(system, p, rest, rest, load_factor + 1.0) - residual(system, p, rest, rest, load_factor))[free]
-    motion = (system.held_values(load_factor + 1.0) - system.held_values(load_factor)) / plain.scale[held]
-    per_load = max(float(np.abs(force) @ plain.scale[free]) / stiffness, float(np.max(np.abs(motion), initial=0.0)))
+    stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
+    # an amplitude may start with slope zero: then what it does up to load factor 1 tells
+    per_load = _reach(plain, p, load_factor, stiffness, 1e-6) or _reach(plain, p, load_factor, stiffness, 1.0)
     line = Continuation(system, newton, 1.0 / per_load if per_load > 0.0 else 1.0)
     growing = np.zeros(len(p) + 1)
     growing[-1] = 1.0
     return line, line.linearised(np.append(p, load_factor), growing)
+
+
+def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:
+    """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled."""
+    system, rest, scale = line.system, np.zeros(len(p)), line.scale[:-1]
+    ends = load_factor, load_factor + width
+    forces = [residual(system, p, rest, rest, at)[system.free_dofs] for at in ends]
+    held = [system.held_values(at) / scale[system.held_dofs] for at in ends]
+    moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
+    return max(moved, float(np.max(np.abs(held[1] - held[0]), initial=0.0))) / width

@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.continuation import Continuation, PathPoint
 from beamfem.analysis.critical_points import Segment, SegmentLostError
 
-_SMALLEST = 1e-9
+_SMALLEST = 1e-8
 _LARGEST = 0.5
 _LARGEST_GROWTH = 0.25  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -188,12 +189,14 @@ def _branch(
 def _step(line: Continuation, point: PathPoint, size: float, record: _Record) -> Step:
     """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
     size = min(size, longest_step(line, point))
+    whole = True
     while True:
         taken = take_step(line, point, size)
         record.iterations += taken.iterations
         if isinstance(taken, Step):
-            return taken
+            return taken if whole else replace(taken, next_size=min(taken.next_size, size))
         record.cuts += 1
+        whole = False
         size *= 0.5
         if too_small(line, point, size):
             record.ended = taken.reason

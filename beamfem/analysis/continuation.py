@@ -12,6 +12,7 @@ from beamfem.analysis.tangent import Factorised
 from beamfem.model.system import System
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
+_GROWS_WELL = 0.3  # share of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
 
 Stresses = tuple[np.ndarray, ...]
@@ -79,6 +80,19 @@ class Continuation:
         """Return y with the held coordinates of its load factor."""
         result = y.copy()
         result[self.system.held_dofs] = self.system.held_values(float(y[-1]))
+        return result
+
+    def plane(self, tangent: np.ndarray) -> np.ndarray:
+        """Return the normal (n + 1,) of the plane in which a step along a unit tangent is corrected.
+
+        It is the tangent; but where the load factor moves supports and grows well, its axis: independent stresses tell
+        the tangent nothing of held coordinates, so that these had better rest during the correction.
+        """
+        moved = bool(np.any(tangent[self.system.held_dofs]))
+        if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
+            return tangent
+        result = np.zeros(len(tangent))
+        result[-1] = 1.0
         return result
 
     def stresses(self, y: np.ndarray, step: np.ndarray) -> Stresses | None:

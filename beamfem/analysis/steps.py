@@ -53,7 +53,7 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
 def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
     """Return the step of a length from a point with what lies in it, or why it is refused."""
     change = size * point.tangent
-    corrected = line.correct(point.y + change, line.stresses(point.y, change), point.tangent)
+    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent))
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)
     if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:

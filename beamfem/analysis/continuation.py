@@ -12,6 +12,8 @@ from beamfem.analysis.tangent import Factorised
 from beamfem.model.system import System
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
+_LARGEST_RATIO = 30.0  # of the load scale to the soft load
+_LOAD_STEP = 2.0
 _GROWS_WELL = 0.3  # share of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
 
@@ -48,6 +50,8 @@ class Corrected:
 class Continuation:
     """A system whose load factor is unknown, measured in lengths of the model and in `load_scale`.
 
+    load_step: how far the load factor may change in a step while it is small.
+
     The squared length of a change of y is the mean of the squared scaled changes of the unknown coordinates, plus that
     of the load factor; it depends neither on units nor on the mesh.
     """
@@ -55,6 +59,7 @@ class Continuation:
     system: System
     newton: Newton
     load_scale: float
+    load_step: float
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -173,11 +178,12 @@ class Continuation:
 def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:
     """Return the continuation of a model and its first point, that of the equilibrium p, towards larger loads.
 
-    The load scale is the load factor whose forces would move the softest mode by about a length of the model, or
-    whose prescribed motions are that large: it depends neither on the size of the loads nor on units.
+    A soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
+    prescribed motions are that large. The load scale lies between it and many times it, where possible so that the
+    tangent of the first point is as much movement as load. Neither depends on the size of the loads or on units.
     Raises LinAlgError where the tangent is singular.
     """
-    plain = Continuation(system, newton, 1.0)
+    plain = Continuation(system, newton, 1.0, 1.0)
     rest = np.zeros(len(p))
     _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
     factors = tangent.factorised(system.turned)
@@ -185,10 +191,14 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     # an amplitude may start with slope zero: then what it does up to load factor 1 tells
     per_load = _reach(plain, p, load_factor, stiffness, 1e-6) or _reach(plain, p, load_factor, stiffness, 1.0)
-    line = Continuation(system, newton, 1.0 / per_load if per_load > 0.0 else 1.0)
+    soft = 1.0 / per_load if per_load > 0.0 else 1.0
     growing = np.zeros(len(p) + 1)
     growing[-1] = 1.0
-    return line, line.linearised(np.append(p, load_factor), growing)
+    y = np.append(p, load_factor)
+    moving = Continuation(system, newton, soft, soft).linearised(y, growing).tangent[-1] / soft
+    balanced = soft * moving / np.sqrt(max(1.0 - moving**2, _LARGEST_RATIO**-2))
+    line = Continuation(system, newton, max(balanced, soft), _LOAD_STEP * soft)
+    return line, line.linearised(y, growing)
 
 
 def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:

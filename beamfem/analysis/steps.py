@@ -10,7 +10,7 @@ from beamfem.analysis.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
 _LARGEST = 0.5
-_LARGEST_GROWTH = 0.25  # of the load factor in a step, where it is large
+_LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_CORRECTION = 0.5  # of the step
@@ -41,7 +41,7 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
     """Return the longest step from a point: it bounds the movement and the change of the load factor."""
     load_share = abs(float(point.tangent[-1])) / line.load_scale
     moving = np.sqrt(max(1.0 - load_share**2, 0.0))
-    load = max(_LARGEST, _LARGEST_GROWTH * abs(point.load_factor) / line.load_scale)
+    load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
     return float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
 
 

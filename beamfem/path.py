@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -82,7 +83,8 @@ class Path(Solution):
         return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
 
 
-def _first(value: np.ndarray | Components) -> np.ndarray | Components:
+def _first(value: Any) -> Any:
+    """Drop the axis of steps."""
     if isinstance(value, Components):
         return Components(value.xx[0], value.yy[0], value.xy[0])
     return value[0]

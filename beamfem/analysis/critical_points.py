@@ -1,6 +1,7 @@
 """Limit points and bifurcations between two points of an equilibrium path."""
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,9 @@ class Segment:
         """Return the cubic of the stress resultants; the slopes at the ends are those along the path."""
         rest = np.zeros(len(self.chord))
         now = [self.line.stresses(point.y, rest) for point in (self.before, self.after)]
-        ahead = [self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)]
+        ahead = [
+            self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)
+        ]
         if now[0] is None or now[1] is None or ahead[0] is None or ahead[1] is None:
             return None
         return tuple(
@@ -85,7 +88,7 @@ class Segment:
         if hidden is not None:
             stops.insert(1, hidden)
         found = []
-        for start, end in zip(stops[:-1], stops[1:], strict=True):
+        for start, end in pairwise(stops):
             left, right = self.at(start).tangent[-1], self.at(end).tangent[-1]
             if left * right < 0.0:
                 found.append(float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9)))

@@ -71,8 +71,6 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
         bifurcations = segment.bifurcations(limits)
     except SegmentLostError as error:
         return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
-    increase = min(
-        _WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE
-    )
+    increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, bifurcations, iterations, size * max(increase, 0.25))

@@ -1,25 +1,25 @@
 """Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.branches import leave
 from beamfem.analysis.continuation import Continuation, PathPoint, begin
-from beamfem.analysis.critical_points import Segment, SegmentLostError
+from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.newton import Newton
+from beamfem.analysis.path_record import PathRecord, kept
 from beamfem.analysis.statics import first_equilibrium
-from beamfem.analysis.steps import Refused, Step, longest_step, take_step, too_small
+from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.model.system import System
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.progress import progress
-from beamfem.solution import Statistics
 from beamfem.validation import count, finite, positive
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
@@ -52,6 +52,8 @@ def trace_equilibrium(
         until = finite("until", until)
     if step is not None:
         positive("step", step)
+        if start is not None:
+            raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
     count("points", points)
     if direction not in (1, -1):
         raise InputError(f"direction must be 1 or -1, got {direction!r}")
@@ -59,79 +61,29 @@ def trace_equilibrium(
     require_support(system)
     _require_load(system)
     _require_crossing(model, start)
-    record = _Record(model)
-    with _kept(record), progress("points of the path", points) as report:
+    record = PathRecord(model)
+    with kept(record), progress("points of the path", points) as report:
         line, point = _first(system, newton or Newton(iterations=_ITERATIONS), start, record)
         if start is None:
             size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
-        elif points > 1 and not _met(until, record.state(point)):
+        elif points > 1:
             point, size = _branch(line, point, start, direction, record)
-        while len(record.points) < points and not _met(until, record.state(point)):
+        landed = False
+        while not (landed or _met(until, record.state(point))):
+            if len(record.points) >= points:
+                record.ended = f"the {points} points are used up"
+                break
             taken = _step(line, point, size, record)
             size = taken.next_size
             landing = _landing(line, taken, until) if isinstance(until, float) else None
+            landed = landing is not None
             point = taken.segment.after if landing is None else landing
             record.add(point)
             record.add_critical(line, taken, point)
             report(len(record.points))
-            if landing is not None:
-                break
-        record.ended = f"{len(record.points)} of {points} points"
+        else:
+            record.ended = "the path has come to where it shall end"
     return record.path()
-
-
-class _Record:
-    """What has been found so far."""
-
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.points: list[np.ndarray] = []
-        self.limit_points: list[PathState] = []
-        self.bifurcations: list[Bifurcation] = []
-        self.iterations = 0
-        self.cuts = 0
-        self.ended = "the path was not followed to its end"
-
-    def add(self, point: PathPoint) -> None:
-        self.points.append(point.y)
-
-    def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
-        """Add the limit points and bifurcations of a step up to its last point."""
-        segment = step.segment
-        share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
-        for x in step.limits:
-            if x <= share:
-                self.limit_points.append(self.state(segment.at(x)))
-        for x in step.bifurcations:
-            if x <= share:
-                point = segment.at(x)
-                mode = line.softest(point.factors)[:-1]
-                self.bifurcations.append(Bifurcation(**vars(self.state(point)), mode=mode))
-
-    def state(self, point: PathPoint) -> PathState:
-        rest = np.zeros(self.model.size)
-        return PathState(point.y[:-1], rest, rest, point.load_factor, self.model)
-
-    def path(self) -> Path:
-        rows = np.array(self.points).reshape(len(self.points), -1)
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
-        rest = np.zeros((len(rows), self.model.size))
-        states = rows[:, :-1], rest, rest.copy()
-        critical = tuple(self.limit_points), tuple(self.bifurcations)
-        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
-
-
-@contextmanager
-def _kept(record: _Record) -> Iterator[None]:
-    """Give the path so far to whatever exception ends it."""
-    try:
-        yield
-    except BaseException as error:
-        if record.points:
-            error.solution = record.path()  # type: ignore[attr-defined]
-            if not isinstance(error, ConvergenceError):
-                error.add_note("The path found before is the `solution` of this exception.")
-        raise
 
 
 def _require_load(system: System) -> None:
@@ -157,12 +109,13 @@ def _require_crossing(model: Model, start: Bifurcation | None) -> None:
 
 
 def _first(
-    system: System, newton: Newton, start: Bifurcation | None, record: _Record
+    system: System, newton: Newton, start: Bifurcation | None, record: PathRecord
 ) -> tuple[Continuation, PathPoint]:
     """Return the continuation and the first point: at load factor 0, or the bifurcation `start`."""
     first = first_equilibrium(system, newton)
     record.iterations += first.iterations
     if not first.ended.good:
+        record.points.append(np.append(system.reference, 0.0))
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
         line, point = begin(system, first.state, 0.0, newton)
@@ -176,7 +129,7 @@ def _first(
 
 
 def _branch(
-    line: Continuation, point: PathPoint, start: Bifurcation, direction: int, record: _Record
+    line: Continuation, point: PathPoint, start: Bifurcation, direction: int, record: PathRecord
 ) -> tuple[PathPoint, float]:
     """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
     found = leave(line, point, start, direction)
@@ -186,7 +139,7 @@ def _branch(
     return found, line.length(found.y - point.y)
 
 
-def _step(line: Continuation, point: PathPoint, size: float, record: _Record) -> Step:
+def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
     """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
     size = min(size, longest_step(line, point))
     whole = True
@@ -211,7 +164,7 @@ def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | 
     """Return the first point of a step with the load factor, None where it does not come to it."""
     shares = [0.0, *step.limits, 1.0]
     stops = [step.segment.at(x) for x in shares]
-    for before, after in zip(stops[:-1], stops[1:], strict=True):
+    for before, after in pairwise(stops):
         low, high = before.load_factor - load_factor, after.load_factor - load_factor
         if high == 0.0:
             return after

@@ -153,6 +153,18 @@ def test_the_buckling_load_of_a_column_and_its_mode():
     assert axial < 1e-8 * lateral
 
 
+@pytest.mark.parametrize("imperfection", [1e-2, 1e-5, 1e-8])
+def test_an_imperfect_column_is_followed_round_the_corner_and_not_across_it(imperfection):
+    """A straight continuation would pass the buckling load on a path that is not connected with load factor 0."""
+    beam, _ = cantilever(100, (0.0, -1.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (imperfection, -1.0))])
+    path = trace_equilibrium(model, 4.0)
+    assert path.bifurcations == () == path.limit_points
+    assert path.displacement(beam.end)[-1, 0] > 0.5
+    angle = path.rotation(beam.end)[-1]
+    assert ellipk(np.sin(angle / 2) ** 2) ** 2 == pytest.approx(4.0, rel=0.1 * imperfection + 1e-4)
+
+
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_branch_of_a_buckled_column_is_the_elastica(direction):
     """Tip angle a under P L^2 / E I = K(sin(a / 2))^2; strains of the load make 4e-9 at L/h = 10000."""

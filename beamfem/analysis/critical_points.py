@@ -11,7 +11,9 @@ from scipy.optimize import brentq
 from beamfem.analysis.continuation import Continuation, PathPoint
 
 _SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
-_BESIDE_LIMIT = 1e-3  # of a segment: how far from a limit point the signs of the pivots are trusted
+_BESIDE = 1e-3  # of a segment: how far from a critical point signs of pivots and positions are trusted
+_JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
+_LEVEL = 1e-4  # slope of the load factor at a limit point, at most
 _ZERO = 1e-4  # of the stiffness at the ends, where a change of its sign is taken for a zero and not for a pole
 
 
@@ -91,7 +93,10 @@ class Segment:
         for start, end in pairwise(stops):
             left, right = self.at(start).tangent[-1], self.at(end).tangent[-1]
             if left * right < 0.0:
-                found.append(float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9)))
+                x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
+                if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:
+                    raise SegmentLostError("the step leads to another path")
+                found.append(x)
             elif right == 0.0 != left:
                 found.append(end)
         return found
@@ -114,12 +119,13 @@ class Segment:
 
         limits: shares of the limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
         """
-        starts = [0.0, *(min(x + _BESIDE_LIMIT, 1.0) for x in limits)]
-        ends = [*(max(x - _BESIDE_LIMIT, 0.0) for x in limits), 1.0]
+        starts = [0.0, *(min(x + _BESIDE, 1.0) for x in limits)]
+        ends = [*(max(x - _BESIDE, 0.0) for x in limits), 1.0]
         pairs = zip(starts, ends, strict=True)
         return [x for start, end in pairs if start < end for x in self._singular(start, end)]
 
     def _singular(self, start: float, end: float) -> list[float]:
+        self._require_one_path(start, end)
         left, right = self.at(start), self.at(end)
         change = abs(left.negative_pivots - right.negative_pivots)
         if change == 0 or (change % 2 == 0 and not (self._symmetric(left) and self._symmetric(right))):
@@ -130,8 +136,15 @@ class Segment:
         if change == 1:
             x = self._zero(start, end)
             if x is not None:
+                self._require_one_path(max(x - _BESIDE, start), min(x + _BESIDE, end))
                 return [x]
         return [*self._singular(start, middle), *self._singular(middle, end)]
+
+    def _require_one_path(self, start: float, end: float) -> None:
+        """Raise SegmentLostError where two points are further apart than the way from one to the other can be."""
+        apart = self.line.length(self.at(end).y - self.at(start).y) / self.line.length(self.chord)
+        if apart > 2.0 * (end - start) + _JUMP:
+            raise SegmentLostError("the step leads to another path")
 
     def _zero(self, start: float, end: float) -> float | None:
         """Return where the stiffness of the softest mode of the middle vanishes, None where it does not."""

@@ -76,15 +76,24 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
             stresses = predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
-        if not np.isfinite(size) or size > 1e3:
-            return NewtonResult(start, iteration, Ended.DIVERGED)
-        stagnant = iteration > 2 and size > 0.25 * last and size < _STAGNANT
-        if size <= newton.tolerance or stagnant:
-            ended = _judge(system, p, load_factor, newton, size)
-            if ended is not None:
-                return NewtonResult(p, iteration, ended)
+        ended = verdict(system, p, load_factor, newton, iteration, (size, last))
+        if ended is not None:
+            return NewtonResult(start if ended is Ended.DIVERGED else p, iteration, ended)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def verdict(
+    system: System, p: np.ndarray, load_factor: float, newton: Newton, iteration: int, sizes: tuple[float, float]
+) -> Ended | None:
+    """Say how an iteration ended whose last two corrections have these sizes; None where it shall go on."""
+    size, before = sizes
+    if not np.isfinite(size) or size > 1e3:
+        return Ended.DIVERGED
+    stagnant = iteration > 2 and size > 0.25 * before and size < _STAGNANT
+    if size <= newton.tolerance or stagnant:
+        return _judge(system, p, load_factor, newton, size)
+    return None
 
 
 def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, size: float) -> Ended | None:
@@ -115,15 +124,18 @@ def inverted(system: System, p: np.ndarray) -> bool:
 def round_off_floor(system: System, p: np.ndarray) -> float:
     """Return the residual [N] that is left by cancellation when strains are formed from positions.
 
-    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l, and the
-    section answers with its largest axial stiffness.
+    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l times
+    the slopes of the shape functions; the section answers with its largest axial stiffness, again times slopes.
     """
     worst = 0.0
     for block in system.blocks:
         stiffest = float(block.stiffness[:, :, 0, 0].max())
-        worst = max(worst, stiffest / float(block.jacobian.min()))
+        slopes = np.abs(block.r_xi)
+        share = (block.weight[0] / block.weight[0].sum()) @ slopes
+        slope = float(slopes.sum(axis=1).max() * share.max())
+        worst = max(worst, slope * stiffest / float(block.jacobian.min()))
     reach = max(float(np.max(np.abs(p))), system.extent)
-    return 8.0 * np.finfo(float).eps * worst * reach
+    return 4.0 * np.finfo(float).eps * worst * reach
 
 
 def _load_size(system: System, load_factor: float) -> float:

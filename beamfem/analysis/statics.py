@@ -28,7 +28,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     require_support(system)
     newton = newton or Newton()
     done = _Record(model)
-    first = _unloaded(system) or solve_equilibrium(system, system.reference, 0.0, newton)
+    first = first_equilibrium(system, newton)
     done.iterations += first.iterations
     if not first.ended.good:
         done.add(0.0, system.reference)
@@ -63,6 +63,11 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
                     done.solution(),
                 )
     return done.solution()
+
+
+def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
+    """Return the equilibrium at load factor 0, under the loads that do not scale."""
+    return _unloaded(system) or solve_equilibrium(system, system.reference, 0.0, newton)
 
 
 def _unloaded(system: System) -> NewtonResult | None:

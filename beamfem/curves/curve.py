@@ -1,7 +1,7 @@
 """What every curve can be asked, and what the kinds of curve share."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from beamfem.validation import finite, vector
 CORNER = 1e-8
 
 
+@runtime_checkable
 class Curve(Protocol):
     """A planar curve by arc length s in [0, length] [m].
 

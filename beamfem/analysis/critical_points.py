@@ -1,0 +1,176 @@
+"""Limit points and bifurcations between two points of an equilibrium path."""
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.optimize import brentq
+
+from beamfem.analysis.continuation import Continuation, PathPoint
+
+_SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
+_BESIDE = 1e-3  # of a segment: how far from a critical point signs of pivots and positions are trusted
+_JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
+_LEVEL = 1e-4  # slope of the load factor at a limit point, at most
+_ZERO = 1e-4  # of the stiffness at the ends, where a change of its sign is taken for a zero and not for a pole
+
+
+class SegmentLostError(Exception):
+    """A point between two points of a path could not be found."""
+
+
+@dataclass(eq=False)
+class Segment:
+    """The path between two of its points, by the share x of the chord from one to the other."""
+
+    line: Continuation
+    before: PathPoint
+    after: PathPoint
+    found: dict[float, PathPoint] = field(default_factory=dict)
+    iterations: int = 0
+
+    def __post_init__(self) -> None:
+        self.found = {0.0: self.before, 1.0: self.after}
+        self.chord = self.after.y - self.before.y
+        squared = self.line.dot(self.chord, self.chord)
+        points = (self.before, self.after)
+        # slopes of the cubic through both points; along the chord they advance evenly
+        self.slopes = [point.tangent * squared / self.line.dot(point.tangent, self.chord) for point in points]
+
+    def at(self, x: float, normal: np.ndarray | None = None) -> PathPoint:
+        """Return the point of the path at a share x in [0, 1]; normal: of the plane it is sought in, if not the chord.
+
+        Raises SegmentLostError.
+        """
+        if x in self.found:
+            return self.found[x]
+        start = _cubic(x, self.before.y, self.after.y, *self.slopes)
+        corrected = self.line.correct(start, self._stresses(x), self.chord if normal is None else normal)
+        self.iterations += corrected.iterations
+        if not corrected.ended.good or self.line.length(corrected.y - start) > self.line.length(self.chord):
+            raise SegmentLostError(corrected.ended.value)
+        try:
+            point = self.line.linearised(corrected.y, self.chord)
+        except (LinAlgError, ValueError) as error:
+            raise SegmentLostError("the tangent is singular") from error
+        if normal is None:
+            self.found[x] = point
+        return point
+
+    def at_load(self, load_factor: float) -> PathPoint:
+        """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
+        ends = (self.before.y[-1], self.after.y[-1], *(slope[-1] for slope in self.slopes))
+        x = brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15)
+        load = np.zeros(len(self.chord))
+        load[-1] = 1.0
+        point = self.at(x, normal=load)
+        point.y[-1] = load_factor
+        return point
+
+    def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
+        """Return the cubic of the stress resultants; the slopes at the ends are those along the path."""
+        rest = np.zeros(len(self.chord))
+        now = [self.line.stresses(point.y, rest) for point in (self.before, self.after)]
+        ahead = [
+            self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)
+        ]
+        if now[0] is None or now[1] is None or ahead[0] is None or ahead[1] is None:
+            return None
+        return tuple(
+            _cubic(x, a, b, a_ahead - a, b_ahead - b)
+            for a, b, a_ahead, b_ahead in zip(now[0], now[1], ahead[0], ahead[1], strict=True)
+        )
+
+    def limit_points(self) -> list[float]:
+        """Return the shares x where the load factor has an extremum, in order. Raises SegmentLostError."""
+        stops = [0.0, 1.0]
+        hidden = self._hidden_extremum()
+        if hidden is not None:
+            stops.insert(1, hidden)
+        found = []
+        for start, end in pairwise(stops):
+            left, right = self.at(start).tangent[-1], self.at(end).tangent[-1]
+            if left * right < 0.0:
+                x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
+                if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:
+                    raise SegmentLostError("the step leads to another path")
+                found.append(x)
+            elif right == 0.0 != left:
+                found.append(end)
+        return found
+
+    def _hidden_extremum(self) -> float | None:
+        """Return where the slope of the load factor may have changed its sign twice, after the cubic."""
+        left, right = self.slopes[0][-1], self.slopes[1][-1]
+        rise = self.chord[-1]
+        curvature = 6.0 * (left + right - 2.0 * rise)
+        if left * right <= 0.0 or curvature == 0.0:
+            return None
+        x = (2.0 * (2.0 * left + right) - 6.0 * rise) / curvature
+        if not 0.0 < x < 1.0:
+            return None
+        slope = left + x * (6.0 * rise - 4.0 * left - 2.0 * right) + x**2 * 0.5 * curvature
+        return float(x) if slope * left < 0.0 else None
+
+    def bifurcations(self, limits: list[float]) -> list[float]:
+        """Return the shares x where the tangent is singular but the load factor has no extremum, in order.
+
+        limits: shares of the limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
+        """
+        starts = [0.0, *(min(x + _BESIDE, 1.0) for x in limits)]
+        ends = [*(max(x - _BESIDE, 0.0) for x in limits), 1.0]
+        pairs = zip(starts, ends, strict=True)
+        return [x for start, end in pairs if start < end for x in self._singular(start, end)]
+
+    def _singular(self, start: float, end: float) -> list[float]:
+        self._require_one_path(start, end)
+        left, right = self.at(start), self.at(end)
+        change = abs(left.negative_pivots - right.negative_pivots)
+        if change == 0 or (change % 2 == 0 and not (self._symmetric(left) and self._symmetric(right))):
+            return []
+        middle = 0.5 * (start + end)
+        if end - start < _SHARPNESS:
+            return [middle]
+        if change == 1:
+            x = self._zero(start, end)
+            if x is not None:
+                self._require_one_path(max(x - _BESIDE, start), min(x + _BESIDE, end))
+                return [x]
+        return [*self._singular(start, middle), *self._singular(middle, end)]
+
+    def _require_one_path(self, start: float, end: float) -> None:
+        """Raise SegmentLostError where two points are further apart than the way from one to the other can be."""
+        apart = self.line.length(self.at(end).y - self.at(start).y) / self.line.length(self.chord)
+        if apart > 2.0 * (end - start) + _JUMP:
+            raise SegmentLostError("the step leads to another path")
+
+    def _zero(self, start: float, end: float) -> float | None:
+        """Return where the stiffness of the softest mode of the middle vanishes, None where it does not."""
+        mode = self.line.softest(self.at(0.5 * (start + end)).factors)
+
+        def stiffness(x: float) -> float:
+            try:
+                return 1.0 / self.line.softness(self.at(x).factors, mode)
+            except (LinAlgError, ValueError):
+                return 0.0
+
+        left, right = stiffness(start), stiffness(end)
+        if left * right >= 0.0:
+            return None
+        x = float(brentq(stiffness, start, end, xtol=_SHARPNESS, rtol=1e-9))
+        return x if abs(stiffness(x)) < _ZERO * max(abs(left), abs(right)) else None
+
+    def _symmetric(self, point: PathPoint) -> bool:
+        """Tell whether a tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
+        weights = self.line.weights[self.line.system.free_dofs]
+        a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
+        one, other = a @ point.factors.solve(b), b @ point.factors.solve(a)
+        return bool(abs(one - other) < 1e-6 * max(abs(one), abs(other)))
+
+
+def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:
+    """Cubic on [0, 1] with values a, b and slopes at its ends."""
+    y = 1.0 - x
+    return y * y * (1.0 + 2.0 * x) * a + x * x * (3.0 - 2.0 * x) * b + x * y * (y * a_slope - x * b_slope)

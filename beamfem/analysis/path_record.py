@@ -1,0 +1,67 @@
+"""What has been found of an equilibrium path, and how it outlives whatever ends the work."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.steps import Step
+from beamfem.errors import ConvergenceError
+from beamfem.model.model import Model
+from beamfem.path import Bifurcation, Path, PathState
+from beamfem.solution import Statistics
+
+
+class PathRecord:
+    """What has been found so far."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.points: list[np.ndarray] = []
+        self.limit_points: list[PathState] = []
+        self.bifurcations: list[Bifurcation] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = "the path was not followed to its end"
+
+    def add(self, point: PathPoint) -> None:
+        self.points.append(point.y)
+
+    def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
+        """Add the limit points and bifurcations of a step up to its last point."""
+        segment = step.segment
+        share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
+        for x in step.limits:
+            if x <= share:
+                self.limit_points.append(self.state(segment.at(x)))
+        for x in step.bifurcations:
+            if x <= share:
+                point = segment.at(x)
+                mode = line.softest(point.factors)[:-1]
+                self.bifurcations.append(Bifurcation(**vars(self.state(point)), mode=mode))
+
+    def state(self, point: PathPoint) -> PathState:
+        rest = np.zeros(self.model.size)
+        return PathState(point.y[:-1], rest, rest, point.load_factor, self.model)
+
+    def path(self) -> Path:
+        rows = np.array(self.points).reshape(len(self.points), -1)
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
+        rest = np.zeros((len(rows), self.model.size))
+        states = rows[:, :-1], rest, rest.copy()
+        critical = tuple(self.limit_points), tuple(self.bifurcations)
+        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
+
+
+@contextmanager
+def kept(record: PathRecord) -> Iterator[None]:
+    """Give the path so far to whatever exception ends it."""
+    try:
+        yield
+    except BaseException as error:
+        if record.points:
+            error.solution = record.path()  # type: ignore[attr-defined]
+            if not isinstance(error, ConvergenceError):
+                error.add_note("The path found before is the `solution` of this exception.")
+        raise

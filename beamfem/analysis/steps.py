@@ -1,0 +1,76 @@
+"""Steps along an equilibrium path: predicted, corrected, refused or accepted, and how long the next one is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.critical_points import Segment, SegmentLostError
+
+_SMALLEST = 1e-8
+_LARGEST = 0.5
+_LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
+_WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
+_LARGEST_TURN = 0.5
+_LARGEST_CORRECTION = 0.5  # of the step
+_WANTED_ITERATIONS = 8
+_LARGEST_INCREASE = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """An accepted step: the segment, the shares of its limit points and bifurcations, and the length of the next."""
+
+    segment: Segment
+    limits: list[float]
+    bifurcations: list[float]
+    iterations: int
+    next_size: float
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A step that was not accepted: why, and after how many iterations."""
+
+    reason: str
+    iterations: int
+
+
+def longest_step(line: Continuation, point: PathPoint) -> float:
+    """Return the longest step from a point: it bounds the movement and the change of the load factor."""
+    load_share = abs(float(point.tangent[-1])) / line.load_scale
+    moving = np.sqrt(max(1.0 - load_share**2, 0.0))
+    load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
+    return float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
+
+
+def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
+    """Tell whether a step would be lost in the digits of the point."""
+    return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
+
+
+def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
+    """Return the step of a length from a point with what lies in it, or why it is refused."""
+    change = size * point.tangent
+    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent))
+    if not corrected.ended.good:
+        return Refused(corrected.ended.value, corrected.iterations)
+    if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:
+        return Refused("the equilibrium beside the end of the step is too far away", corrected.iterations)
+    try:
+        new = line.linearised(corrected.y, point.tangent)
+    except (LinAlgError, ValueError):
+        return Refused("the tangent is singular", corrected.iterations)
+    turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
+    if turn > _LARGEST_TURN:
+        return Refused("the path turns too sharply", corrected.iterations)
+    segment = Segment(line, point, new)
+    try:
+        limits = segment.limit_points()
+        bifurcations = segment.bifurcations(limits)
+    except SegmentLostError as error:
+        return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
+    increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
+    iterations = corrected.iterations + segment.iterations
+    return Step(segment, limits, bifurcations, iterations, size * max(increase, 0.25))

@@ -1,0 +1,177 @@
+"""Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.branches import leave
+from beamfem.analysis.continuation import Continuation, PathPoint, begin
+from beamfem.analysis.critical_points import Segment
+from beamfem.analysis.free_motion import require_support
+from beamfem.analysis.newton import Newton
+from beamfem.analysis.path_record import PathRecord, kept
+from beamfem.analysis.statics import first_equilibrium
+from beamfem.analysis.steps import Step, longest_step, take_step, too_small
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.model import Model
+from beamfem.model.system import System
+from beamfem.path import Bifurcation, Path, PathState
+from beamfem.progress import progress
+from beamfem.validation import count, finite, positive
+
+_FIRST_STEP = 2e-3  # along the path, see Continuation
+_ITERATIONS = 15  # a shorter step is cheaper than more
+
+Until = float | Callable[[PathState], bool] | None
+
+
+def trace_equilibrium(
+    model: Model,
+    until: Until = None,
+    *,
+    start: Bifurcation | None = None,
+    direction: int = 1,
+    step: float | None = None,
+    points: int = 500,
+    newton: Newton | None = None,
+) -> Path:
+    """Return the equilibria along the path that leaves load factor 0 towards larger ones, past limit points.
+
+    until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
+    path ends after so many `points`. start: a bifurcation of a path of this model, to follow the branch that crosses
+    there to the side of its mode (direction 1) or to the other (-1). step: load factor of the second point.
+    Steps are cut and grown as the iterations and the turning of the path need.
+    Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
+    cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
+    Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
+    """
+    if until is not None and not callable(until):
+        until = finite("until", until)
+    if step is not None:
+        positive("step", step)
+        if start is not None:
+            raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
+    count("points", points)
+    if direction not in (1, -1):
+        raise InputError(f"direction must be 1 or -1, got {direction!r}")
+    system = System(model, static=True)
+    require_support(system)
+    _require_load(system)
+    _require_crossing(model, start)
+    record = PathRecord(model)
+    with kept(record), progress("points of the path", points) as report:
+        line, point = _first(system, newton or Newton(iterations=_ITERATIONS), start, record)
+        if start is None:
+            size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
+        elif points > 1:
+            point, size = _branch(line, point, start, direction, record)
+        landed = False
+        while not (landed or _met(until, record.state(point))):
+            if len(record.points) >= points:
+                record.ended = f"the {points} points are used up"
+                break
+            taken = _step(line, point, size, record)
+            size = taken.next_size
+            landing = _landing(line, taken, until) if isinstance(until, float) else None
+            landed = landing is not None
+            point = taken.segment.after if landing is None else landing
+            record.add(point)
+            record.add_critical(line, taken, point)
+            report(len(record.points))
+        else:
+            record.ended = "the path has come to where it shall end"
+    return record.path()
+
+
+def _require_load(system: System) -> None:
+    """Raise InputError where nothing changes with the load factor."""
+    for at in (0.37, 1.0):
+        changes = [(system.body(at), system.body(0.0)), (system.held_values(at), system.held_values(0.0))]
+        changes += zip(system.point_values(at), system.point_values(0.0), strict=True)
+        if any(not np.array_equal(now, before) for now, before in changes):
+            return
+    raise InputError(
+        "no load and no prescribed motion of this model changes with the load factor, so there is no path to follow"
+    )
+
+
+def _require_crossing(model: Model, start: Bifurcation | None) -> None:
+    """Raise InputError where `start` is no bifurcation of this model."""
+    if start is None:
+        return
+    if not isinstance(start, Bifurcation):
+        raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
+    if start.model is not model:
+        raise InputError("start is a bifurcation of another model; trace the path of this one first")
+
+
+def _first(
+    system: System, newton: Newton, start: Bifurcation | None, record: PathRecord
+) -> tuple[Continuation, PathPoint]:
+    """Return the continuation and the first point: at load factor 0, or the bifurcation `start`."""
+    first = first_equilibrium(system, newton)
+    record.iterations += first.iterations
+    if not first.ended.good:
+        record.points.append(np.append(system.reference, 0.0))
+        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
+    try:
+        line, point = begin(system, first.state, 0.0, newton)
+        if start is not None:
+            point = line.linearised(np.append(start.p, start.at), point.tangent)
+    except (LinAlgError, ValueError):
+        at = 0.0 if start is None else start.at
+        raise ConvergenceError(f"there is no path from load factor {at:.6g}: the tangent is singular") from None
+    record.add(point)
+    return line, point
+
+
+def _branch(
+    line: Continuation, point: PathPoint, start: Bifurcation, direction: int, record: PathRecord
+) -> tuple[PathPoint, float]:
+    """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
+    found = leave(line, point, start, direction)
+    if isinstance(found, str):
+        raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
+    record.add(found)
+    return found, line.length(found.y - point.y)
+
+
+def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
+    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
+    size = min(size, longest_step(line, point))
+    whole = True
+    while True:
+        taken = take_step(line, point, size)
+        record.iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken if whole else replace(taken, next_size=min(taken.next_size, size))
+        record.cuts += 1
+        whole = False
+        size *= 0.5
+        if too_small(line, point, size):
+            record.ended = taken.reason
+            raise ConvergenceError(
+                f"the path ends at load factor {point.load_factor:.6g} after {len(record.points)} points: "
+                f"{taken.reason}, with steps along it down to {size:.1e}",
+                record.path(),
+            )
+
+
+def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
+    """Return the first point of a step with the load factor, None where it does not come to it."""
+    shares = [0.0, *step.limits, 1.0]
+    stops = [step.segment.at(x) for x in shares]
+    for before, after in pairwise(stops):
+        low, high = before.load_factor - load_factor, after.load_factor - load_factor
+        if high == 0.0:
+            return after
+        if low * high < 0.0:
+            return Segment(line, before, after).at_load(load_factor)
+    return None
+
+
+def _met(until: Until, state: PathState) -> bool:
+    return callable(until) and bool(until(state))

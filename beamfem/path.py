@@ -1,0 +1,90 @@
+"""An equilibrium path: its states, its limit points and its bifurcations."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beamfem.model.beam import Beam, Point
+from beamfem.model.model import Model
+from beamfem.postprocess import Components, Fields, SectionForces
+from beamfem.solution import Solution, State, Statistics
+
+
+@dataclass(frozen=True, eq=False)
+class PathState(State):
+    """One state of a path, with what a Solution offers but without its axis of steps."""
+
+    model: Model
+
+    @property
+    def load_factor(self) -> float:
+        return self.at
+
+    @cached_property
+    def _alone(self) -> Solution:
+        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
+        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"))
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point (2,) [m]."""
+        return np.asarray(self._alone.position(point)[0])
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference (2,) [m]."""
+        return np.asarray(self._alone.displacement(point)[0])
+
+    def rotation(self, point: Point) -> float:
+        """Return the rotation of the section from the reference [rad], counter-clockwise.
+
+        Several turns count with rotation coordinates; with gradients the beam's start is taken within half a turn.
+        """
+        return float(self._alone.rotation(point)[0])
+
+    def reaction(self, point: Point) -> np.ndarray:
+        """Return what a support does to the beam (3,): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        return np.asarray(self._alone.reaction(point)[0])
+
+    def fields(self, point: Point) -> Fields:
+        """Return position, gradients, rotation, shear angle, strain and stress at a point."""
+        found = self._alone.fields(point)
+        values = [getattr(found, name) for name in Fields.__dataclass_fields__]
+        return Fields(*(_first(value) for value in values))
+
+    def section_forces(self, beam: Beam) -> SectionForces:
+        """Return normal and shear force [N] and moment [N m] at the Gauss points of a beam (stations,)."""
+        found = self._alone.section_forces(beam)
+        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation(PathState):
+    """A state where another branch crosses the path.
+
+    mode (n,): the change of the coordinates that the tangent does not resist, its root mean square 1 in lengths of the
+    model and radians, its largest coordinate positive.
+    """
+
+    mode: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Path(Solution):
+    """The equilibria along a path, in order; load factors may fall.
+
+    Row i is the state `path[i]`; limit points and bifurcations lie between the rows. `save` keeps the rows only.
+    """
+
+    limit_points: tuple[PathState, ...] = ()
+    bifurcations: tuple[Bifurcation, ...] = ()
+
+    def __getitem__(self, row: int) -> PathState:
+        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+
+
+def _first(value: Any) -> Any:
+    """Drop the axis of steps."""
+    if isinstance(value, Components):
+        return Components(value.xx[0], value.yy[0], value.xy[0])
+    return value[0]

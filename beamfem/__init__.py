@@ -3,6 +3,7 @@
 from beamfem.analysis.dynamics import simulate
 from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.modes import Modes, solve_modes
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
 from beamfem.curves import Line
@@ -40,6 +41,7 @@ __all__ = [
     "Line",
     "Material",
     "Model",
+    "Modes",
     "Newton",
     "Pin",
     "Point",
@@ -57,5 +59,6 @@ __all__ = [
     "UnknownPointError",
     "load",
     "simulate",
+    "solve_modes",
     "solve_static",
 ]

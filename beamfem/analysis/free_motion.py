@@ -19,7 +19,8 @@ def require_support(system: System) -> None:
         _, singular, basis = np.linalg.svd(rank_rows)
         rank = int((singular > 1e-9).sum())
         if rank < 3:
-            motions = ", ".join(_describe(motion, mesh.beam.curve.length, system, number) for motion in basis[rank:])
+            length, start = mesh.beam.curve.length, mesh.beam.start.reference
+            motions = ", ".join(f"it {describe(m[:2] * length, m[2], start, length)}" for m in basis[rank:])
             raise FreeMotionError(
                 f"beam {number} can move freely: {motions}. A static solve needs supports that hold it "
                 "(a Clamp, or a Pin and a Roller); without them, use simulate"
@@ -47,11 +48,13 @@ def _rigid_motions(system: System, number: int) -> np.ndarray:
     return modes.reshape(-1, 3)
 
 
-def _describe(motion: np.ndarray, length: float, system: System, number: int) -> str:
-    """Say a combination of rigid motions in words."""
-    ux, uy, turn = motion
-    if abs(turn) < 1e-9:
-        return f"it translates along ({ux:.3g}, {uy:.3g})"
-    start = system.model.beams[number].start.reference
-    x, y = start[0] - uy / turn * length, start[1] + ux / turn * length
-    return f"it turns about ({x:.6g}, {y:.6g})"
+def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:
+    """Say a rigid motion in words: the velocity (2,) of the point `origin` and the turn; reach: size of the body."""
+    if abs(turn) * reach < 1e-6 * np.hypot(*translation):
+        x, y = translation / np.hypot(*translation)
+        if max(abs(x), abs(y)) > 1.0 - 1e-9:
+            return f"translates along {'x' if abs(x) > abs(y) else 'y'}"
+        return f"translates along ({x:.3g}, {y:.3g})"
+    centre = origin + np.array([-translation[1], translation[0]]) / turn
+    x, y = np.where(np.abs(centre) < 1e-6 * reach, 0.0, centre)
+    return f"turns about ({x:.6g}, {y:.6g})"

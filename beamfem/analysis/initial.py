@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.system import System
-from beamfem.solution import State
+from beamfem.solution import Solution, State
 from beamfem.validation import finite, vector
 
 
@@ -25,15 +25,15 @@ class RigidVelocity:
         finite("angular", self.angular)
 
 
-def start_state(system: System, start: State | None) -> np.ndarray:
+def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
     """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
     if start is None:
         return system.reference.copy()
     if not isinstance(start, State):
-        raise InputError(f"start must be a state, such as solution[-1], got a {type(start).__name__}")
+        raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
     if len(start.p) != system.model.size:
         raise InputError(
-            f"start has {len(start.p)} coordinates, this model has {system.model.size}; "
+            f"{name} has {len(start.p)} coordinates, this model has {system.model.size}; "
             "take it from a model of the same beams, elements and support points"
         )
     return np.array(start.p)
@@ -82,3 +82,21 @@ def _rigid(velocity: RigidVelocity, labels: tuple[str, ...], now: np.ndarray, ou
         out[:, column] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
         if name == "r":
             out[:, column] += velocity.vector[component]
+
+
+def resting_state(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the coordinates (n,) of a static equilibrium and its load factor: the reference and 0 for None.
+
+    about: a state, or a static solution for its last one; it may come from a model with other supports.
+    Raises InputError for a state that moves.
+    """
+    if isinstance(about, Solution):
+        if not about.static:
+            raise InputError("about must be a static equilibrium, this solution is a motion; give one of solve_static")
+        about = about[-1]
+    p = start_state(system, about, "about")
+    if about is None:
+        return p, 0.0
+    if np.any(about.v) or np.any(about.a):
+        raise InputError("about must be a state at rest, this one moves; take it from solve_static")
+    return p, about.at

@@ -1,5 +1,6 @@
 """Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
 
+from beamfem.analysis.buckling import Buckling, solve_buckling
 from beamfem.analysis.dynamics import simulate
 from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
@@ -28,6 +29,7 @@ __all__ = [
     "BeamfemError",
     "BilinearANCF",
     "BilinearCRBF",
+    "Buckling",
     "Clamp",
     "ContinuumMechanics",
     "ConvergenceError",
@@ -59,6 +61,7 @@ __all__ = [
     "UnknownPointError",
     "load",
     "simulate",
+    "solve_buckling",
     "solve_modes",
     "solve_static",
 ]

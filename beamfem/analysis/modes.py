@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.analysis.balance import left_over
 from beamfem.analysis.eigenpairs import Pairs, general_pairs, largest_pairs
-from beamfem.analysis.equations import residual
 from beamfem.analysis.initial import resting_state
 from beamfem.analysis.pencil import UNTURNED, Pencil
 from beamfem.analysis.rigid import sort_rigid
@@ -17,8 +17,6 @@ from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
 from beamfem.validation import positive
 
-_BALANCED = 1e-6  # of the largest force: a state this far from equilibrium is none
-_CANCELLED = 1e-13
 _REAL = 1e-8  # imaginary parts of lambda below this share are round-off
 _CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be counted apart
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
@@ -93,7 +91,12 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
     pencil = Pencil(system, p, load_factor)
-    _require_equilibrium(pencil)
+    left = left_over(system, p, load_factor)
+    if left > 0.0:
+        raise InputError(
+            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
+            "is left over. Give about= a state of solve_static with the same loads"
+        )
     squares, vectors = _symmetric(pencil, count) if pencil.symmetric else _general(pencil, count)
     if len(squares) < count:
         raise InputError(f"count is {count}, but supports leave this model only {len(squares)} modes")
@@ -167,20 +170,3 @@ def _rates(squares: np.ndarray) -> np.ndarray:
 
 def _quadratic(pencil: Pencil, vectors: np.ndarray) -> np.ndarray:
     return np.asarray((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))
-
-
-def _require_equilibrium(pencil: Pencil) -> None:
-    """Raise InputError where forces are left over that neither round-off nor a solve's tolerance explains."""
-    system, p = pencil.system, pencil.p
-    rest = np.zeros_like(p)
-    unbalanced = residual(system, p, rest, rest, pencil.load_factor)
-    left = np.abs(system.along_free(unbalanced))
-    acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(pencil.load_factor)]
-    force = max([float(np.abs(unbalanced).max()), *acting])
-    # strains carry the round-off of positions, which the stiffness turns into forces
-    reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
-    if np.any(left > np.maximum(_BALANCED * force, _CANCELLED * reach * np.abs(pencil.stiffness.diagonal()))):
-        raise InputError(
-            f"the state to vibrate about is not in equilibrium: at load factor {pencil.load_factor:g} a force of "
-            f"{left.max():.3g} is left over. Give about= a state of solve_static with the same loads"
-        )

@@ -6,7 +6,7 @@ from beamfem.analysis.equations import STATICS, linearise
 from beamfem.model.system import System
 
 _TOLERANCE = 1e-6  # of the largest force: a state this far from equilibrium is none
-_CANCELLED = 1e-13  # strains carry the round-off of positions, which the stiffness turns into forces
+_CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, up to this for fields of high order
 
 
 def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
@@ -17,7 +17,7 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
-    stiffest = np.abs(tangent.sparse(system.turned).diagonal())
-    if np.all(left <= np.maximum(_TOLERANCE * force, _CANCELLED * reach * stiffest)):
+    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.turned)).sum(axis=1))
+    if np.all(left <= np.maximum(_TOLERANCE * force, round_off)):
         return 0.0
     return float(left.max())

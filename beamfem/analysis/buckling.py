@@ -86,10 +86,12 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     if len(linearised) < count:
         found = f"only {len(linearised)} of {count} load factors" if len(linearised) else "no positive load factor"
         raise InputError(
-            f"{found} can be critical: the loads stiffen the model, or would have to move it by more than half its "
-            "length before. Loads in the other direction have a PointForce of the other sign"
+            f"{found} can be critical: the loads stiffen the model, or would first have to move it by more than half "
+            "of its length"
         )
-    loads, shapes, states = [], [], []
+    loads: list[float] = []
+    shapes: list[np.ndarray] = []
+    states: list[np.ndarray] = []
     for number, guess in enumerate(linearised):
         try:
             load = critical_load(path, start, number, guess, count)
@@ -109,6 +111,6 @@ def _no_further(path: PrimaryPath, start: Start, loads: list[float]) -> str:
     where = f"a limit point at load factor {limit:.6g}" if limit else f"load factor {path.found[-1].load_factor:.6g}"
     before = f"after {', '.join(f'{load:.6g}' for load in loads)}" if loads else "before any load factor"
     return (
-        f"the loading path ends in {where} {before} was found critical: "
-        "there is no equilibrium near by at a higher load. trace_equilibrium follows the path around"
+        f"the loading path ends in {where} {before} was found critical; "
+        "no equilibrium near by carries more. trace_equilibrium follows the path around it"
     )

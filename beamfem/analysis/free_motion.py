@@ -54,7 +54,7 @@ def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: fl
         x, y = translation / np.hypot(*translation)
         if max(abs(x), abs(y)) > 1.0 - 1e-9:
             return f"translates along {'x' if abs(x) > abs(y) else 'y'}"
-        return f"translates along ({x:.3g}, {y:.3g})"
+        return f"translates along ({abs(x):.3g}, {np.copysign(y, x * y):.3g})"
     centre = origin + np.array([-translation[1], translation[0]]) / turn
     x, y = np.where(np.abs(centre) < 1e-6 * reach, 0.0, centre)
     return f"turns about ({x:.6g}, {y:.6g})"

@@ -47,7 +47,9 @@ class Modes:
         return self.frequencies[len(self.rigid) :]
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
-        """Return one period of a mode (a rigid one: a second of its motion) as a Solution to draw or export.
+        """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
+
+        Of a divergence, the time in which it grows by e.
 
         mode: its row; amplitude [m] of the largest displacement of a node, by default a tenth of the longest beam.
         Exact while the amplitude is small.
@@ -61,11 +63,7 @@ class Modes:
         positive("amplitude", amplitude)
         shape = amplitude / largest_translation(self.model, self.state.p, self.modes[mode]) * self.modes[mode]
         frequency, growth = self.frequencies[mode], self.growth[mode]
-        if frequency > 0.0:
-            period = 1.0 / frequency
-        else:
-            period = 1.0 / growth if growth > 0.0 else 1.0
-        at = np.linspace(0.0, period, frames)
+        at = np.linspace(0.0, 1.0 / (frequency or abs(growth) or 1.0), frames)
         rate = growth + 2j * np.pi * frequency
         if rate == 0.0:
             p, v, a = (np.outer(weight, np.real(shape)) for weight in (at, np.ones(frames), np.zeros(frames)))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.model.model import Model
-from beamfem.postprocess import nodal_velocities, nodal_vectors
+from beamfem.postprocess import nodal_vectors, nodal_velocities
 
 
 def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -18,10 +18,10 @@ def nodal_motion(model: Model, p: np.ndarray, shape: np.ndarray) -> list[tuple[n
 
 def largest_translation(model: Model, p: np.ndarray, shape: np.ndarray) -> float:
     """Return the largest displacement of a node in a shape (n,), real or complex; where no node moves, 1 rad counts."""
-    parts = [nodal_motion(model, p, part) for part in (np.real(shape), np.imag(shape))]
-    moved = np.sqrt(sum(np.concatenate([u for _, u in part]) ** 2 for part in parts).sum(axis=1)).max()
+    parts = [np.concatenate([u for _, u in nodal_motion(model, p, part)]) for part in (shape.real, shape.imag)]
+    moved = float(np.hypot(*(np.linalg.norm(part, axis=1) for part in parts)).max())
     largest = float(np.abs(shape).max())
-    return float(moved) if moved > 1e-9 * largest else largest
+    return moved if moved > 1e-9 * largest else largest
 
 
 def upright(shapes: np.ndarray) -> np.ndarray:

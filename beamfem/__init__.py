@@ -1,8 +1,10 @@
 """Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
 
+from beamfem.analysis.buckling import Buckling, solve_buckling
 from beamfem.analysis.dynamics import simulate
 from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.modes import Modes, solve_modes
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
 from beamfem.curves import Line
@@ -29,6 +31,7 @@ __all__ = [
     "BilinearANCF",
     "BilinearCRBF",
     "Circle",
+    "Buckling",
     "Clamp",
     "ContinuumMechanics",
     "ConvergenceError",
@@ -47,6 +50,7 @@ __all__ = [
     "Line",
     "Material",
     "Model",
+    "Modes",
     "Newton",
     "Pin",
     "Point",
@@ -69,5 +73,7 @@ __all__ = [
     "UnknownPointError",
     "load",
     "simulate",
+    "solve_buckling",
+    "solve_modes",
     "solve_static",
 ]

@@ -27,7 +27,11 @@ def require_support(system: System) -> None:
     moving = [int(np.argmax(np.abs(motion.reshape(-1, 3)).max(axis=1)[body])) for motion in free]
     number = moving[0]
     motions = [motion.reshape(-1, 3)[body[number]] for motion in free]
-    described = [_describe(motion, rows.centre, system.extent) for motion in motions if np.abs(motion).max() > _ZERO]
+    described = [
+        "it " + describe(motion[:2] * system.extent, motion[2], rows.centre, system.extent)
+        for motion in motions
+        if np.abs(motion).max() > _ZERO
+    ]
     start, end = model.beams[number].start, model.beams[number].end
     sizes = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
     farthest = (start, end)[int(np.argmax(sizes))]
@@ -114,12 +118,13 @@ def _null_space(rows: csr_array, size: int) -> np.ndarray:
     return np.asarray(vectors.T[values < _ZERO])
 
 
-def _describe(motion: np.ndarray, centre: np.ndarray, extent: float) -> str:
-    """Say a rigid motion in words."""
-    ux, uy, turn = motion
-    if abs(turn) < _ZERO:
-        return f"it translates along ({ux:.3g}, {uy:.3g})"
-    place = centre + np.array([-uy, ux]) / turn * extent
-    # round-off of the null space is no place
-    x, y = extent * np.round(place / extent, 9) + 0.0
-    return f"it turns about ({x:.6g}, {y:.6g})"
+def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:
+    """Say a rigid motion in words: the velocity (2,) of the point `origin` and the turn; reach: size of the body."""
+    if abs(turn) * reach < 1e-6 * np.hypot(*translation):
+        x, y = translation / np.hypot(*translation)
+        if max(abs(x), abs(y)) > 1.0 - 1e-9:
+            return f"translates along {'x' if abs(x) > abs(y) else 'y'}"
+        return f"translates along ({abs(x):.3g}, {np.copysign(y, x * y):.3g})"
+    centre = origin + np.array([-translation[1], translation[0]]) / turn
+    x, y = np.where(np.abs(centre) < 1e-6 * reach, 0.0, centre)
+    return f"turns about ({x:.6g}, {y:.6g})"

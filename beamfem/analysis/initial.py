@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.system import System, coordinate_columns
-from beamfem.solution import State
+from beamfem.solution import Solution, State
 from beamfem.validation import finite, vector
 
 
@@ -26,15 +26,15 @@ class RigidVelocity:
         finite("angular", self.angular)
 
 
-def start_state(system: System, start: State | None) -> np.ndarray:
+def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
     """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
     if start is None:
         return system.reference.copy()
     if not isinstance(start, State):
-        raise InputError(f"start must be a state, such as solution[-1], got a {type(start).__name__}")
+        raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
     if len(start.p) != system.model.size:
         raise InputError(
-            f"start has {len(start.p)} coordinates, this model has {system.model.size}; "
+            f"{name} has {len(start.p)} coordinates, this model has {system.model.size}; "
             "take it from a model of the same beams, elements and support points"
         )
     return np.array(start.p)
@@ -92,3 +92,21 @@ def _along(mesh: BeamMesh, values: np.ndarray) -> np.ndarray:
     for part in np.split(np.arange(mesh.nodes), breaks):
         result[part] = np.gradient(values[part], mesh.arc[part], axis=0, edge_order=1)
     return result
+
+
+def resting_state(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the coordinates (n,) of a static equilibrium and its load factor: the reference and 0 for None.
+
+    about: a state, or a static solution for its last one; it may come from a model with other supports.
+    Raises InputError for a state that moves.
+    """
+    if isinstance(about, Solution):
+        if not about.static:
+            raise InputError("about must be a static equilibrium, this solution is a motion; give one of solve_static")
+        about = about[-1]
+    p = start_state(system, about, "about")
+    if about is None:
+        return p, 0.0
+    if np.any(about.v) or np.any(about.a):
+        raise InputError("about must be a state at rest, this one moves; take it from solve_static")
+    return p, about.at

@@ -1,0 +1,23 @@
+"""Tell whether a state is an equilibrium."""
+
+import numpy as np
+
+from beamfem.analysis.equations import STATICS, linearise
+from beamfem.model.system import System
+
+_TOLERANCE = 1e-6  # of the largest force: a state this far from equilibrium is none
+_CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, up to this for fields of high order
+
+
+def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the largest force [N, N m] that is not balanced in the state p (n,); 0 if it is small enough."""
+    rest = np.zeros_like(p)
+    unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
+    left = np.abs(system.along_free(unbalanced))
+    acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
+    force = max([float(np.abs(unbalanced).max()), *acting])
+    reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
+    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.turned)).sum(axis=1))
+    if np.all(left <= np.maximum(_TOLERANCE * force, round_off)):
+        return 0.0
+    return float(left.max())

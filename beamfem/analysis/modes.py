@@ -1,0 +1,170 @@
+"""Free vibration about a state."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.analysis.balance import left_over
+from beamfem.analysis.eigenpairs import Pairs, general_pairs, largest_pairs
+from beamfem.analysis.initial import resting_state
+from beamfem.analysis.pencil import UNTURNED, Pencil
+from beamfem.analysis.rigid import sort_rigid
+from beamfem.analysis.shapes import largest_translation, upright
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.model import Model
+from beamfem.model.system import System
+from beamfem.solution import Solution, State, Statistics
+from beamfem.validation import count as whole_number
+from beamfem.validation import positive
+
+_REAL = 1e-8  # imaginary parts of lambda below this share are round-off
+_CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be counted apart
+_SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes of small vibration about `state`: p(t) = p + Re(phi exp(s t)), s = growth + 2 pi i frequency.
+
+    frequencies (count,) [Hz]: first the rigid ones, exactly 0, then ascending; modes (count, n): shapes phi over all
+    coordinates, phi^T M phi = 1, complex only where follower loads make the tangent unsymmetric; growth (count,) [1/s]:
+    0 where the state is stable, > 0 for divergence (frequency 0) and flutter; rigid: for each rigid mode what it moves.
+    """
+
+    model: Model
+    state: State
+    frequencies: np.ndarray
+    growth: np.ndarray
+    modes: np.ndarray
+    rigid: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """Frequencies [Hz] without those of the rigid modes."""
+        return self.frequencies[len(self.rigid) :]
+
+    def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
+        """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
+
+        Of a divergence, the time in which it grows by e.
+
+        mode: its row; amplitude [m] of the largest displacement of a node, by default a tenth of the longest beam.
+        Exact while the amplitude is small.
+        """
+        if mode not in range(len(self)):
+            raise InputError(f"mode must be between 0 and {len(self) - 1}, got {mode!r}")
+        if whole_number("frames", frames) < 2:
+            raise InputError("frames must be at least 2")
+        if amplitude is None:
+            amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
+        positive("amplitude", amplitude)
+        shape = amplitude / largest_translation(self.model, self.state.p, self.modes[mode]) * self.modes[mode]
+        frequency, growth = self.frequencies[mode], self.growth[mode]
+        at = np.linspace(0.0, 1.0 / (frequency or abs(growth) or 1.0), frames)
+        rate = growth + 2j * np.pi * frequency
+        if rate == 0.0:
+            p, v, a = (np.outer(weight, np.real(shape)) for weight in (at, np.ones(frames), np.zeros(frames)))
+        else:
+            moved = np.outer(np.exp(rate * at), shape)
+            p, v, a = (np.real(rate**order * moved) for order in range(3))
+        statistics = Statistics(0, frames - 1, 0, "a mode of small vibration")
+        return Solution(self.model, False, at, self.state.p + p, v, a, statistics)
+
+
+def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
+    """Return the `count` lowest modes of K phi = omega^2 M phi, those of rigid motions included.
+
+    about: the static equilibrium to vibrate about, whose loads and stresses then count (prestress, gravity): a state,
+    or a solution for its last state; it may come from a model with other supports. By default the reference at load
+    factor 0. K: tangent stiffness with the loads at the state's load factor, M: mass, both there.
+    Raises InputError; ConvergenceError where modes were missed.
+    """
+    whole_number("count", count)
+    system = System(model, static=True)
+    p, load_factor = resting_state(system, about)
+    unknown = len(system.free_dofs)
+    if count > unknown:
+        raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
+    pencil = Pencil(system, p, load_factor)
+    left = left_over(system, p, load_factor)
+    if left > 0.0:
+        raise InputError(
+            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
+            "is left over. Give about= a state of solve_static with the same loads"
+        )
+    squares, vectors = _symmetric(pencil, count) if pencil.symmetric else _general(pencil, count)
+    if len(squares) < count:
+        raise InputError(f"count is {count}, but supports leave this model only {len(squares)} modes")
+    order = np.argsort(np.abs(squares) > pencil.round_off, kind="stable")
+    squares, vectors = squares[order], vectors[:, order]
+    rigid = int((np.abs(squares) <= pencil.round_off).sum())
+    rates = _rates(squares)
+    rates[:rigid] = 0.0
+    rest = rigid + np.lexsort((-rates.real[rigid:], rates.imag[rigid:]))
+    keep = np.append(np.arange(rigid), rest)
+    shapes = np.zeros((len(keep), model.size), dtype=vectors.dtype)
+    shapes[:, system.free_dofs] = vectors[:, keep].T
+    shapes /= np.sqrt(np.real(_quadratic(pencil, vectors[:, keep])))[:, None]
+    words: tuple[str, ...] = ()
+    if rigid:
+        shapes[:rigid], words = sort_rigid(pencil, np.real(shapes[:rigid]))
+    rates = rates[keep][:count]
+    rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor)
+    frequencies = rates.imag / (2.0 * np.pi)
+    return Modes(model, rest_state, frequencies, rates.real, upright(shapes[:count]), words[:count])
+
+
+def _symmetric(pencil: Pencil, count: int) -> Pairs:
+    """Return the lowest omega^2 (m,), ascending, m >= count, and vectors (unknown, m); none is left out."""
+    shift = pencil.shift()
+    tangent = pencil.shifted(shift)
+    factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
+    wanted = min(count + _SPARE, len(pencil.system.free_dofs))
+    known: Pairs | None = None
+    missing = wanted
+    for _ in range(8):
+        known = largest_pairs(pencil.mass, stiffness, factors, missing, known)
+        positive_ones = known[0] > 0.0
+        squares = shift + 1.0 / known[0][positive_ones]
+        vectors = known[1][:, positive_ones]
+        if len(squares) == len(pencil.system.free_dofs) or len(squares) < wanted:
+            return squares, vectors
+        below = count + int(np.argmax(np.diff(squares[count - 1 :])))
+        cut = 0.5 * (squares[below - 1] + squares[below])
+        if squares[below] - squares[below - 1] <= _CLUSTER * abs(cut):
+            missing = wanted
+            continue
+        missing = pencil.below(cut) - below
+        if missing == 0:
+            return squares[:below], vectors[:, :below]
+        missing = max(missing, _SPARE)
+    raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
+
+
+def _general(pencil: Pencil, count: int) -> Pairs:
+    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric."""
+    shift = pencil.shift()
+    tangent = pencil.shifted(shift)
+    factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
+    reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE)
+    found = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
+    return shift + 1.0 / reciprocal[found], vectors[:, found]
+
+
+def _rates(squares: np.ndarray) -> np.ndarray:
+    """Return s = growth + i omega (m,) with s^2 = -omega^2 and omega >= 0.
+
+    Of a conjugate pair of omega^2, one is the motion that grows and the other the one that decays.
+    """
+    squares = np.asarray(squares, dtype=complex)
+    real = np.abs(squares.imag) <= _REAL * np.abs(squares)
+    squares = np.where(real, squares.real, squares)
+    rates = np.sqrt(-squares)
+    return np.where(rates.imag < 0.0, -rates, rates) + 0.0
+
+
+def _quadratic(pencil: Pencil, vectors: np.ndarray) -> np.ndarray:
+    return np.asarray((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))

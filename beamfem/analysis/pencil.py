@@ -1,0 +1,78 @@
+"""Small vibration about a state: stiffness and mass of the unknown coordinates, counts of eigenvalues."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from beamfem.analysis.equations import INERTIA, STATICS, linearise
+from beamfem.analysis.tangent import Tangent
+from beamfem.model.system import System
+
+# turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
+UNTURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+_ROUND_OFF = 16.0 * np.finfo(float).eps
+_ASYMMETRY = 1e-12
+
+
+def is_symmetric(matrix: csr_array) -> bool:
+    """Tell whether a tangent is symmetric to round-off, which the diagonal measures."""
+    size = np.sqrt(np.abs(matrix.diagonal()))
+    difference = (matrix - matrix.T).tocoo()
+    scale = size[difference.row] * size[difference.col]
+    return bool(np.all(np.abs(difference.data) <= _ASYMMETRY * np.maximum(scale, 1e-3 * size.max() ** 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Pencil:
+    """K phi = lambda M phi about the state p (n,) at a load factor."""
+
+    system: System
+    p: np.ndarray
+    load_factor: float
+
+    def shifted(self, shift: float) -> Tangent:
+        """Return K - shift M."""
+        return self._tangent((1.0, 0.0, -shift))
+
+    def _tangent(self, coefficients: tuple[float, float, float]) -> Tangent:
+        rest = np.zeros(len(self.p))
+        return linearise(self.system, self.p, rest, rest, self.load_factor, coefficients)[1]
+
+    @cached_property
+    def mass(self) -> csr_array:
+        return self._tangent(INERTIA).sparse(UNTURNED)
+
+    @cached_property
+    def stiffness(self) -> csr_array:
+        return self._tangent(STATICS).sparse(UNTURNED)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        return is_symmetric(self.stiffness)
+
+    @cached_property
+    def round_off(self) -> float:
+        """Eigenvalues [1/s^2] up to this size cannot be told from zero."""
+        return _ROUND_OFF * self._largest
+
+    @cached_property
+    def _largest(self) -> float:
+        return float(np.max(np.abs(self.stiffness.diagonal()) / self.mass.diagonal()))
+
+    def below(self, value: float) -> int:
+        """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
+        return self.shifted(value).factorised(self.system.turned).negative_pivots
+
+    def shift(self) -> float:
+        """Return a shift [1/s^2] below all eigenvalues, of the size of the lowest elastic one."""
+        soft = self.below(self.round_off)
+        low, high = np.log(self.round_off), np.log(4.0 * self._largest)
+        while high - low > np.log(4.0):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if self.below(np.exp(middle)) > soft else (middle, high)
+        shift = -float(np.exp(high))
+        while self.symmetric and self.below(shift) > 0:
+            shift *= 4.0
+        return shift

@@ -1,0 +1,175 @@
+"""Critical loads against the Reissner column in closed form, and the ways a search for them ends."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import beamfem as bf
+
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+SUPPORTS = {
+    "cantilever": lambda b: [bf.Clamp(b.start)],
+    "hinged-hinged": lambda b: [bf.Pin(b.start), bf.Roller(b.end)],
+    "clamped-hinged": lambda b: [bf.Clamp(b.start), bf.Roller(b.end)],
+    "clamped-clamped": lambda b: [bf.Clamp(b.start), bf.Prescribed(b.end, uy=0.0, rotation=0.0)],
+}
+
+
+def reissner(condition, low, high, slenderness):
+    """Return P L^2/EI of a column of length L = slenderness h that is compressed by P and then bends.
+
+    With the axial stretch 1 - P/EA and V the transverse force, linearised: EI t'' + P eta t = -V eta,
+    y' = eta t + V/GA, eta = 1 - P/EA + P/GA; condition(u, q) = 0 with u = L sqrt(P eta/EI), q = P/(eta GA).
+    """
+    axial = 12.0 * slenderness**2
+    shear = axial * 5.0 / 6.0 / 2.6
+
+    def value(load):
+        eta = 1.0 - load / axial + load / shear
+        return condition(np.sqrt(load * eta), load / (eta * shear))
+
+    return brentq(value, low, high, xtol=1e-13, rtol=1e-14)
+
+
+def column(supports, slenderness, elements, element=None, direction=(1.0, 0.0), load=-1.0):
+    """A column of length 1 and its critical load in units of EI/L^2."""
+    end = np.array(direction) / np.hypot(*direction)
+    section = bf.Rectangle(0.1, 1.0 / slenderness)
+    beam = bf.Beam(bf.Line((0, 0), tuple(end)), elements, element or bf.CRBF(4), section, STEEL)
+    force = load * STEEL.youngs_modulus * section.second_moment
+    return bf.Model([beam], supports(beam), [bf.PointForce(beam.end, tuple(force * end))])
+
+
+@pytest.mark.parametrize(
+    ("name", "slenderness", "exact"),
+    [
+        ("hinged-hinged", 20, 9.8269530896528),  # 8.buckling.hinged-hinged.L/h=20.ks=5/6
+        ("cantilever", 10, 2.4567382724132),  # 8.buckling.cantilever.L/h=10.ks=5/6
+    ],
+)
+def test_columns_buckle_at_the_reference_load(name, slenderness, exact):
+    found = bf.solve_buckling(column(SUPPORTS[name], slenderness, 12))
+    assert found.load_factors == pytest.approx([exact], rel=1e-10)
+    # without its compression before, a column is stiffer or softer by about P/EA + P/GA
+    assert found.linearised == pytest.approx([exact], rel=5e-3)
+    assert abs(found.linearised[0] / exact - 1.0) > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("name", "conditions"),
+    [
+        ("cantilever", [(lambda u, q: np.cos(u), 1.5, 4.0), (lambda u, q: np.cos(u), 15.0, 30.0)]),
+        ("hinged-hinged", [(lambda u, q, n=n: u - n * np.pi, 8.0 * n, 11.0 * n**2) for n in (1, 2, 3)]),
+        ("clamped-hinged", [(lambda u, q: np.sin(u) - u * (1.0 - q) * np.cos(u), 15.0, 25.0)]),
+        (
+            "clamped-clamped",
+            [
+                (lambda u, q: u - 2.0 * np.pi, 20.0, 60.0),
+                (lambda u, q: np.sin(u / 2) - u / 2 * (1.0 - q) * np.cos(u / 2), 60.0, 90.0),
+            ],
+        ),
+    ],
+)
+def test_columns_of_every_end_buckle_at_the_root_of_their_equation(name, conditions):
+    exact = [reissner(*condition, 10) for condition in conditions]
+    found = bf.solve_buckling(column(SUPPORTS[name], 10, 24), len(exact))
+    # the error of order 8 of a third mode over 24 elements
+    assert found.load_factors == pytest.approx(exact, rel=2e-9)
+
+
+def test_an_inclined_column_buckles_at_the_same_load():
+    def supports(beam):
+        return [bf.Pin(beam.start), bf.Roller(beam.end, (-0.5, 1.0))]
+
+    found = bf.solve_buckling(column(supports, 20, 12, direction=(1.0, 0.5)))
+    assert found.load_factors == pytest.approx([9.8269530896528], rel=1e-9)
+
+
+def test_every_element_finds_load_and_shape(element):
+    """Elements that lock or whose bending stiffness is not EI agree with their own vibration: no frequency is left."""
+    model = column(SUPPORTS["cantilever"], 10, 8, element)
+    found = bf.solve_buckling(model)
+    shape = found.solution(amplitude=0.1)
+    beam = model.beams[0]
+    along = [shape.displacement(beam.at(x))[1, 1] / shape.displacement(beam.end)[1, 1] for x in (0.25, 0.5, 0.75)]
+    assert along == pytest.approx(1.0 - np.cos(0.5 * np.pi * np.array([0.25, 0.5, 0.75])), abs=0.02)
+    assert np.abs(shape.displacement(beam.end)[1, 1]) == pytest.approx(0.1)
+    for load, stable in ((0.999, True), (1.001, False)):
+        loaded = bf.Model([beam], model.supports, [_times(model.loads[0], load * found.load_factors[0])])
+        modes = bf.solve_modes(loaded, 1, about=bf.solve_static(loaded))
+        assert (modes.growth[0] == 0.0) == stable
+
+
+def _times(load, factor):
+    return bf.PointForce(load.point, tuple(factor * np.array(load.vector)))
+
+
+def toggle(slenderness):
+    """Half of a shallow two-bar truss, of length l0 = sqrt(1.01) and rise 0.1; load in units of EA/1000."""
+    length = np.hypot(1.0, 0.1)
+    section = bf.Rectangle(0.1, length / slenderness)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0.1)), 8, bf.CRBF(4), section, STEEL)
+    load = bf.PointForce(bar.end, (0.0, -1e-3 * STEEL.youngs_modulus * section.area))
+    return bf.Model([bar], [bf.Pin(bar.start), bf.Roller(bar.end, (1, 0))], [load]), length
+
+
+def test_a_slender_toggle_buckles_on_its_way_down():
+    """The bar of length l carries N = P l / y and buckles at N_cr of the Reissner column, where P = N_cr y / l."""
+    model, length = toggle(50)
+    found = bf.solve_buckling(model)
+    strain = reissner(lambda u, q: u - np.pi, 8.0, 11.0, 50) / (12.0 * 50**2)
+    shortened = length * (1.0 - strain)
+    exact = 1e3 * strain * np.sqrt(shortened**2 - 1.0) / shortened
+    assert found.load_factors == pytest.approx([exact], rel=1e-8)
+    assert found.linearised[0] > 1.002 * exact
+    assert np.hypot(*(found.states[0].reshape(-1, 3)[-1, :2])) == pytest.approx(shortened, rel=1e-9)
+
+
+def test_a_stocky_toggle_ends_in_a_limit_point():
+    """P = EA (1 - l/l0) y/l is largest at l^3 = l0, before the bar buckles."""
+    model, length = toggle(5)
+    at = length ** (1 / 3)
+    exact = 1e3 * (1.0 - at / length) * np.sqrt(at**2 - 1.0) / at
+    with pytest.raises(bf.ConvergenceError, match=rf"limit point at load factor {exact:.5g}") as caught:
+        bf.solve_buckling(model)
+    found = caught.value.solution.load_factor
+    assert exact * (1.0 - 1e-5) < found[-1] <= exact
+
+
+def test_loads_that_do_not_scale_come_first():
+    """A constant part of the force is a start from which less is missing."""
+    model = column(SUPPORTS["cantilever"], 10, 12)
+    force = model.loads[0]
+    constant = bf.PointForce(force.point, force.vector, scale=False)
+    found = bf.solve_buckling(bf.Model(model.beams, model.supports, [force, constant]))
+    assert found.load_factors == pytest.approx([2.4567382724132 - 1.0], rel=1e-9)
+    state = bf.solve_static(model)
+    later = bf.solve_buckling(model, about=state)
+    assert later.load_factors == pytest.approx([2.4567382724132], rel=1e-9)
+    exact = 2.4567382724132
+    assert abs(later.linearised[0] - exact) < abs(bf.solve_buckling(model).linearised[0] - exact)
+
+
+def test_many_unknowns_take_the_sparse_way():
+    found = bf.solve_buckling(column(SUPPORTS["hinged-hinged"], 20, 60), 3)
+    few = bf.solve_buckling(column(SUPPORTS["hinged-hinged"], 20, 16), 3)
+    assert found.load_factors == pytest.approx(few.load_factors, rel=2e-8)
+
+
+def test_bad_input_is_named():
+    model = column(SUPPORTS["hinged-hinged"], 10, 2, bf.CRBF(1))
+    with pytest.raises(bf.InputError, match="count must be at least 1"):
+        bf.solve_buckling(model, 0)
+    with pytest.raises(bf.InputError, match="only 6 unknown"):
+        bf.solve_buckling(model, 7)
+    with pytest.raises(bf.FreeMotionError, match=r"turns about \(0, 0\)"):
+        bf.solve_buckling(bf.Model(model.beams, [bf.Pin(model.beams[0].start)], model.loads))
+    with pytest.raises(bf.InputError, match="no load grows"):
+        bf.solve_buckling(bf.Model(model.beams, model.supports))
+    with pytest.raises(bf.InputError, match="no positive load factor"):
+        bf.solve_buckling(column(SUPPORTS["hinged-hinged"], 10, 8, load=1.0))
+    unstable = column(SUPPORTS["cantilever"], 10, 6, load=-3.0)
+    with pytest.raises(bf.InputError, match="unstable already"):
+        bf.solve_buckling(unstable, about=bf.solve_static(unstable))
+    with pytest.raises(bf.InputError, match="mode must be between 0 and 0"):
+        bf.solve_buckling(column(SUPPORTS["cantilever"], 10, 6)).solution(1)

@@ -5,6 +5,7 @@ from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
+from beamfem.convergence.study import converge
 from beamfem.curves import Line
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element
 from beamfem.element.forces import ContinuumMechanics, Structural
@@ -18,6 +19,7 @@ from beamfem.model.supports import Clamp, Pin, Prescribed, Roller
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Rectangle, Section
 from beamfem.solution import Solution, State
+from beamfem.sweep import sweep
 
 __all__ = [
     "ANCF",
@@ -55,7 +57,9 @@ __all__ = [
     "State",
     "Structural",
     "UnknownPointError",
+    "converge",
     "load",
     "simulate",
     "solve_static",
+    "sweep",
 ]

@@ -20,7 +20,7 @@ border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-chil
 
 @dataclass(frozen=True)
 class Entry:
-    """A figure with a title, what is claimed of it, what was found, and whether the claim holds."""
+    """A figure with a title, what a paper claims of it (or ""), what was found, and whether the claim holds."""
 
     title: str
     picture: Path
@@ -70,7 +70,8 @@ def _entry(entry: Entry) -> str:
     data = base64.b64encode(entry.picture.read_bytes()).decode()
     kind = "svg+xml" if entry.picture.suffix == ".svg" else entry.picture.suffix[1:]
     verdict = {None: "", True: "<p class='yes'>The claim holds.</p>", False: "<p class='no'>We find otherwise.</p>"}
-    words = f"<b>{escape(entry.title)}</b><p>Paper: {escape(entry.claim)}</p><p>Here: {escape(entry.found)}</p>"
+    said = f"<p>Paper: {escape(entry.claim)}</p><p>Here: " if entry.claim else "<p>"
+    words = f"<b>{escape(entry.title)}</b>{said}{escape(entry.found)}</p>"
     picture = f'<img alt="{escape(entry.title)}" src="data:image/{kind};base64,{data}">'
     return f"<figure>{picture}<figcaption>{words}{verdict[entry.holds]}</figcaption></figure>"
 

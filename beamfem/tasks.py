@@ -40,7 +40,7 @@ class TaskRunner:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
-        self._close(kind is None)
+        self._close()
 
     def run(self, points: Sequence[Point]) -> Iterator[tuple[int, Outcome]]:
         """Yield the number of each point with its outcome as they come.
@@ -68,7 +68,7 @@ class TaskRunner:
         try:
             while waiting or running:
                 if broken and not running:
-                    self._close(wait_for_workers=False)
+                    self._close()
                     broken = False
                 executor = self._open(len(waiting) + len(running))
                 while waiting and not broken and len(running) < 2 * workers(executor) + 1:
@@ -95,7 +95,7 @@ class TaskRunner:
             for future in running:
                 future.cancel()
         if broken:
-            self._close(wait_for_workers=False)
+            self._close()
         return suspects
 
     def _alone(self, point: Point) -> Outcome:
@@ -103,7 +103,7 @@ class TaskRunner:
         try:
             return self._submit(self._open(1), [point]).result()[0]
         except BrokenExecutor:
-            self._close(wait_for_workers=False)
+            self._close()
             return Outcome(error="WorkerDied: the worker process ended in this call, which ran alone")
         except Exception as error:
             return Outcome(error=f"{type(error).__name__}: {error}")
@@ -118,7 +118,8 @@ class TaskRunner:
             self._executor = open_executor(self._factory, self._function, tasks)
         return self._executor
 
-    def _close(self, wait_for_workers: bool) -> None:
+    def _close(self) -> None:
         if self._executor is not None:
-            self._executor.shutdown(wait=wait_for_workers)
+            # a worker needs 0.3 s to end, which nobody has to wait for
+            self._executor.shutdown(wait=False)
             self._executor = None

@@ -16,21 +16,27 @@ _MARKERS = "osD^vP*X<>"
 
 
 def plot_errors(study: "Convergence", path: str | PathLike[str] | None = None) -> Any:
-    """Draw one curve a combination with a slope triangle of its fitted order; return the figure."""
+    """Draw one curve a combination, hollow where errors are round-off, and slope triangles; return the figure."""
     figure, axes = new_figure(7.2, 5.0)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    drawn: set[str] = set()
+    # one triangle for each whole order, at the lowest curve, where there is room for it
+    triangles: dict[int, tuple[Curve, str]] = {}
     for i, curve in enumerate(study.curves):
-        colour = COLOURS[i % len(COLOURS)]
+        colour, marker = COLOURS[i % len(COLOURS)], _MARKERS[i % len(_MARKERS)]
         x, y = np.array(curve.refinement, dtype=float), curve.error
         shown = y > 0.0
         label = curve.label if curve.fit is None else f"{curve.label}: order {_order(curve)}"
-        marker = _MARKERS[i % len(_MARKERS)]
         axes.plot(x[shown], y[shown], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
-        if curve.fit is not None and (text := f"{curve.fit.order:.1f}") not in drawn:
-            drawn.add(text)
-            _triangle(axes, curve, colour, text)
+        if curve.fit is None:
+            continue
+        noise = shown & (np.arange(len(x)) > curve.fit.last)
+        axes.plot(x[noise], y[noise], marker, markersize=5, color=colour, markerfacecolor="white")
+        other = triangles.get(round(curve.fit.order))
+        if other is None or np.nanmin(y) < np.nanmin(other[0].error):
+            triangles[round(curve.fit.order)] = curve, colour
+    for curve, colour in triangles.values():
+        _triangle(axes, curve, colour)
     _axis_labels(axes, study)
     if study.curves:
         axes.legend(frameon=False, fontsize=9)
@@ -54,7 +60,7 @@ def _axis_labels(axes: Any, study: "Convergence") -> None:
         axes.minorticks_off()
 
 
-def _triangle(axes: Any, curve: "Curve", colour: str, text: str) -> None:
+def _triangle(axes: Any, curve: "Curve", colour: str) -> None:
     """Below the last fitted interval: its legs are one step of refinement and the fall that the order promises."""
     fit = curve.fit
     assert fit is not None
@@ -62,9 +68,15 @@ def _triangle(axes: Any, curve: "Curve", colour: str, text: str) -> None:
     ratio = (curve.size[fit.last] / curve.size[fit.last - 1]) ** fit.order
     # the middle half of the interval, below the curve
     a, b = left * (right / left) ** 0.25, left * (right / left) ** 0.75
-    top = curve.error[fit.last - 1] * ratio**0.25 / 2.5
+    top = curve.error[fit.last - 1] * ratio**0.25 / 2.0
     bottom = top * ratio**0.5
     axes.fill([a, b, a], [top, bottom, bottom], facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=0.8)
     axes.annotate(
-        text, (a, np.sqrt(top * bottom)), (-3, 0), textcoords="offset points", ha="right", va="center", fontsize=8
+        f"{fit.order:.1f}",
+        (a, np.sqrt(top * bottom)),
+        (-3, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        fontsize=8,
     )

@@ -76,11 +76,11 @@ class Convergence:
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
         """Return header and rows of text, one a curve: order with band, where it was fitted, limit, remarks."""
-        header = ["curve", "order", "95 % band", "fitted over", "limit", "finest error", "remark"]
+        header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "finest error", "remark"]
         rows = []
         for curve in self.curves:
             fit = curve.fit
-            over = f"{self.refine} {curve.refinement[fit.first]} to {curve.refinement[fit.last]}" if fit else ""
+            over = f"{curve.refinement[fit.first]} to {curve.refinement[fit.last]}" if fit else ""
             rows.append(
                 [
                     curve.label,

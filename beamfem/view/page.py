@@ -13,6 +13,7 @@ h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem
 grid-template-columns: minmax(18rem, 3fr) 2fr; align-items: center } figure img { width: 100% }
 figcaption b { display: block } table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: .2rem .8rem;
 border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-child { text-align: left }
+.word { white-space: nowrap }
 .no { color: #b02030 } .yes { color: #207040 }
 @media (max-width: 45rem) { figure { grid-template-columns: 1fr } }
 """
@@ -78,6 +79,12 @@ def _entry(entry: Entry) -> str:
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    rows = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
     title = f"<h3>{escape(table.title)}</h3>"
     return f"{title}<table><tr>{head}</tr>{rows}</table><p>{escape(table.remark)}</p>"
+
+
+def _cell(text: str) -> str:
+    # a browser would break 1.5e-02 and ANCF-CRBF after the sign
+    kind = "" if " " in text else " class='word'"
+    return f"<td{kind}>{escape(text)}</td>"

@@ -21,10 +21,10 @@ class Store:
     def __init__(self, path: str | PathLike[str]) -> None:
         given = Path(path)
         self.path = given / "results.jsonl" if given.is_dir() or not given.suffix else given
-        self.path.parent.mkdir(parents=True, exist_ok=True)
         self._known: dict[str, tuple[Any, float]] = {}
 
     def __enter__(self) -> "Store":
+        self.path.parent.mkdir(parents=True, exist_ok=True)
         # unbuffered: each line reaches the system in one write and survives this process
         self._file = self.path.open("ab+", buffering=0)
         self._file.seek(0)

@@ -94,7 +94,7 @@ def extrapolate(h: np.ndarray, q: np.ndarray) -> Extrapolation:
             finest, np.nan, False, "the values do not close in steadily: errors are against the finest"
         )
     limit = float(finest + (finest - q[-2]) / np.expm1(order * np.log(h[-2] / h[-1])))
-    return Extrapolation(limit, float(errors(q, limit)[-1]), True, "limit by Richardson extrapolation")
+    return Extrapolation(limit, float(errors(q, limit)[-1]), True, "Richardson limit")
 
 
 def errors(q: np.ndarray, limit: float) -> np.ndarray:

@@ -7,6 +7,7 @@ from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.modes import Modes, solve_modes
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
+from beamfem.convergence.study import converge
 from beamfem.curves import Line
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
@@ -21,6 +22,7 @@ from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, S
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
+from beamfem.sweep import sweep
 
 __all__ = [
     "ANCF",
@@ -71,9 +73,11 @@ __all__ = [
     "Structural",
     "Tube",
     "UnknownPointError",
+    "converge",
     "load",
     "simulate",
     "solve_buckling",
     "solve_modes",
     "solve_static",
+    "sweep",
 ]

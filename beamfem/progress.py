@@ -3,12 +3,25 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
+
+_held: ContextVar[bool] = ContextVar("_held", default=False)
+
+
+@contextmanager
+def no_progress() -> Iterator[None]:
+    """Show no bars inside: in a worker, and within work that shows one already."""
+    token = _held.set(True)
+    try:
+        yield
+    finally:
+        _held.reset(token)
 
 
 @contextmanager
 def progress(label: str, total: float) -> Iterator[Callable[[float], None]]:
     """Yield a function that takes how much of `total` is done."""
-    if not sys.stderr.isatty():
+    if _held.get() or not sys.stderr.isatty():
         yield lambda done: None
         return
     from rich.console import Console
@@ -21,6 +34,6 @@ def progress(label: str, total: float) -> Iterator[Callable[[float], None]]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with no_progress(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(label, total=total)
         yield lambda done: bar.update(task, completed=done)

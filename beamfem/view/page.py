@@ -13,6 +13,7 @@ h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem
 grid-template-columns: minmax(18rem, 3fr) 2fr; align-items: center } figure img { width: 100% }
 figcaption b { display: block } table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: .2rem .8rem;
 border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-child { text-align: left }
+.word { white-space: nowrap }
 .no { color: #b02030 } .yes { color: #207040 }
 @media (max-width: 45rem) { figure { grid-template-columns: 1fr } }
 """
@@ -20,7 +21,7 @@ border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-chil
 
 @dataclass(frozen=True)
 class Entry:
-    """A figure with a title, what is claimed of it, what was found, and whether the claim holds."""
+    """A figure with a title, what a paper claims of it (or ""), what was found, and whether the claim holds."""
 
     title: str
     picture: Path
@@ -70,13 +71,20 @@ def _entry(entry: Entry) -> str:
     data = base64.b64encode(entry.picture.read_bytes()).decode()
     kind = "svg+xml" if entry.picture.suffix == ".svg" else entry.picture.suffix[1:]
     verdict = {None: "", True: "<p class='yes'>The claim holds.</p>", False: "<p class='no'>We find otherwise.</p>"}
-    words = f"<b>{escape(entry.title)}</b><p>Paper: {escape(entry.claim)}</p><p>Here: {escape(entry.found)}</p>"
+    said = f"<p>Paper: {escape(entry.claim)}</p><p>Here: " if entry.claim else "<p>"
+    words = f"<b>{escape(entry.title)}</b>{said}{escape(entry.found)}</p>"
     picture = f'<img alt="{escape(entry.title)}" src="data:image/{kind};base64,{data}">'
     return f"<figure>{picture}<figcaption>{words}{verdict[entry.holds]}</figcaption></figure>"
 
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    rows = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
     title = f"<h3>{escape(table.title)}</h3>"
     return f"{title}<table><tr>{head}</tr>{rows}</table><p>{escape(table.remark)}</p>"
+
+
+def _cell(text: str) -> str:
+    # a browser would break 1.5e-02 and ANCF-CRBF after the sign
+    kind = "" if " " in text else " class='word'"
+    return f"<td{kind}>{escape(text)}</td>"

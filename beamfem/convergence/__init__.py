@@ -1,0 +1,1 @@
+"""Mesh and step convergence of any function."""

@@ -1,0 +1,77 @@
+"""One curve of a convergence study: values over refinement and what they say."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from beamfem.convergence.orders import (
+    Extrapolation,
+    OrderFit,
+    clean_points,
+    errors,
+    extrapolate,
+    fit_order,
+    grid_convergence_index,
+    is_relative,
+    neighbour_orders,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Values (n,) of one combination of the other parameters, from coarse to fine; failed points are left out.
+
+    size h (n,): 1/refinement of counts, the refinement itself of step sizes. error (n,): against `limit`, relative
+    where that is not zero; nan where the value is the limit itself. order (n,): of each point and the one before it.
+    gci (n,): grid convergence index, Roache. fit: order of the asymptotic part with its band, None where there is
+    none. estimated_error: of the finest value, nan where nothing can be said. others: the function's other numbers
+    (n,) by name. texts: what the varied parameters are called.
+    """
+
+    refinement: tuple[Any, ...]
+    size: np.ndarray
+    value: np.ndarray
+    error: np.ndarray
+    relative: bool
+    order: np.ndarray
+    gci: np.ndarray
+    fit: OrderFit | None
+    limit: float
+    estimated_error: float
+    notes: tuple[str, ...]
+    label: str = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    texts: Mapping[str, str] = field(default_factory=dict)
+    others: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+    seconds: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+
+def judge(refinement: tuple[Any, ...], size: np.ndarray, value: np.ndarray, reference: float | None) -> Curve:
+    """Return errors, orders, index and the fitted order of at least one value, without names and seconds."""
+    found = extrapolate(size, value) if reference is None else Extrapolation(reference, np.nan, True, "")
+    error = errors(value, found.limit)
+    fit = fit_order(size, error) if found.settled else None
+    notes = [found.note] if found.note else []
+    if reference is not None and clean_points(size, error) < len(error):
+        notes.append("the finest errors are round-off and left out of the order")
+    elif reference is not None and fit is None and len(value) > 1:
+        notes.append("the finest error does not fall: the reference may not be the limit of these values")
+    order = neighbour_orders(size, error)
+    estimate = found.error if reference is None else float(error[-1])
+    if reference is None and found.limit == value[-1]:
+        error[-1] = np.nan
+    return Curve(
+        refinement=refinement,
+        size=size,
+        value=value,
+        error=error,
+        relative=is_relative(found.limit, value),
+        order=order,
+        gci=grid_convergence_index(size, value),
+        fit=fit,
+        limit=found.limit,
+        estimated_error=estimate,
+        notes=tuple(notes),
+    )

@@ -1,0 +1,121 @@
+"""The result of a convergence study and its doors: table, Markdown, CSV, picture, page."""
+
+import textwrap
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem import tabulate
+from beamfem.convergence.curve import Curve
+from beamfem.tasks import Failure
+
+EXPLANATION = (
+    "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "
+    "log h through its asymptotic part (the finest points above round-off, as far back as the orders between "
+    "neighbours stay within 15 % of the finest one), with the 95 % confidence interval of the slope, which does not "
+    "hold the uncertainty of the limit. GCI: grid convergence index of Roache with safety factor 1.25, an estimate of "
+    "the relative error that needs no reference."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Convergence:
+    """Curves of a convergence study, one for each combination of the parameters that are not refined.
+
+    quantity: whose error is meant. refine: the parameter of refinement. reference: the given limit or None.
+    failures: calls that gave no value.
+    """
+
+    function: str
+    quantity: str
+    refine: str
+    reference: float | None
+    curves: tuple[Curve, ...]
+    failures: tuple[Failure, ...] = field(default=())
+
+    @property
+    def error_name(self) -> str:
+        return "relative error" if all(curve.relative for curve in self.curves) else "error"
+
+    def __str__(self) -> str:
+        points = tabulate.as_text(*self.points(rounded=True), title=self.title)
+        curves = tabulate.as_text(*self.summary())
+        return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])
+
+    @property
+    def title(self) -> str:
+        return f"Convergence of {self.quantity} over {self.refine}"
+
+    def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
+        """Return header and rows, one a point: parameters, refinement, value, error, order, GCI, others, seconds.
+
+        rounded: errors and orders as short text instead of numbers.
+        """
+        names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
+        others = list(dict.fromkeys(name for curve in self.curves for name in curve.others))
+        header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
+        rows = []
+        for curve in self.curves:
+            for i, refinement in enumerate(curve.refinement):
+                numbers = [curve.error[i], curve.order[i], curve.gci[i]]
+                judged = [_short(x, form) for x, form in zip(numbers, (".2e", ".2f", ".2e"), strict=True)]
+                rows.append(
+                    [
+                        *(curve.texts[name] for name in names),
+                        refinement,
+                        f"{curve.value[i]:.10g}" if rounded else float(curve.value[i]),
+                        *(judged if rounded else map(float, numbers)),
+                        *(curve.others[name][i] if name in curve.others else None for name in others),
+                        f"{curve.seconds[i]:.3g}" if rounded else float(curve.seconds[i]),
+                    ]
+                )
+        return header, rows
+
+    def summary(self) -> tuple[list[str], list[list[str]]]:
+        """Return header and rows of text, one a curve: order with band, where it was fitted, limit, remarks."""
+        header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "finest error", "remark"]
+        rows = []
+        for curve in self.curves:
+            fit = curve.fit
+            over = f"{curve.refinement[fit.first]} to {curve.refinement[fit.last]}" if fit else ""
+            rows.append(
+                [
+                    curve.label,
+                    f"{fit.order:.3f}" if fit else "",
+                    f"± {fit.band:.3f}" if fit and not np.isnan(fit.band) else "",
+                    over,
+                    f"{curve.limit:.12g}",
+                    _short(curve.estimated_error, ".2e"),
+                    "; ".join(curve.notes),
+                ]
+            )
+        return header, rows
+
+    def to_markdown(self) -> str:
+        """Return the table of points and that of curves as Markdown."""
+        points, curves = tabulate.as_markdown(*self.points(rounded=True)), tabulate.as_markdown(*self.summary())
+        failed = "\n".join(f"- {failure}" for failure in self.failures)
+        return "\n\n".join(part for part in (points, curves, EXPLANATION, failed) if part) + "\n"
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the table of points with every digit; nan where there is no error or order."""
+        tabulate.write_csv(path, *self.points())
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw error over refinement, both logarithmic; written to `path` where one is given. Return the figure."""
+        from beamfem.convergence.figure import plot_errors
+
+        return plot_errors(self, path)
+
+    def to_html(self, path: str | PathLike[str]) -> Path:
+        """Write one self-contained page with the picture and the tables; return its path."""
+        from beamfem.convergence.page import write_study
+
+        return write_study(self, path)
+
+
+def _short(number: float, form: str) -> str:
+    return "" if np.isnan(number) else f"{number:{form}}"

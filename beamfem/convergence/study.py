@@ -1,0 +1,190 @@
+"""Convergence studies: a function called along one refinement, for every combination of its other parameters."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from beamfem.convergence.curve import Curve, judge
+from beamfem.convergence.result import Convergence
+from beamfem.errors import InputError
+from beamfem.parameters import assignments, check_call, combinations, labels, split
+from beamfem.progress import progress
+from beamfem.tasks import Failure, TaskRunner
+from beamfem.validation import finite, positive
+from beamfem.workers import ExecutorFactory, Outcome
+
+MOST_DOUBLINGS = 8
+
+
+@dataclass
+class _Line:
+    """A curve while its values come in; ended: why it is refined no further."""
+
+    label: str
+    texts: dict[str, str]
+    parameters: dict[str, Any]
+    found: dict[Any, Outcome] = field(default_factory=dict)
+    ended: str = ""
+
+
+def converge(
+    function: Callable[..., Any],
+    /,
+    quantity: str | None = None,
+    *,
+    refine: str,
+    reference: float | None = None,
+    until: float | None = None,
+    executor: ExecutorFactory | None = None,
+    **parameters: Any,
+) -> Convergence:
+    """Call a function along one refinement and judge how its value converges.
+
+    function: returns a number or a mapping of named numbers; quantity: the one whose error is meant, the others become
+    columns. refine: the parameter along which it converges, rising counts (h = 1/n) or falling step sizes (h); every
+    other list, tuple, range or array of one dimension gives a curve for each of its values, the rest is passed on.
+    reference: the limit, if known; without it each curve is extrapolated (Richardson). Errors are relative to the
+    limit where that is not zero.
+    until: double the last count (or halve the last step) of each curve until its estimated error is below, at most 8
+    times. executor: as in `sweep`. A call that fails is kept in `failures`, the others go on.
+    Raises InputError; BeamfemError where no worker starts.
+    """
+    varied, fixed = split(parameters)
+    if refine not in varied:
+        raise InputError(f"refine names the parameter {refine!r}, which must be given as a list of values")
+    refinement = varied.pop(refine)
+    counts = _counts(refine, refinement)
+    reference = None if reference is None else finite("reference", reference)
+    goal = None if until is None else positive("until", until)
+    lines = _lines(function, varied, fixed)
+    check_call(function, lines[0].parameters | {refine: refinement[0]})
+    with TaskRunner(function, executor) as runner:
+        quantity = _call(runner, [(line, value) for line in lines for value in refinement], refine, quantity)
+        last, doublings = refinement[-1], 0
+        while goal is not None:
+            for line in lines:
+                line.ended = line.ended or _ended(line, _curve(line, quantity, counts, reference), last, goal, refine)
+            going = [line for line in lines if not line.ended]
+            if not going or doublings == MOST_DOUBLINGS:
+                for line in going:
+                    line.ended = f"error {goal:.0e} not reached after {doublings} doublings, the most that are tried"
+                break
+            last, doublings = last * 2 if counts else last / 2, doublings + 1
+            quantity = _call(runner, [(line, last) for line in going], refine, quantity)
+    curves = [curve for line in lines if (curve := _curve(line, quantity, counts, reference))]
+    failures = [failure for line in lines for failure in _failures(line, refine)]
+    name = getattr(function, "__name__", type(function).__name__)
+    return Convergence(name, quantity or name, refine, reference, tuple(curves), tuple(failures))
+
+
+def _counts(refine: str, values: Sequence[Any]) -> bool:
+    """Whether the refinement rises (counts) or falls (step sizes). Raises InputError for anything else."""
+    numbers = [positive(refine, value) for value in values]
+    steps = np.diff(numbers)
+    if (steps > 0).all() and (len(steps) or isinstance(values[0], int | np.integer)):
+        return True
+    if (steps < 0).all():
+        return False
+    raise InputError(f"{refine} must be rising counts or falling step sizes, got {', '.join(map(str, values))}")
+
+
+def _lines(function: Callable[..., Any], varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) -> list[_Line]:
+    """One line for each combination, called by the parameters of which there is more than one value."""
+    several = {name: values for name, values in varied.items() if len(values) > 1}
+    texts = combinations({name: labels(values) for name, values in several.items()}, {})
+    lines = []
+    for point, text in zip(combinations(varied, fixed), texts, strict=True):
+        parts = [f"{n}={t}" if isinstance(point[n], bool | int | float) else t for n, t in text.items()]
+        lines.append(_Line(", ".join(parts) or getattr(function, "__name__", "all"), text, point))
+    return lines
+
+
+def _call(runner: TaskRunner, tasks: Sequence[tuple[_Line, Any]], refine: str, quantity: str | None) -> str | None:
+    """Call at every line and refinement; return the quantity, which is known after the first call."""
+    points = [line.parameters | {refine: value} for line, value in tasks]
+    with progress("calls", len(points)) as report:
+        for done, (i, outcome) in enumerate(runner.run(points), 1):
+            if outcome.error is None:
+                quantity = _quantity(outcome.value, quantity)
+            line, value = tasks[i]
+            line.found[value] = _refuse_arrays(outcome, quantity)
+            report(done)
+    return quantity
+
+
+def _quantity(value: Any, quantity: str | None) -> str | None:
+    """Return the name of the quantity; None for a function that returns a bare number."""
+    if not isinstance(value, Mapping):
+        if quantity is not None:
+            raise InputError(f"the function returns a number, not a mapping: leave quantity={quantity!r} out")
+        return None
+    if quantity is None and len(value) == 1:
+        return str(next(iter(value)))
+    if quantity not in value:
+        raise InputError(f"quantity must be one of {', '.join(value)}, which the function returns; got {quantity!r}")
+    return quantity
+
+
+def _number(value: Any, quantity: str | None) -> Any:
+    return value if quantity is None else value[quantity]
+
+
+def _refuse_arrays(outcome: Outcome, quantity: str | None) -> Outcome:
+    """An error can be taken of a finite number only."""
+    if outcome.error is not None:
+        return outcome
+    number = _number(outcome.value, quantity)
+    if isinstance(number, np.ndarray) or not np.isfinite(number):
+        return Outcome(seconds=outcome.seconds, error=f"{quantity or 'the value'} is {number}, not a finite number")
+    return outcome
+
+
+def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | None) -> Curve | None:
+    """Judge the values found so far; None where every call failed."""
+    found = {value: outcome for value, outcome in line.found.items() if outcome.error is None}
+    if not found:
+        return None
+    # workers answer in any order
+    found = dict(sorted(found.items(), key=lambda item: item[0], reverse=not counts))
+    sizes = np.array([1.0 / value if counts else value for value in found], dtype=float)
+    outcomes = list(found.values())
+    names = [] if quantity is None else [name for name in outcomes[0].value if name != quantity]
+    curve = judge(
+        refinement=tuple(found),
+        size=sizes,
+        value=np.array([_number(outcome.value, quantity) for outcome in outcomes], dtype=float),
+        reference=reference,
+    )
+    return replace(
+        curve,
+        label=line.label,
+        parameters=line.parameters,
+        texts=line.texts,
+        others={name: tuple(outcome.value.get(name) for outcome in outcomes) for name in names},
+        seconds=np.array([outcome.seconds for outcome in outcomes]),
+        notes=(*curve.notes, line.ended) if line.ended else curve.notes,
+    )
+
+
+def _ended(line: _Line, curve: Curve | None, last: Any, goal: float, refine: str) -> str:
+    """Return why a curve is refined no further, nothing where it is."""
+    if curve is None or line.found[last].error is not None:
+        return f"refined no further: {refine}={last} failed"
+    if curve.estimated_error <= goal:
+        return f"error {goal:.0e} reached at {refine}={last}"
+    return ""
+
+
+def _failures(line: _Line, refine: str) -> list[Failure]:
+    return [
+        Failure(
+            line.parameters | {refine: value},
+            assignments(line.texts | {refine: value}),
+            outcome.error,
+            outcome.traceback,
+        )
+        for value, outcome in line.found.items()
+        if outcome.error is not None
+    ]

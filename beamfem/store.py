@@ -1,0 +1,76 @@
+"""Results of calls on disk: a file of JSON lines, one a result, that a killed process leaves readable."""
+
+import json
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from beamfem.workers import Outcome
+
+
+class Store:
+    """Results by key; a context manager that keeps the file open to append.
+
+    path: a file, or a folder (no suffix), which gets a `results.jsonl`; folders are made.
+    """
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        given = Path(path)
+        self.path = given / "results.jsonl" if given.is_dir() or not given.suffix else given
+        self._known: dict[str, tuple[Any, float]] = {}
+
+    def __enter__(self) -> "Store":
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        # unbuffered: each line reaches the system in one write and survives this process
+        self._file = self.path.open("ab+", buffering=0)
+        self._file.seek(0)
+        data = self._file.readall()
+        if data and not data.endswith(b"\n"):
+            self._file.write(b"\n")  # the writer was killed within its last line
+        for line in data.splitlines():
+            try:
+                record = json.loads(line)
+                self._known[record["key"]] = (record["value"], record["seconds"])
+            except (ValueError, KeyError, TypeError):
+                continue
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+        self._file.close()
+
+    def find(self, key: str) -> Outcome | None:
+        """Return the outcome kept under a key."""
+        if key not in self._known:
+            return None
+        value, seconds = self._known[key]
+        return Outcome(_decode(value), seconds)
+
+    def add(self, key: str, about: Mapping[str, str], outcome: Outcome) -> None:
+        """Write the outcome of a call; about: texts for people who read the file."""
+        record = {"key": key, **about, "value": _encode(outcome.value), "seconds": outcome.seconds}
+        self._file.write(json.dumps(record).encode() + b"\n")
+
+
+def _encode(value: Any) -> Any:
+    """A mapping stays one; a single number becomes a list of one, so that the two cannot be mixed up."""
+    return {name: _item(item) for name, item in value.items()} if isinstance(value, dict) else [_item(value)]
+
+
+def _item(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return {"dtype": value.dtype.str, "shape": value.shape, "data": value.ravel().tolist()}
+    return value
+
+
+def _decode(value: Any) -> Any:
+    return {name: _array(item) for name, item in value.items()} if isinstance(value, dict) else _array(value[0])
+
+
+def _array(item: Any) -> Any:
+    if isinstance(item, dict):
+        return np.array(item["data"], dtype=item["dtype"]).reshape(item["shape"])
+    return item

@@ -1,0 +1,176 @@
+"""Parameter sweeps: a function called at every combination, in parallel where asked, with results kept on disk."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem import tabulate
+from beamfem.errors import InputError
+from beamfem.keys import function_form, point_key
+from beamfem.parameters import assignments, check_call, combinations, labels, split
+from beamfem.progress import progress
+from beamfem.store import Store
+from beamfem.tasks import Failure, TaskRunner
+from beamfem.workers import ExecutorFactory, Outcome
+
+_ROWS_PRINTED = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Results of a sweep, one row a point, the last parameter fastest; `sweep[name]` is the array of a name.
+
+    parameters: of each point. values: what the function returned, None where it failed. seconds: of each call.
+    shape: how many values each varied parameter has: `sweep[name].reshape(sweep.shape)` is the grid.
+    computed: how many points were called now, the others were in the store.
+    """
+
+    parameters: tuple[Mapping[str, Any], ...]
+    values: tuple[Any, ...]
+    failures: tuple[Failure, ...]
+    seconds: np.ndarray
+    shape: tuple[int, ...]
+    computed: int
+    labels: tuple[Mapping[str, str], ...] = field(repr=False)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return a column (points,), of arrays of equal shape (points, ...); nan where a point failed."""
+        rows = self.table()
+        if name not in rows[0]:
+            raise InputError(f"the sweep has no {name!r}; it has {', '.join(rows[0])}")
+        column = [row[name] for row in rows]
+        found = [value for value in column if value is not None]
+        if not all(isinstance(value, bool | int | float | np.ndarray) for value in found):
+            array = np.empty(len(column), dtype=object)
+            array[:] = column
+            return array
+        shapes = {np.shape(value) for value in found}
+        if len(shapes) > 1:
+            raise InputError(f"the arrays of {name!r} have different shapes {sorted(shapes)}; take them from values")
+        missing = np.full(shapes.pop() if shapes else (), np.nan)
+        return np.array([missing if value is None else value for value in column])
+
+    def table(self) -> list[dict[str, Any]]:
+        """Return a mapping a point: varied parameters, named values (None where it failed) and seconds.
+
+        A value that is called like a parameter is found as `name (result)`; a bare number as `value`.
+        """
+        names = dict.fromkeys(name for value in self.values for name in _named(value))
+        varied = list(self.labels[0])
+        titles = {name: f"{name} (result)" if name in (*varied, "seconds") else name for name in names}
+        return [
+            {name: point[name] for name in varied}
+            | {titles[name]: _named(value).get(name) for name in names}
+            | {"seconds": float(seconds)}
+            for point, value, seconds in zip(self.parameters, self.values, self.seconds, strict=True)
+        ]
+
+    def _rows(self) -> tuple[list[str], list[list[Any]]]:
+        rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
+        return list(rows[0]), [list(row.values()) for row in rows]
+
+    def _texts(self) -> list[dict[str, Any]]:
+        """Numbers as they are, everything else by its label."""
+        return [
+            {n: point[n] if isinstance(point[n], bool | int | float) else text for n, text in texts.items()}
+            for point, texts in zip(self.parameters, self.labels, strict=True)
+        ]
+
+    def __str__(self) -> str:
+        header, rows = self._rows()
+        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
+        if len(rows) > _ROWS_PRINTED:
+            half = _ROWS_PRINTED // 2
+            rows = [*rows[:half], ["..."] * len(header), *rows[-half:]]
+        return "\n".join([tabulate.as_text(header, rows), note, *map(str, self.failures)])
+
+    def to_markdown(self) -> str:
+        """Return the table of all points as Markdown."""
+        return tabulate.as_markdown(*self._rows())
+
+    def to_csv(self, path: str | PathLike[str]) -> None:
+        """Write the table of all points with every digit."""
+        tabulate.write_csv(path, *self._rows())
+
+
+def sweep(
+    function: Callable[..., Any],
+    /,
+    *,
+    executor: ExecutorFactory | None = None,
+    store: str | PathLike[str] | None = None,
+    **parameters: Any,
+) -> Sweep:
+    """Call a function at every combination of the values in lists; return all results.
+
+    function: returns a number, an array or a mapping of named ones. parameters: lists, tuples, ranges and arrays of
+    one dimension are varied, everything else is passed on as it is.
+    executor: a class or a function without arguments that makes a `concurrent.futures.Executor`; None calls here, one
+    after the other. store: a file or a folder where results are kept as they come and found again by the next run of
+    the same function (its own source unchanged; what it calls is not looked at) with the same parameters.
+    A call that fails or kills its worker is kept in `failures`, the others go on; the next run tries it again.
+    Raises InputError; BeamfemError where no worker starts.
+    """
+    varied, fixed = split(parameters)
+    points = combinations(varied, fixed)
+    check_call(function, points[0])
+    texts = combinations({name: labels(values) for name, values in varied.items()}, {})
+    outcomes: list[Outcome | None] = [None] * len(points)
+    with ExitStack() as stack:
+        kept = None if store is None else Store(store)
+        keys: Sequence[str] = ()
+        if kept is not None:
+            form = function_form(function)
+            keys = [point_key(form, point) for point in points]
+            stack.enter_context(kept)
+            outcomes = [kept.find(key) for key in keys]
+        todo = [i for i, outcome in enumerate(outcomes) if outcome is None]
+        runner = stack.enter_context(TaskRunner(function, executor))
+        report = stack.enter_context(progress("points", len(todo)))
+        for done, (number, outcome) in enumerate(runner.run([points[i] for i in todo]), 1):
+            i = todo[number]
+            outcomes[i] = outcome
+            if kept is not None and outcome.error is None:
+                kept.add(
+                    keys[i],
+                    {"function": getattr(function, "__qualname__", str(function)), "parameters": assignments(texts[i])},
+                    outcome,
+                )
+            report(done)
+    return _result(points, texts, [outcome for outcome in outcomes if outcome is not None], varied, len(todo))
+
+
+def _result(
+    points: list[dict[str, Any]],
+    texts: list[dict[str, Any]],
+    outcomes: list[Outcome],
+    varied: Mapping[str, Sequence[Any]],
+    computed: int,
+) -> Sweep:
+    failures = tuple(
+        Failure(point, assignments(text), outcome.error, outcome.traceback)
+        for point, text, outcome in zip(points, texts, outcomes, strict=True)
+        if outcome.error is not None
+    )
+    return Sweep(
+        parameters=tuple(points),
+        values=tuple(outcome.value for outcome in outcomes),
+        failures=failures,
+        seconds=np.array([outcome.seconds for outcome in outcomes]),
+        shape=tuple(len(values) for values in varied.values()),
+        computed=computed,
+        labels=tuple(texts),
+    )
+
+
+def _named(value: Any) -> Mapping[str, Any]:
+    if value is None:
+        return {}
+    return value if isinstance(value, Mapping) else {"value": value}

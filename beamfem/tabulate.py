@@ -1,0 +1,75 @@
+"""Tables as text on a terminal or in a pipe, as Markdown and as CSV."""
+
+import csv
+import sys
+from collections.abc import Sequence
+from io import StringIO
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+Rows = Sequence[Sequence[Any]]
+
+
+def cell(value: Any) -> str:
+    """Return six digits of a number, the shape of an array, nothing for None and nan."""
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return ""
+    if isinstance(value, np.ndarray):
+        return f"array {value.shape}"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def cells(rows: Rows) -> list[list[str]]:
+    """Return the text of every value."""
+    return [[cell(value) for value in row] for row in rows]
+
+
+def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
+    """Return a table with frames and the width of the terminal, or plain and as wide as it needs to be in a pipe."""
+    terminal = sys.stdout.isatty()
+    table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if _unicode() else box.ASCII2)
+    table.title, table.title_justify = title or None, "left"
+    out = StringIO()
+    # a pipe has no width: nothing is cut there
+    Console(file=out, force_terminal=terminal, width=None if terminal else 10_000, legacy_windows=False).print(table)
+    return "\n".join(line.rstrip() for line in out.getvalue().splitlines()).strip("\n")
+
+
+def as_markdown(header: Sequence[str], rows: Rows) -> str:
+    """Return a Markdown table."""
+    escaped = [[text.replace("|", "\\|") for text in line] for line in [list(header), *cells(rows)]]
+    out = StringIO()
+    Console(file=out, force_terminal=False, width=100_000).print(_table(escaped[0], escaped[1:], box.MARKDOWN))
+    return "\n".join(line.rstrip() for line in out.getvalue().splitlines() if line.strip())
+
+
+def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> None:
+    """Write every digit of the numbers; arrays as nested lists; folders are made."""
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with target.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([[v.tolist() if isinstance(v, np.ndarray) else v for v in row] for row in rows])
+
+
+def _unicode() -> bool:
+    return (sys.stdout.encoding or "").lower().startswith("utf")
+
+
+def _table(header: Sequence[str], rows: Rows, frame: box.Box) -> Table:
+    table = Table(box=frame, pad_edge=frame is not box.SIMPLE_HEAD)
+    for column, title in enumerate(header):
+        values = [row[column] for row in rows]
+        words = any(isinstance(value, str) and value[:1].isalpha() for value in values)
+        table.add_column(Text(title), justify="left" if words else "right", overflow="fold")
+    for row in cells(rows):
+        table.add_row(*[Text(text) for text in row])
+    return table

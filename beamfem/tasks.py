@@ -1,0 +1,125 @@
+"""Many calls of one function, here or in workers; what fails or kills a worker is named, and the others go on."""
+
+import math
+import os
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Any
+
+from beamfem.workers import ExecutorFactory, Outcome, Point, call, call_all, open_executor, workers
+
+_CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A call that gave no value: its parameters, these as text, the error in a sentence, the traceback if any."""
+
+    parameters: Mapping[str, Any] = field(repr=False)
+    label: str
+    error: str
+    traceback: str = field(default="", repr=False)
+
+    def __str__(self) -> str:
+        return f"failed at {self.label}: {self.error}"
+
+
+class TaskRunner:
+    """Calls a function at points, in this process or in workers that live as long as the `with` block."""
+
+    def __init__(self, function: Callable[..., Any], factory: ExecutorFactory | None) -> None:
+        self._function = function
+        self._factory = factory
+        self._executor: Executor | None = None
+        self._attempt = 0
+
+    def __enter__(self) -> "TaskRunner":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+        self._close()
+
+    def run(self, points: Sequence[Point]) -> Iterator[tuple[int, Outcome]]:
+        """Yield the number of each point with its outcome as they come.
+
+        Raises InputError or BeamfemError where workers cannot be had at all.
+        """
+        if self._factory is None:
+            for i, point in enumerate(points):
+                yield i, call(self._function, point)
+            return
+        suspects = yield from self._together(points)
+        for i in sorted(suspects):
+            yield i, self._alone(points[i])
+
+    def _together(self, points: Sequence[Point]) -> Generator[tuple[int, Outcome], None, list[int]]:
+        """Run chunks in parallel; return the points whose chunk was lost, with a worker or on the way.
+
+        Only a few chunks are under way at a time, so that the death of a worker makes few points suspect.
+        """
+        waiting = deque(range(len(points)))
+        running: dict[Future[list[Outcome]], list[int]] = {}
+        suspects: list[int] = []
+        seconds = math.inf
+        broken = False
+        try:
+            while waiting or running:
+                if broken and not running:
+                    self._close()
+                    broken = False
+                executor = self._open(len(waiting) + len(running))
+                while waiting and not broken and len(running) < 2 * workers(executor) + 1:
+                    # the last chunks are small, so that no worker is left with a long one
+                    fair = math.ceil(len(waiting) / (2 * workers(executor)))
+                    chunk = [waiting.popleft() for _ in range(max(1, min(fair, int(_CHUNK_SECONDS / seconds))))]
+                    try:
+                        running[self._submit(executor, [points[i] for i in chunk])] = chunk
+                    except BrokenExecutor:
+                        waiting.extendleft(reversed(chunk))
+                        broken = True
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    chunk = running.pop(future)
+                    error = future.exception()
+                    if error is not None:
+                        suspects += chunk
+                        broken = broken or isinstance(error, BrokenExecutor)
+                        continue
+                    outcomes = future.result()
+                    seconds = max(sum(outcome.seconds for outcome in outcomes) / len(chunk), 1e-7)
+                    yield from zip(chunk, outcomes, strict=True)
+        finally:
+            for future in running:
+                future.cancel()
+        if broken:
+            self._close()
+        return suspects
+
+    def _alone(self, point: Point) -> Outcome:
+        """Run a suspect with nothing beside it, so that the death of its worker is its own."""
+        try:
+            return self._submit(self._open(1), [point]).result()[0]
+        except BrokenExecutor:
+            self._close()
+            return Outcome(error="WorkerDied: the worker process ended in this call, which ran alone")
+        except Exception as error:
+            return Outcome(error=f"{type(error).__name__}: {error}")
+
+    def _submit(self, executor: Executor, points: list[Point]) -> "Future[list[Outcome]]":
+        self._attempt += 1
+        return executor.submit(call_all, self._function, points, os.getpid(), self._attempt)
+
+    def _open(self, tasks: int) -> Executor:
+        if self._executor is None:
+            assert self._factory is not None
+            self._executor = open_executor(self._factory, self._function, tasks)
+        return self._executor
+
+    def _close(self) -> None:
+        if self._executor is not None:
+            # a worker needs 0.3 s to end, which nobody has to wait for
+            self._executor.shutdown(wait=False)
+            self._executor = None

@@ -1,0 +1,146 @@
+"""Workers of any `concurrent.futures.Executor`: how they are started, and what they run."""
+
+import multiprocessing
+import os
+import pickle
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import cache, partial
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import BeamfemError, InputError
+from beamfem.progress import no_progress
+
+ExecutorFactory = Callable[[], Executor]
+Point = Mapping[str, Any]
+
+_THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a call gave: its value, or an error in a sentence with the traceback; and the seconds that it took."""
+
+    value: Any = None
+    seconds: float = 0.0
+    error: str | None = None
+    traceback: str = ""
+
+
+def call(function: Callable[..., Any], point: Point) -> Outcome:
+    """Call `function` with the parameters of a point; what it raises becomes part of the outcome."""
+    begun = time.perf_counter()
+    try:
+        value = _checked(function(**point))
+    except Exception as error:
+        sentence = f"{type(error).__name__}: {error}"
+        return Outcome(None, time.perf_counter() - begun, sentence, traceback.format_exc())
+    return Outcome(value, time.perf_counter() - begun)
+
+
+def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, attempt: int) -> list[Outcome]:
+    """What a worker runs: one call after the other, with one thread and without progress bars.
+
+    home: number of the process that asks. attempt: makes a repetition a new task where equal tasks are merged (dask).
+    """
+    if os.getpid() != home:
+        _one_thread()
+    with no_progress():
+        return [call(function, point) for point in points]
+
+
+def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks: int) -> Executor:
+    """Make an executor and wait until a worker answers; process pools are spawned, with one thread a worker.
+
+    Raises InputError where the function cannot reach a process, BeamfemError where workers do not start.
+    """
+    executor = _spawning(factory)()
+    if not isinstance(executor, Executor):
+        raise InputError(f"executor must make a concurrent.futures.Executor, got {type(executor).__name__}")
+    name = getattr(function, "__qualname__", repr(function))
+    if not isinstance(executor, ProcessPoolExecutor):
+        executor.submit(call_all, function, (), os.getpid(), 0).result()
+        return executor
+    try:
+        pickle.dumps(function)
+    except Exception as error:
+        executor.shutdown(wait=False)
+        raise InputError(
+            f"{name} cannot be sent to a worker process ({error}); define it with def at the top level of a module"
+        ) from None
+    with _environment_of_one_thread():
+        # a pool starts a process with each task that finds none idle: as many questions start them all at once
+        questions = range(min(tasks, workers(executor)))
+        answers = [executor.submit(call_all, function, (), os.getpid(), 0) for _ in questions]
+    try:
+        answers[0].result()
+    except BrokenExecutor:
+        raise BeamfemError(
+            f"the worker processes did not start or could not import {name}; they import the script anew, so that "
+            'what it runs must stand below `if __name__ == "__main__":`'
+        ) from None
+    return executor
+
+
+def workers(executor: Executor) -> int:
+    """How many workers an executor has; 500 where it does not tell, so that a cluster is kept busy."""
+    return int(getattr(executor, "_max_workers", 500))
+
+
+def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
+    """Let a process pool spawn: a fork copies locks that other threads hold."""
+    bare = factory.func if isinstance(factory, partial) else factory
+    given = factory.keywords if isinstance(factory, partial) else {}
+    if isinstance(bare, type) and issubclass(bare, ProcessPoolExecutor) and "mp_context" not in given:
+        return partial(factory, mp_context=multiprocessing.get_context("spawn"))
+    return factory
+
+
+@contextmanager
+def _environment_of_one_thread() -> Iterator[None]:
+    """What processes that start inside inherit: libraries read these when they load."""
+    before = {name: os.environ.get(name) for name in _THREAD_LIMITS}
+    os.environ.update(dict.fromkeys(_THREAD_LIMITS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@cache
+def _one_thread() -> None:
+    """Hold the BLAS and OpenMP that this worker has loaded to one thread for good; workers share the cores."""
+    with suppress(ImportError):
+        from threadpoolctl import threadpool_limits
+
+        threadpool_limits(limits=1)
+
+
+def _checked(value: Any) -> Any:
+    """Return a number, an array of numbers or a dict of named ones. Raises InputError."""
+    if not isinstance(value, Mapping):
+        return _number(value)
+    if not value or not all(isinstance(name, str) for name in value):
+        raise InputError(f"the function must return a number or a mapping of named numbers, got {value!r}")
+    return {name: _number(number) for name, number in value.items()}
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "biuf":
+        return value if isinstance(value, np.ndarray) and value.ndim else value.item()
+    if isinstance(value, bool | int):
+        return value
+    if isinstance(value, Real):
+        return float(value)
+    raise InputError(f"the function must return a number or a mapping of named numbers, got {value!r}")

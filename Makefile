@@ -23,7 +23,7 @@ lint: $(VENV)/.ready
 
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[plot,store,test]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[plot,store,cad,test]"
 	touch $@
 
 clean:

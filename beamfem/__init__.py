@@ -7,11 +7,24 @@ from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.modes import Modes, solve_modes
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
+from beamfem.analysis.trace import trace_equilibrium
 from beamfem.convergence.study import converge
-from beamfem.curves import Line
+from beamfem.curves import (
+    Arc,
+    BSpline,
+    Chain,
+    Curve,
+    Line,
+    Parametric,
+    Polyline,
+    elliptic_arc,
+    spline_through_hermite,
+    without_removable_knots,
+)
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
+from beamfem.io.cad import read_dxf
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
@@ -19,6 +32,7 @@ from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.path import Bifurcation, Path, PathState
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
@@ -28,15 +42,20 @@ __all__ = [
     "ANCF",
     "ANCFCRBF",
     "CRBF",
+    "Arc",
+    "BSpline",
     "Beam",
     "BeamfemError",
+    "Bifurcation",
     "BilinearANCF",
     "BilinearCRBF",
-    "Circle",
     "Buckling",
+    "Chain",
+    "Circle",
     "Clamp",
     "ContinuumMechanics",
     "ConvergenceError",
+    "Curve",
     "DistributedLoad",
     "ElasticLine",
     "Element",
@@ -54,10 +73,14 @@ __all__ = [
     "Model",
     "Modes",
     "Newton",
+    "Parametric",
+    "Path",
+    "PathState",
     "Pin",
     "Point",
     "PointForce",
     "PointMoment",
+    "Polyline",
     "Prescribed",
     "Rectangle",
     "Rigid",
@@ -74,10 +97,15 @@ __all__ = [
     "Tube",
     "UnknownPointError",
     "converge",
+    "elliptic_arc",
     "load",
+    "read_dxf",
     "simulate",
     "solve_buckling",
     "solve_modes",
     "solve_static",
+    "spline_through_hermite",
     "sweep",
+    "trace_equilibrium",
+    "without_removable_knots",
 ]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.curves import Line
+from beamfem.curves import Arc, BSpline, Chain, Line, Parametric, Polyline
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
@@ -26,6 +26,10 @@ _CLASSES = {
     kind.__name__: kind
     for kind in (
         Line,
+        Arc,
+        Polyline,
+        Chain,
+        BSpline,
         Section,
         Layer,
         Layered,
@@ -99,6 +103,8 @@ class _Writer:
         return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
 
     def write(self, value: Any) -> Any:
+        if isinstance(value, Parametric):
+            value = value.spline()
         if isinstance(value, Beam):
             return {"beam": next(i for i, beam in enumerate(self.beams) if beam is value)}
         if _CLASSES.get(type(value).__name__) is type(value):

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.analysis.balance import left_over
 from beamfem.analysis.critical import critical_load, load_of_limit_point
-from beamfem.analysis.equations import coordinate_scale, load_slope
+from beamfem.analysis.equations import load_slope
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.initial import resting_state
 from beamfem.analysis.lost_stiffness import Start
@@ -81,7 +81,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     path = PrimaryPath(system, p, load_factor)
     start = Start.at(system, path.found[0])
     linearised = load_factor + 1.0 / start.rates(count)
-    moved = float(np.max(np.abs(path.found[0].slope) / coordinate_scale(system)))
+    moved = float(np.max(np.abs(path.found[0].slope) / system.scale))
     linearised = linearised[(linearised - load_factor) * moved <= _LARGEST_CHANGE]
     if len(linearised) < count:
         found = f"only {len(linearised)} of {count} load factors" if len(linearised) else "no positive load factor"

@@ -64,7 +64,7 @@ class Continuation:
     @cached_property
     def scale(self) -> np.ndarray:
         """What a change of y is measured by (n + 1,)."""
-        return np.append(coordinate_scale(self.system), self.load_scale)
+        return np.append(self.system.scale, self.load_scale)
 
     @cached_property
     def weights(self) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.analysis.eigenpairs import Pairs, largest_pairs
-from beamfem.analysis.equations import STATICS, coordinate_scale, linearise
+from beamfem.analysis.equations import STATICS, linearise
 from beamfem.analysis.pencil import UNTURNED, is_symmetric
 from beamfem.analysis.primary_path import Equilibrium
 from beamfem.analysis.tangent import Factorised, Tangent
@@ -71,7 +71,7 @@ class Start:
 
         The derivative of the tangent along the path is a difference of fourth order.
         """
-        moved = float(np.max(np.abs(self.state.slope) / coordinate_scale(self.system)))
+        moved = float(np.max(np.abs(self.state.slope) / self.system.scale))
         width = _CHANGE / moved
         rate = csr_array(self.stiffness.shape)
         for steps, weight in ((1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)):

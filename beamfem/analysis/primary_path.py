@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.analysis.equations import STATICS, coordinate_scale, linearise, load_slope
+from beamfem.analysis.equations import STATICS, linearise, load_slope
 from beamfem.analysis.newton import Newton, solve_equilibrium
 from beamfem.errors import BeamfemError
 from beamfem.model.model import Model
@@ -35,7 +35,7 @@ class PrimaryPath:
 
     def __init__(self, system: System, p: np.ndarray, load_factor: float) -> None:
         self.system = system
-        self.scale = coordinate_scale(system)
+        self.scale = system.scale
         self.found = [self._equilibrium(p, load_factor)]
 
     def _equilibrium(self, p: np.ndarray, load_factor: float) -> Equilibrium:

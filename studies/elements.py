@@ -96,9 +96,9 @@ def limit(element: bf.Element, slenderness: float) -> tuple[np.ndarray, str] | N
     factor = 1.2 if tied and element.integration == "full" else 1.0
     axial = rigidity.axial * (1.0 if stretchable else factor)
     if isinstance(element.forces, bf.Structural):
-        return np.array(tip_displacement(1.0, force, rigidity.bending, axial, factor * rigidity.shear)), REISSNER
+        return np.array(tip_displacement(1.0, (0.0, force), rigidity.bending, axial, factor * rigidity.shear)), REISSNER
     if isinstance(element.forces, bf.ElasticLine):
-        return np.array(tip_displacement(1.0, force, rigidity.bending, axial)), ELASTICA
+        return np.array(tip_displacement(1.0, (0.0, force), rigidity.bending, axial)), ELASTICA
     if factor != 1.0 or stretchable:
         return None
     coordinates = Rotation() if tied else element.coordinates

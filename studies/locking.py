@@ -2,7 +2,7 @@
 
 Poisson: transverse strain that cannot vary over the height makes continuum forces bend too stiffly; a pure end moment
 measures by how much. Shear: the bilinear field with full integration. Nodes without shear (sections 1.5 and 3.5): the
-cubic bubble that carries stretch and shear between them is 1.2 times too stiff in the mean square, and vanishes at them.
+cubic bubble that carries stretch and shear between them vanishes there and is 1.2 times too stiff in the mean square.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """Beams that are curved without stress: a thin ring against Castigliano, a tapered ring, rings on splines and polygons.
 
-Reference for the quarter ring: Reissner's curved beam by shooting, and order 8 on a fine mesh for a spline and a polygon
-of it. Paper, section 2: a stress-free curved beam measures its strains against its own reference.
+Reference for the quarter ring: Reissner's curved beam by shooting; for a spline and a polygon of it order 8 on a fine
+mesh. Paper, section 2: a stress-free curved beam measures its strains against its own reference.
 """
 
 from collections.abc import Callable
@@ -65,7 +65,8 @@ def displaced(
 def castigliano(element: bf.Element, elements: int, thinness: float) -> np.ndarray:
     """Return the tip displacement (2,) of a half ring that is pulled in over Castigliano's.
 
-    M = H R sin, N = -H sin, Q = H cos of the angle: u_x = H pi/2 (R^3/(E I) + R/(E A) + R/(k_s G A)), u_y = 2 H R^3/(E I).
+    M = H R sin, N = -H sin, Q = H cos of the angle: u_x = H pi/2 (R^3/(E I) + R/(E A) + R/(k_s G A)) and
+    u_y = 2 H R^3/(E I).
     The mean of a small pull and a small push is free of what is quadratic in the load.
     """
     section = bf.Rectangle(1.0 / thinness, 1.0 / thinness)
@@ -103,8 +104,8 @@ SPANS, SIDES = 4, 8
 
 
 def curves() -> dict[str, tuple[bf.Curve, int]]:
-    """The quarter ring, a cubic spline through 5 points and tangents of it, and the polygon through 9 points; and of how
-    many pieces they are."""
+    """The quarter ring, a cubic spline through 5 of its points and tangents, and the polygon through 9; and of how many
+    pieces they are."""
     at = np.linspace(0.0, QUARTER.length, SPANS + 1)
     spline = bf.spline_through_hermite(at, QUARTER.position(at), QUARTER.tangent(at))
     corners = QUARTER.position(np.linspace(0.0, QUARTER.length, SIDES + 1))
@@ -225,8 +226,8 @@ def _tables(result: Curved) -> list[Table]:
             [name, *(f"{error:+.1e}" for ratio in ratios for error in result.castigliano[name, ratio])]
             for name in dict.fromkeys(name for name, _ in result.castigliano)
         ],
-        "Structural forces but for the elastic line, whose formula has no shear. Order k with k points does not know how "
-        "thin the ring is. Gradients lock: between two nodes whose r_y point apart bending makes r_y shorter, and the "
+        "Structural forces but for the elastic line, whose formula has no shear. Order k with k points does not know "
+        "how thin the ring is. Gradients lock: between two nodes whose r_y point apart bending makes r_y shorter, and the "
         "thickness stiffness E A resists (curvature thickness locking); with 24 ANCF elements and R/h = 1000 hardly a "
         "twentieth of the deflection is left. It falls with the fourth power of the element's length for linear r_y.",
     )
@@ -237,8 +238,8 @@ def _tables(result: Curved) -> list[Table]:
             [name, *(f"{x:.8f}" for x in tip(solution)), str(solution.iterations), str(solution.statistics.steps)]
             for name, solution in result.tapered.items()
         ],
-        "R = 1 m, 0.05 m wide, 0.06 - 0.01 s deep, E = 1e9 Pa, nu = 0.3, 20 N. Continuum forces bend 1.346 or 1.099 times "
-        "as stiffly; split continuum and structural forces agree up to strains squared.",
+        "R = 1 m, 0.05 m wide, 0.06 - 0.01 s deep, E = 1e9 Pa, nu = 0.3, 20 N. Continuum forces bend 1.346 or 1.099 "
+        "times as stiffly; split continuum and structural forces agree up to strains squared.",
     )
     rows = [
         [curve, name, " ".join(map(str, found.meshes)), *_four(found.errors), _order(found)]
@@ -252,8 +253,8 @@ def _tables(result: Curved) -> list[Table]:
         rows,
         f"Structural forces. Against Reissner's curved beam by shooting (arc: tip {arc[0]:.12f}, {arc[1]:.12f} m), and "
         "against 16 elements of order 8 on the same spline or polygon. The spline's own limit is "
-        f"{away['cubic B-spline, 4 spans']:.1e} m away from the arc's, the polygon's {away['polygon, 8 sides']:.1e} m; on "
-        "each of them an element of order k converges with 2 k where elements end at its knots and corners.",
+        f"{away['cubic B-spline, 4 spans']:.1e} m away from the arc's, the polygon's {away['polygon, 8 sides']:.1e} m; "
+        "on each of them an element of order k converges with 2 k where elements end at its knots and corners.",
     )
     return [ring, pulled, quarter]
 

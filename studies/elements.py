@@ -175,17 +175,18 @@ def table(found: list[Found]) -> Table:
     for ratio in ratios:
         header += [f"error at L/h = {ratio}", "order", "iterations", "ms"]
     remark = (
-        f"All with {INTERVALS + 1} nodes; size: coordinates in all; error: largest of u and v at the tip, over L; order: "
-        "of the least-squares line through the finest meshes that lie on one (extrapolated: of the three finest values), "
-        "empty where the element still locks or the error does not fall; ms: best of 3, warm, the model made anew. Limits: Reissner's beam and the extensible "
-        "elastica by shooting (for shear-rigid coordinates under full integration with 1.2 times the shear stiffness, and "
-        "with a fixed |r_x| 1.2 times E A); order 8: 22 elements of order 8 with the same coordinates, graded towards "
-        "both ends; extrapolated: from its own finest meshes, because the square of the shear enters the stretch and the "
-        "limit is a little different from that of rotations. A fixed |r_x| with the elastic line comes to the elastica "
-        "up to (N / (E A))^2 only. Order k with k points falls with 2 k; continuum forces on gradients have boundary "
-        "layers of the thickness at the ends, which uniform meshes of high order feel first. Orders above 2 of cubic and "
-        "bilinear elements at L/h = 100 are not yet the last word: a director that is linear between two nodes is "
-        "shorter in the middle, the thickness stiffness resists that, and this locking falls with the fourth power."
+        f"All with {INTERVALS + 1} nodes; size: coordinates in all; error: largest of u and v at the tip, over L; "
+        "order: of the least-squares line through the finest meshes that lie on one (extrapolated: of the three finest "
+        "values), empty where the element still locks or the error does not fall; ms: best of 3, warm, the model made "
+        "anew. Limits: Reissner's beam and the extensible elastica by shooting (shear-rigid coordinates under full "
+        "integration: with 1.2 times the shear stiffness, and with a fixed |r_x| 1.2 times E A); order 8: 22 elements "
+        "of order 8 with the same coordinates, graded towards both ends; extrapolated: from its own finest meshes, "
+        "because the square of the shear enters the stretch and the limit is a little different from that of "
+        "rotations. A fixed |r_x| with the elastic line comes to the elastica up to (N / (E A))^2 only. Order k with k "
+        "points falls with 2 k; continuum forces on gradients have boundary layers of the thickness at the ends, which "
+        "uniform meshes of high order feel first. Orders other than 2 of cubic and bilinear elements at L/h = 100 are "
+        "not the last word: a director that is linear between two nodes is shorter in the middle, the thickness "
+        "stiffness resists that, and this locking falls with the fourth power until the second order shows."
     )
     return Table("Cantilever, P L^2 / (E I) = 5", header, rows, remark)
 
@@ -228,9 +229,9 @@ def part(folder: Path) -> Part:
     """Run all, draw, and return the part of the page."""
     found = table(main())
     sentence = (
-        "Reissner's beam, L/h = 100. The bilinear element with full integration locks; with one point it converges with "
-        "order 2, as the cubic ones do. Order 4 with 4 points falls with order 8, order 8 with order 16: one element of "
-        "order 8 (27 coordinates) is right to 2e-7, 96 of ANCF/CRBF (485 coordinates) to 1.3e-5."
+        "Reissner's beam, L/h = 100. The bilinear element with full integration locks; with one point it converges "
+        "with order 2, as the cubic ones do. Order 4 with 4 points falls with order 8, order 8 with order 16: one "
+        "element of order 8 (27 coordinates) is right to 2e-7, 96 of ANCF/CRBF (485 coordinates) to 1.3e-5."
     )
     entry = Entry("Error over the number of coordinates", draw(folder), "", sentence)
     text = "A cantilever bends by 0.7 L under a dead tip force, nu = 0.3, k_s = 5/6, E I nominal for all forces."

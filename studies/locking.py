@@ -269,9 +269,9 @@ def _tables(result: Locking) -> list[Table]:
         header,
         [[*key, *(f"{value:.6f}" for value in (*result.shear[key], *result.stretch[key]))] for key in result.shear],
         "Structural forces. Between nodes without shear a bubble 6 xi (1 - xi) carries it; its mean is 1 and its mean "
-        "square 1.2, at the 2 Gauss points it is 1. So full integration is 1.2 times too stiff at every mesh, in shear, "
-        "and in stretch where |r_x| = 1 is fixed; with a stretch coordinate stretch is exact. The bending part of the "
-        "deflection, P L^3 / (3 E I) (1 - 1 / (4 n^2)) with n elements, is subtracted.",
+        "square 1.2, at the 2 Gauss points it is 1. So full integration is 1.2 times too stiff at every mesh, in "
+        "shear, and in stretch where |r_x| = 1 is fixed; with a stretch coordinate stretch is exact. The bending part "
+        "of the deflection, P L^3 / (3 E I) (1 - 1 / (4 n^2)) with n elements, is subtracted.",
     )
     return [bending, shear, rigid]
 
@@ -290,8 +290,8 @@ def part(folder: Path) -> Part:
             "Poisson locking",
             folder / "poisson.svg",
             "",
-            f"At nu = 0.3 the 3D lambda bends {solid:.9f} times too stiffly, plane stress {plane:.9f}; split continuum, "
-            "structural forces and the elastic line bend with E I at every ratio.",
+            f"At nu = 0.3 the 3D lambda bends {solid:.9f} times too stiffly, plane stress {plane:.9f}; split "
+            "continuum, structural forces and the elastic line bend with E I at every ratio.",
         ),
         Entry(
             "Shear locking",
@@ -303,9 +303,11 @@ def part(folder: Path) -> Part:
         Entry(
             "Stress of the shear-rigid element with 3 coordinates a node",
             folder / "stress.svg",
-            "continuum mechanics leads to zero stresses at the nodal points, the centreline of the beam being stress free",
-            "on the centreline (y = 0) all components of stress vanish at the nodes, to round-off, because |r_x| = |r_y| "
-            f"= 1 and r_x.r_y = 0 are fixed there: {found.at_nodes:.0e} Pa under a pull of {found.exact_axis:.0e} Pa. The "
+            "continuum mechanics leads to zero stresses at the nodal points; the centreline of the beam is assumed to "
+            "be stress free",
+            "on the centreline (y = 0) all components of stress vanish at the nodes, to round-off, because |r_x| = "
+            f"|r_y| = 1 and r_x.r_y = 0 are fixed there: {found.at_nodes:.0e} Pa under a pull of "
+            f"{found.exact_axis:.0e} Pa. The "
             f"mean over the beam is not zero: {found.mean / found.exact_axis:.5f} of F / A with 2 Gauss points, "
             f"{full.mean / full.exact_axis:.5f} with full integration (1 / 1.2). Away from the centreline the bending "
             f"stress does not vanish at the nodes either: {found.face[0] / 1e6:.2f} MPa at the clamp, y = h/2. The "

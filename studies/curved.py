@@ -227,9 +227,10 @@ def _tables(result: Curved) -> list[Table]:
             for name in dict.fromkeys(name for name, _ in result.castigliano)
         ],
         "Structural forces but for the elastic line, whose formula has no shear. Order k with k points does not know "
-        "how thin the ring is. Gradients lock: between two nodes whose r_y point apart bending makes r_y shorter, and the "
-        "thickness stiffness E A resists (curvature thickness locking); with 24 ANCF elements and R/h = 1000 hardly a "
-        "twentieth of the deflection is left. It falls with the fourth power of the element's length for linear r_y.",
+        "how thin the ring is. Gradients lock: between two nodes whose r_y point apart bending makes r_y shorter, and "
+        "the thickness stiffness E A resists (curvature thickness locking); with 24 ANCF elements and R/h = 1000 "
+        "hardly a twentieth of the deflection is left. It falls with the fourth power of the element's length where "
+        "r_y is linear.",
     )
     pulled = Table(
         "Tapered half ring pulled open, 36 node intervals",

@@ -148,7 +148,8 @@ def main(
     elements: Iterable[bf.Element] | None = None, slenderness: tuple[int, ...] = SLENDERNESS, repeats: int = 3
 ) -> list[Found]:
     """Return what is measured of each element (of all combinations unless given) at each slenderness."""
-    return [compare(element, ratio, repeats) for element in elements or combinations() for ratio in slenderness]
+    chosen = combinations() if elements is None else elements
+    return [compare(element, ratio, repeats) for element in chosen for ratio in slenderness]
 
 
 def forces_name(element: bf.Element) -> str:

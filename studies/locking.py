@@ -238,6 +238,7 @@ def _draw_stresses(found: Stresses, path: Path) -> None:
     axes.plot(found.nodes, np.zeros_like(found.nodes), "o", color="black", label="nodes")
     axes.set_xlabel("arc length [m]")
     axes.set_ylabel("stress xx [MPa]")
+    axes.set_ylim(-2.2, 3.2)  # room for the legend
     axes.legend(frameon=False, ncols=2, fontsize=8)
     _save(canvas, path)
 

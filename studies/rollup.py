@@ -159,7 +159,7 @@ def main(
     return RollUp(
         {
             (element, turns): roll(element, count, 100, turns, starts if turns == 1 else (1,))
-            for element, count in elements or combinations()
+            for element, count in (combinations() if elements is None else elements)
             for turns in (1, 2)
         },
         {(order, ratio): roll(bf.CRBF(order), COUNTS[order], ratio, 1) for order in (4, 6) for ratio in slenderness},

@@ -37,7 +37,7 @@ def test_shooting_finds_the_references(slenderness, load, tip):
 
 
 def test_shooting_of_a_curved_beam_is_castigliano_for_a_small_load():
-    """A quarter ring clamped along x, force H across the clamp at its end: M = H R (1 - sin), u_y the integral of M^2."""
+    """A quarter ring clamped along x, force H across the clamp at its end: M = H R (1 - sin), u_y its square's sum."""
     _, v = elastica.tip_displacement(np.pi / 2, (0.0, 1e-5), 1.0, curvature=1.0)
     assert v / 1e-5 == pytest.approx(3 * np.pi / 4 - 2, rel=1e-4)
 

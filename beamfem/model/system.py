@@ -170,10 +170,10 @@ class System:
 def coordinate_columns(mesh: BeamMesh, reverse: bool = False) -> list[tuple[str, np.ndarray, np.ndarray]]:
     """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
 
-    reverse: nodes from the end to the start.
+    reverse: nodes from the end to the start, and turned vectors before those that they are turned from.
     """
     result = []
-    for carrier, nodes in mesh.carriers:
+    for carrier, nodes in reversed(mesh.carriers) if reverse else mesh.carriers:
         ordered = nodes[::-1] if reverse else nodes
         for column, label in enumerate(labels(carrier, mesh.vectors)):
             result.append((label, ordered, mesh.carried.dof[ordered, column]))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from beamfem import postprocess
+from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.loads import PointForce, factor
@@ -129,8 +130,10 @@ class Solution:
         return reaction(self, point)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force and moment at the Gauss points of a beam (steps, stations)."""
-        return postprocess.section_forces(self.model.mesh_of(beam.start), self.p)
+        """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
+        from beamfem.end_forces import with_ends
+
+        return with_ends(self, beam)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
@@ -174,6 +177,19 @@ class Solution:
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
         return np.asarray(sum(m.angular for m in self._momenta))
+
+    def spline(self, beam: Beam, row: int = -1) -> BSpline:
+        """Return the deformed axis of a beam of cubic elements in a row as a cubic B-spline, exactly.
+
+        Knots are those of the beam's own spline, or arc lengths. Raises InputError for other elements.
+        """
+        mesh = self.model.mesh_of(beam.start)
+        if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
+            raise InputError(
+                f"the axis of {beam.element.name} elements is no cubic spline; cubic ones such as ANCF are"
+            )
+        e = postprocess.nodal_vectors(mesh, self.p[row][None])[0]
+        return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
     def to_vtk(self, path: str | PathLike[str]) -> None:
         """Write the deformed body and the centreline for ParaView: `path` ends in .pvd."""

@@ -21,24 +21,27 @@ CURVES = {
     "spline": bf.BSpline(
         3, (0, 0, 0, 0, 0.5, 1, 1, 1, 1), ((0, 0), (0.4, 0.5), (1, 0.3), (1.4, -0.2), (2, 0.4)), (1, 2, 1, 1, 0.5)
     ),
-    "corner": bf.Polyline(((0, 0), (0.7, 0.1), (0.9, 0.8))),
+    "corner": bf.Polyline(((0, 0), (0.7, 0.1), (0.8, 0.8))),
     "parametric": bf.Parametric(lambda u: (u, 0.3 * np.sin(2 * u)), 0.0, 1.5),
 }
-each_curve = pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
 
 
 def tapered(s):
     return bf.Rectangle(0.1, 0.12 - 0.02 * s)
 
 
-def framed(element, curve):
-    """A tapered curved beam, clamped, rigidly joined to a straight one of another element and hinged to a third."""
-    one = bf.Beam(curve, 3, element, tapered, SOFT)
-    end = tuple(one.end.reference)
-    other = bf.Beam(bf.Line(end, (3.0, 1.0)), 1, bf.CRBF(2), bf.Rectangle(0.1, 0.1), SOFT)
-    third = bf.Beam(bf.Line(end, (3.0, -1.0)), 1, bf.ANCF(), bf.Rectangle(0.1, 0.1), SOFT)
-    joints = [bf.Rigid(one.end, other.start), bf.Hinge(one.end, third.start)]
-    return System(bf.Model([one, other, third], [bf.Clamp(one.start)], joints=joints), static=True)
+def framed(element):
+    """Clamped beams along all curves, one tapered, each joined rigidly to another element and hinged to a third."""
+    beams, joints = [], []
+    for name, curve in CURVES.items():
+        section = tapered if name == "spline" else bf.Rectangle(0.1, 0.12)
+        one = bf.Beam(curve, 2, element, section, SOFT)
+        end = tuple(one.end.reference)
+        other = bf.Beam(bf.Line(end, (3.0, 1.0)), 1, bf.CRBF(2), bf.Rectangle(0.1, 0.1), SOFT)
+        third = bf.Beam(bf.Line(end, (3.0, -1.0)), 1, bf.ANCF(), bf.Rectangle(0.1, 0.1), SOFT)
+        beams += [one, other, third]
+        joints += [bf.Rigid(one.end, other.start), bf.Hinge(one.end, third.start)]
+    return System(bf.Model(beams, [bf.Clamp(beam.start) for beam in beams[::3]], joints=joints), static=True)
 
 
 def moved(system, angle, shift):
@@ -57,9 +60,8 @@ def moved(system, angle, shift):
     return p
 
 
-@each_curve
-def test_a_moved_and_turned_beam_has_neither_strain_nor_force(element, curve):
-    system = framed(element, curve)
+def test_a_moved_and_turned_beam_has_neither_strain_nor_force(element):
+    system = framed(element)
     rest = np.zeros(system.model.size)
     stiffness = np.abs(linearise(system, system.reference, rest, rest, 0.0, (1.0, 0.0, 0.0))[1].rows).max()
     for angle, shift in ((0.0, (0.0, 0.0)), (2.0, (3.0, -1.0))):
@@ -69,13 +71,12 @@ def test_a_moved_and_turned_beam_has_neither_strain_nor_force(element, curve):
             where, xi, _, _ = energy_points(mesh)
             now, then = axis(mesh, nodal_vectors(mesh, p[None]), where, xi), reference_axis(mesh, where, xi)
             strains = mesh.beam.element.forces.strains(now) - mesh.beam.element.forces.strains(then)
-            assert np.abs(strains).max() < 1e-12
+            assert np.abs(strains).max() < 2e-12
             assert strain_energy(mesh, p[None])[0] < 1e-24 * stiffness
 
 
-@each_curve
-def test_energy_residual_and_tangent_are_derivatives_of_each_other(element, curve, rng):
-    system = framed(element, curve)
+def test_energy_residual_and_tangent_are_derivatives_of_each_other(element, rng):
+    system = framed(element)
     n = system.model.size
     p, d, rest = system.reference + 0.02 * rng.standard_normal(n), rng.standard_normal(n), np.zeros(n)
     force, tangent = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))
@@ -113,7 +114,7 @@ SECTIONS = {
 }
 
 
-def body_points(beam, arc, points=20):
+def body_points(beam, arc, points=14):
     """Material, height and weight [m^2] over the section at an arc length; all are 0.2 m wide."""
     section = beam.section_at(arc)
     low, high = section.bounds
@@ -146,12 +147,11 @@ BODIES = [
 ]
 
 
-@pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
 @pytest.mark.parametrize("element", BODIES, ids=identify)
-@pytest.mark.parametrize("curve", ["arc", "spline"])
+@pytest.mark.parametrize(("curve", "section"), [("arc", "layers"), ("spline", "tapered"), ("spline", "rectangle")])
 def test_strain_and_kinetic_energy_of_a_curved_body_by_brute_force(element, curve, section, rng):
     """St. Venant-Kirchhoff with E = (G^T G - 1) / 2, G = F J^-1 the true deformation gradient, over the body."""
-    beam = bf.Beam(CURVES[curve], 2, element, section, bf.Material(2e5, 0.3, 1000.0))
+    beam = bf.Beam(CURVES[curve], 2, element, SECTIONS[section], bf.Material(2e5, 0.3, 1000.0))
     system = System(bf.Model([beam], loads=[bf.Gravity((0.0, -1.0))]), static=False)
     mesh, n = system.model.meshes[0], system.model.size
     p, v = system.reference + 0.05 * rng.standard_normal(n), rng.standard_normal(n)

@@ -9,13 +9,12 @@ import numpy as np
 
 from beamfem import postprocess
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
-from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.loads import PointForce, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.reference import inertia_points, length_points
+from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.postprocess import Fields, SectionForces
 
 
@@ -108,7 +107,9 @@ class Solution:
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement of a point from the reference (steps, 2) [m]."""
-        return self.position(point) - point.reference
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        return self.position(point) - reference_position(mesh, element, xi)
 
     def velocity(self, point: Point) -> np.ndarray:
         """Return the velocity of a point (steps, 2) [m/s]."""
@@ -166,7 +167,7 @@ class Solution:
             mesh = self.model.mesh_of(spread.beam.start)
             element, xi, weight = length_points(mesh)
             now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.p), element, xi).r
-            start = mesh.beam.curve.position(mesh.arc_length(element, xi))
+            start = reference_position(mesh, element, xi)
             result -= weights * (np.einsum("sqc,c->sq", now - start, np.array(spread.vector)) @ weight)
         return result
 
@@ -213,9 +214,9 @@ class Solution:
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:
     """Integral of the reference position over the mass (2,) [kg m]."""
     element, xi, inertia = inertia_points(mesh)
-    arc = mesh.arc_length(element, xi)
-    tangent = mesh.beam.curve.tangent(arc)
-    return np.asarray(inertia[:, 0] @ mesh.beam.curve.position(arc) + inertia[:, 1] @ across(tangent))
+    return np.asarray(
+        inertia[:, 0] @ reference_position(mesh, element, xi) + inertia[:, 1] @ reference_axis(mesh, element, xi).d
+    )
 
 
 def _single(value: Any) -> Any:

@@ -10,7 +10,7 @@ from beamfem.model.beam import Beam
 from beamfem.model.loads import DistributedLoad, PointLoad, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.reference import jacobians, length_points, scales
+from beamfem.model.reference import jacobians, length_points, reference_axis, reference_position, scales
 
 
 @dataclass(frozen=True)
@@ -96,16 +96,17 @@ def _part(
         direction[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
     else:
         direction[:, d_slots(field)] = field.director(xi)
-    arc = mesh.arc_length(element, xi)
-    tangent = mesh.beam.curve.tangent(arc)
-    along = tangent if own.forces.turns_with == "r_x" else np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+    # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
+    reference = reference_axis(mesh, element, xi)
+    along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
     return {
         "element": mesh.first_element + element,
         "position": position * scale,
         "direction": direction * scale,
         "follows": along if follower else np.zeros((count, 2)),
         "spring": np.zeros((count, 2)),
-        "anchor": mesh.beam.curve.position(arc),
+        "anchor": reference_position(mesh, element, xi),
         "unit": unit,
         "source": np.full(count, source),
     }

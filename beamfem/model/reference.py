@@ -79,6 +79,14 @@ def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
     return Axis(*(getattr(found, name)[0] for name in Axis.__dataclass_fields__))
 
 
+def reference_position(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return where points (element, xi) of the axis are in the reference (n, 2) [m].
+
+    On a curved beam they are beside the curve by the error of interpolation.
+    """
+    return np.asarray(grid.position[grid.node[element, 0]] + reference_axis(grid, element, xi).r)
+
+
 def stations(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Return element and xi of the points where section forces are evaluated."""
     element, xi, _ = _points(grid, None, *grid.beam.element.quadrature())
@@ -140,14 +148,25 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
         found = [beam.section_at(arc).inertia(beam.material) for arc in grid.arc_length(where, at)]
         inertia = np.array([[own.mass, own.first_moment, own.rotary] for own in found])
     if beam.element.forces.fills_body and not grid.straight:
-        # det J = alpha + beta y of the curved body; the third moment of the section is left out
+        # det J = alpha + beta y of the curved body
         reference = reference_axis(grid, where, at)
         along, _ = section_frame(reference.d)
         size = np.linalg.norm(reference.d, axis=-1)
         alpha, beta = dot(reference.r_s, along) * size, dot(reference.d_s, along) * size
-        mass, first, rotary = inertia.T
-        inertia = np.stack([alpha * mass + beta * first, alpha * first + beta * rotary, alpha * rotary], axis=1)
+        inertia = alpha[:, None] * inertia + beta[:, None] * _raised(grid, where, at)
     return where, at, inertia * weight[:, None]
+
+
+def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return the first, second and third mass moment over y (n, 3) [kg, kg m, kg m^2] of a body's sections."""
+    beam = grid.beam
+
+    def moments(section: CrossSection) -> np.ndarray:
+        return np.asarray(sum(part.density * moments[1:4] for part, moments in section.moments(beam.material)))
+
+    if isinstance(beam.section, CrossSection):
+        return np.broadcast_to(moments(beam.section), (len(element), 3))
+    return np.array([moments(beam.section_at(arc)) for arc in grid.arc_length(element, xi)])
 
 
 def reference_angle(grid: Grid) -> np.ndarray:

@@ -30,9 +30,7 @@ class Member:
         load: dead force per length; pressure: force per length along b, it follows.
         """
         end = self.length if length is None else length
-        return self._run(state, end, load, pressure)
 
-    def _run(self, state, end, load, pressure):
         def slope(s, y):
             phi = self.angle + self.curvature * s + y[2]
             c, d = np.cos(phi), np.sin(phi)
@@ -42,7 +40,7 @@ class Member:
             force = (-load[0] + pressure * d, -load[1] - pressure * c)
             return (x_s, y_s, y[5] / self.bending, *force, -(x_s * y[4] - y_s * y[3]))
 
-        return solve_ivp(slope, (0.0, end), state, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        return solve_ivp(slope, (0.0, end), state, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
 
     def after(self, length):
         """Return the rest of the member behind a length."""
@@ -52,6 +50,6 @@ class Member:
 
 def solved(conditions, guess):
     """Return the root of the conditions. Fails the test where there is none."""
-    x, found, ended, message = fsolve(conditions, guess, xtol=1e-13, full_output=True)
+    x, found, _, message = fsolve(conditions, guess, xtol=1e-13, full_output=True)
     assert np.abs(found["fvec"]).max() < 1e-9, message
     return x

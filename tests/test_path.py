@@ -284,3 +284,16 @@ def test_paths_that_cannot_be_followed_are_refused():
     ):
         with pytest.raises(bf.InputError):
             trace_equilibrium(model, **wrong)
+
+
+def test_columns_that_buckle_together_have_a_mode_each():
+    """Three equal columns in one model: the stiffness of three modes vanishes at one load; each branch is one's own."""
+    columns = [cantilever(10, (0.0, -1.0))[0] for _ in range(3)]
+    supports, loads = zip(*((bf.Clamp(c.start), bf.PointForce(c.end, (0.0, -1.0))) for c in columns), strict=True)
+    model = bf.Model(columns, supports, loads)
+    path = trace_equilibrium(model, 3.0)
+    assert [found.load_factor for found in path.bifurcations] == pytest.approx([2.4567382724132] * 3, rel=1e-8)
+    modes = np.array([found.mode for found in path.bifurcations])
+    assert modes @ modes.T == pytest.approx(np.diag(np.diag(modes @ modes.T)), abs=1e-6 * (modes @ modes.T).max())
+    branch = trace_equilibrium(model, points=4, start=path.bifurcations[1])
+    assert np.abs([branch.displacement(c.end)[-1, 0] for c in columns]).max() > 0.01

@@ -49,12 +49,11 @@ def _search(segment: Segment, start: float, end: float) -> list[Crossing]:
     change = abs(left.negative_pivots - right.negative_pivots)
     if change == 0 or (change % 2 == 0 and not (_symmetric(segment, left) and _symmetric(segment, right))):
         return []
-    if change == 1 or end - start < _SHARPNESS:
-        found = _zero(segment, start, end)
-        if found is not None:
-            return [found]
-        if end - start < _SHARPNESS:
-            raise SegmentLostError("the tangent is singular at several points that cannot be told apart")
+    found = _zero(segment, start, end)
+    if found is not None:
+        return found
+    if end - start < _SHARPNESS:
+        raise SegmentLostError("the tangent is singular at several points that cannot be told apart")
     middle = 0.5 * (start + end)
     return [*_search(segment, start, middle), *_search(segment, middle, end)]
 
@@ -67,25 +66,27 @@ def _require_one_path(segment: Segment, start: float, end: float) -> None:
         raise SegmentLostError("the step leads to another path")
 
 
-def _zero(segment: Segment, start: float, end: float) -> Crossing | None:
-    """Return where the stiffness of a mode that is soft at an end vanishes, None where it does not."""
+def _zero(segment: Segment, start: float, end: float) -> list[Crossing] | None:
+    """Return where the stiffness of a mode that is soft at an end vanishes, None where that is not all that changes.
+
+    A crossing for each mode whose stiffness vanishes there.
+    """
     mode = _softer(segment, start, end)
     known = {x: _stiffness(segment, x, mode) for x in (start, end)}
-    first, last = known[start], known[end]
-    if first * last >= 0.0:
+    if known[start] * known[end] >= 0.0:
         return None
     distance = _DISTANCE * (end - start)
-    x = start + (end - start) * first / (first - last)
+    x = start + (end - start) * known[start] / (known[start] - known[end])
     for _ in range(_TRIALS):
         samples = np.unique(np.clip(x + distance * np.array(_SAMPLES), start, end)).tolist()
         known |= {at: _stiffness(segment, at, mode) for at in samples}
         before, x = x, _root(known, start, end)
         if abs(x - before) < 0.1 * distance:
-            # beside a pole the stiffness grows
-            if max(abs(known[at]) for at in samples) > max(abs(first), abs(last)):
+            pivots = [segment.at(at).negative_pivots for at in (start, samples[0], samples[-1], end)]
+            if pivots[0] != pivots[1] or pivots[2] != pivots[3]:
                 return None
             x = float(krogh_interpolate([known[at] for at in samples], samples, 0.0))
-            return _crossing(segment, x, np.array(samples), distance)
+            return _crossings(segment, x, np.array(samples), distance, abs(pivots[1] - pivots[2]))
     return None
 
 
@@ -123,19 +124,30 @@ def _require_crossing(segment: Segment, shares: np.ndarray, aside: list[float]) 
         raise SegmentLostError("the step leads to another path")
 
 
-def _crossing(segment: Segment, x: float, near: np.ndarray, distance: float) -> Crossing:
-    """Return the bifurcation at a share x, interpolated between shares near to it. Raises SegmentLostError."""
+def _crossings(segment: Segment, x: float, near: np.ndarray, distance: float, count: int) -> list[Crossing]:
+    """Return the bifurcation at a share x with each of `count` modes, interpolated between shares near to it.
+
+    Raises SegmentLostError.
+    """
     line = segment.line
     points = [segment.at(at) for at in near]
-    modes = np.array([line.softest(point.factors) for point in points])
-    modes *= np.sign([line.dot(mode, modes[0]) for mode in modes])[:, None]
     weights = np.array([np.prod((x - np.delete(near, i)) / (at - np.delete(near, i))) for i, at in enumerate(near)])
-    mode = weights @ modes
-    mode /= np.copysign(line.length(mode), mode[np.argmax(np.abs(mode) / line.scale)])
-    _require_crossing(segment, (near - x) / distance, [line.dot(mode, point.y) for point in points])
-    tangents = np.array([point.tangent for point in points])
     # round-off of tangents so near to a singular one is all along the mode, and of opposite sign on the two sides
-    return Crossing(x, weights @ np.array([point.y for point in points]), weights @ tangents, mode)
+    y, tangent = (
+        weights @ np.array(rows) for rows in zip(*((point.y, point.tangent) for point in points), strict=True)
+    )
+    found: list[list[np.ndarray]] = [[] for _ in points]
+    result = []
+    for _ in range(count):
+        for point, modes in zip(points, found, strict=True):
+            modes.append(line.softest(point.factors, modes))
+        modes_here = np.array([modes[-1] for modes in found])
+        modes_here *= np.sign([line.dot(mode, modes_here[0]) for mode in modes_here])[:, None]
+        mode = weights @ modes_here
+        mode /= np.copysign(line.length(mode), mode[np.argmax(np.abs(mode) / line.scale)])
+        _require_crossing(segment, (near - x) / distance, [line.dot(mode, point.y) for point in points])
+        result.append(Crossing(x, y, tangent, mode))
+    return result
 
 
 def _symmetric(segment: Segment, point: PathPoint) -> bool:

@@ -29,10 +29,10 @@ class System:
         """Coordinates of the stress-free state (n,)."""
         p = np.zeros(self.model.size)
         for mesh in self.model.meshes:
-            values = {"r": mesh.position, "r_x": mesh.tangent, "r_y": across(mesh.tangent)}
+            values = {"r": mesh.position, "r_x": mesh.tangent * mesh.speed[:, None], "r_y": across(mesh.tangent)}
             for label, nodes, dofs in coordinate_columns(mesh):
                 if label == "s":
-                    p[dofs] = 1.0
+                    p[dofs] = mesh.speed[nodes]
                 elif label != "theta":
                     name, axis = label.split("^")
                     # a turned vector is that of the first of the joined nodes

@@ -60,10 +60,11 @@ class Bifurcation(PathState):
     """A state where another branch crosses the path.
 
     mode (n,): the change of the coordinates that the tangent does not resist, its root mean square 1 in lengths of the
-    model and radians, its largest coordinate positive.
+    model and radians, its largest coordinate positive; tangent (n + 1,): direction of the path, the load factor last.
     """
 
     mode: np.ndarray
+    tangent: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

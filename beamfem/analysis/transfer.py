@@ -6,6 +6,7 @@ from beamfem import postprocess
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
+from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_angle
@@ -24,11 +25,12 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         return np.array(state.p), np.array(state.v)
     _require_alike(source, target, name)
     p, v = system.reference.copy(), np.zeros(target.size)
-    # backwards, so that shared coordinates are those of the first of the joined nodes
-    for old, new in zip(reversed(source.meshes), reversed(target.meshes), strict=True):
+    for old, new in zip(source.meshes, target.meshes, strict=True):
         values, rates = _by_label(old, state)
-        for label, nodes, dofs in coordinate_columns(new, reverse=True):
-            p[dofs], v[dofs] = values[label][nodes], rates[label][nodes]
+        for label, nodes, dofs in coordinate_columns(new):
+            # a turned vector is that of the first of the joined nodes
+            own = new.carried.carrier[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
+            p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
     return p, v
 
 

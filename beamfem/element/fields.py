@@ -1,6 +1,7 @@
 """Field bases r(x, y) = r0(x) + y d(x) on the unit interval."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from math import factorial
 from typing import Protocol, runtime_checkable
@@ -86,9 +87,7 @@ class Lagrange:
 
     @property
     def nodes(self) -> np.ndarray:
-        # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
-        inner = np.polynomial.legendre.Legendre.basis(self.order).deriv().roots()
-        return np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
+        return _lobatto(self.order)
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         nodes = self.nodes
@@ -106,3 +105,13 @@ class Lagrange:
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return self.centreline(xi, derivative)
+
+
+@lru_cache(maxsize=32)  # asked for by every beam of a model
+def _lobatto(order: int) -> np.ndarray:
+    """Gauss-Lobatto nodes (order + 1,) on [0, 1]."""
+    # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
+    inner = np.polynomial.legendre.Legendre.basis(order).deriv().roots()
+    nodes = np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
+    nodes.setflags(write=False)
+    return nodes

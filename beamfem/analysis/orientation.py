@@ -12,9 +12,7 @@ from beamfem.model.system import System
 
 def inverted(system: System, p: np.ndarray) -> bool:
     """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
-    return any(
-        _inverted(element, block, p) for element, block in zip(system.model.groups, system.blocks, strict=True)
-    )
+    return any(_inverted(element, block, p) for element, block in zip(system.model.groups, system.blocks, strict=True))
 
 
 def _inverted(element: Element, block: Block, p: np.ndarray) -> bool:

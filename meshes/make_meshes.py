@@ -43,7 +43,7 @@ def lee_frame(path: Path) -> None:
     gmsh(path, points, {"column": row([0, 1]), "beam": row([1, 2, 3])}, {"hinges": [0, 3], "load": [2]})
 
 
-def arch(path: Path, lines: int = 24) -> None:
+def arch(path: Path, lines: int = 48) -> None:
     """Circular arch of 215 degrees and R = 1 about the origin, from its left foot over the crown, in parabolas."""
     turn = np.radians(215.0)
     angle = 0.5 * np.pi + turn * (0.5 - np.arange(2 * lines + 1) / (2 * lines))

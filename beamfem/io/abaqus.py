@@ -116,6 +116,11 @@ def _add_elements(section: _Section, cells: dict[int, tuple[str, list[int]]], se
         corners = [int(value) for value in row[1:]][:size]  # beams may name one more node for their orientation
         if size is not None and len(corners) < size:
             raise InputError(f"{section.place}: element {row[0]} of type {kind} needs {size} nodes")
+        if size == 2 and len(row) > 3 and kind.startswith("B33"):  # meshio writes quadratic lines under this name
+            raise InputError(
+                f"{section.place}: element {row[0]} of type {kind} has 2 nodes; a quadratic line is a B32, and a node "
+                "for the orientation must be left out"
+            )
         if int(row[0]) in cells:
             raise InputError(f"{section.place}: element {row[0]} is given twice")
         cells[int(row[0])] = name, corners

@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,10 +41,9 @@ def read_through_meshio(path: Path) -> MeshFile:
         raise InputError(f"{path} cannot be read as {kind}: {error or type(error).__name__}{_advice(path)}") from error
     blocks = tuple((block.type, np.asarray(block.data)) for block in mesh.cells)
     sizes = [len(nodes) for _, nodes in blocks]
-    cell_sets = {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
+    cell_sets = _groups(mesh)
+    cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
     point_sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in mesh.point_sets.items()}
-    for name, members in _groups(mesh):
-        cell_sets.setdefault(name, members)
     for name, values in mesh.cell_data.items():
         cell_sets |= _by_value(name, np.concatenate(values))
     for name, values in mesh.point_data.items():
@@ -64,16 +62,21 @@ def _counted(parts: list[Any], sizes: list[int]) -> np.ndarray:
     return np.concatenate([np.empty(0, dtype=np.int64), *numbers])
 
 
-def _groups(mesh: Any) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield the physical groups of a Gmsh file, by number where they have no name."""
+def _groups(mesh: Any) -> dict[str, np.ndarray]:
+    """Return the cells of the physical groups of a Gmsh file, by number where they have no name."""
     if "gmsh:physical" not in mesh.cell_data:
-        return
+        return {}
     tags = np.concatenate(mesh.cell_data["gmsh:physical"])
     dimension = np.concatenate([np.full(len(block.data), _DIMENSION.get(block.type, 2)) for block in mesh.cells])
     names = {(int(tag), int(size)): name for name, (tag, size) in mesh.field_data.items()}
+    result: dict[str, np.ndarray] = {}
     for tag, size in sorted(set(zip(tags.tolist(), dimension.tolist(), strict=True))):
         if tag != 0:
-            yield names.get((tag, size), str(tag)), np.flatnonzero((tags == tag) & (dimension == size))
+            # a group of curves and one of points may have the same number
+            name = names.get((tag, size), str(tag))
+            own = np.flatnonzero((tags == tag) & (dimension == size))
+            result[name] = np.concatenate([result.get(name, own[:0]), own])
+    return result
 
 
 def _by_value(name: str, values: np.ndarray) -> dict[str, np.ndarray]:

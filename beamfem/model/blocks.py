@@ -36,8 +36,9 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
         parts["carrier"].append(mesh.carried.carrier[mesh.node])
         parts["frame"].append(mesh.carried.frame[mesh.node])
         own = mesh.carried.dof
-        dof = np.pad(own, ((0, 0), (0, width - own.shape[1])), constant_values=-1)
-        parts["dof"].append(dof[mesh.node].reshape(mesh.elements, -1))
+        if own.shape[1] < width:
+            own = np.pad(own, ((0, 0), (0, width - own.shape[1])), constant_values=-1)
+        parts["dof"].append(own[mesh.node].reshape(mesh.elements, -1))
         parts["beam"].append(np.full(mesh.elements, number))
     joined = {name: np.ascontiguousarray(np.concatenate(values)) for name, values in parts.items()}
     return Block(

@@ -130,6 +130,13 @@ class Solution:
 
         return reaction(self, point)
 
+    @cached_property
+    def support_forces(self) -> np.ndarray:
+        """Generalized forces of all supports and springs (steps, n) [N, N m]."""
+        from beamfem.reactions import support_forces
+
+        return support_forces(self)
+
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
         from beamfem.end_forces import with_ends

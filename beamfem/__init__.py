@@ -25,6 +25,7 @@ from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, Bilinear
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
 from beamfem.io.cad import read_dxf
+from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
@@ -70,6 +71,7 @@ __all__ = [
     "Layer",
     "Layered",
     "Line",
+    "LineMesh",
     "Material",
     "Model",
     "Modes",
@@ -102,6 +104,7 @@ __all__ = [
     "graded",
     "load",
     "read_dxf",
+    "read_mesh",
     "simulate",
     "solve_buckling",
     "solve_modes",

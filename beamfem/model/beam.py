@@ -10,7 +10,7 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite
+from beamfem.validation import count, finite, function_of_one
 
 Tapered = Callable[[float], CrossSection]
 
@@ -43,6 +43,8 @@ class Beam:
             raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
         if not isinstance(self.section, CrossSection) and not callable(self.section):
             raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
+        if not isinstance(self.section, CrossSection):
+            function_of_one("section", self.section, "arc length")
         for share in (0.0, 0.5, 1.0):
             section = self.section_at(share * self.curve.length)
             section.inertia(self.material)

@@ -46,7 +46,8 @@ class Newton:
 
     tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
     relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
-    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017). Raises InputError.
+    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
+    Raises InputError.
     """
 
     tolerance: float = 1e-10

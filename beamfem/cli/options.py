@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.markup import escape
 
 from beamfem.cli.elements import element_from_text
 from beamfem.element.element import Element
@@ -21,11 +22,13 @@ _SEQUENCES = (tuple, list, collections.abc.Sequence, collections.abc.Iterable)
 _ITEMS: dict[type, Callable[[str], Any]] = {int: int, float: float, str: str, Element: element_from_text}
 
 
-def command_of(function: Callable[..., Any], run: Callable[[dict[str, Any]], None], extra: Any) -> Callable[..., None]:
+def command_of(
+    function: Callable[..., Any], run: Callable[[dict[str, Any]], None], extra: dict[str, inspect.Parameter]
+) -> Callable[..., None]:
     """Return a command with an option for every parameter of a function.
 
-    run: takes the arguments; extra: more parameters (inspect.Parameter) with options of their own, where the function
-    has none of that name. Raises InputError for a parameter without default that no text can describe.
+    run: takes the arguments; extra: more parameters by the name of their option, left out where the function has one
+    of that name itself. Raises InputError for a parameter without default that no text can describe.
     """
     hints = typing.get_type_hints(function)
     own = inspect.signature(function).parameters
@@ -39,12 +42,12 @@ def command_of(function: Callable[..., Any], run: Callable[[dict[str, Any]], Non
         elif parameter.default is parameter.empty:
             raise InputError(f"{name} of {function.__name__} has no default and cannot be given as text")
     taken = [option.name for option in options]
-    options += [parameter for parameter in extra if parameter.name not in taken]
+    options += [parameter for name, parameter in extra.items() if name not in taken]
 
     def command(**arguments: Any) -> None:
         run(arguments)
 
-    command.__doc__ = inspect.getdoc(function)
+    command.__doc__ = escape(inspect.getdoc(function) or "")
     command.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
     command.__annotations__ = {option.name: option.annotation for option in options}
     return command
@@ -141,4 +144,5 @@ def _help(function: Callable[..., Any], name: str) -> str:
     found = re.search(
         rf"(?<![\w.])`*{re.escape(name)}`*(\s*\[[^\]]*\])?(\s*\([^)]*\))?:\s*([^;]+?)(?=;|\.\s|\.?$)", text
     )
-    return f"{found[3]}{found[1] or ''}" if found else ""
+    # rich reads the help of an option as markup twice, so that escaping does not save brackets
+    return f"{found[3]}{found[1] or ''}".translate(str.maketrans("[]", "()")) if found else ""

@@ -101,21 +101,21 @@ def _run(name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool)
     from beamfem.cli.options import command_of
 
     def call(values: dict[str, Any]) -> None:
-        json_too, quiet_too = values.pop("as_json", False) or as_json, values.pop("quiet", False) or quiet
+        json_too, quiet_too = values.pop("_json", False) or as_json, values.pop("_quiet", False) or quiet
         with reported(json_too, quiet_too):
             _show(_called(main, values, json_too or quiet_too), json_too, quiet_too)
 
-    extra = [
-        inspect.Parameter("as_json", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=AsJson),
-        inspect.Parameter("quiet", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Quiet),
-    ]
+    extra = {
+        word: inspect.Parameter(f"_{word}", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
+        for word, kind in (("json", AsJson), ("quiet", Quiet))
+    }
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     app.command(context_settings={"help_option_names": ["-h", "--help"]})(command_of(main, call, extra))
     app(arguments, prog_name=f"beamfem study {name}")
 
 
 def _called(main: Any, values: dict[str, Any], silent: bool) -> Any:
-    """Return what a study returns; silent: what it prints goes to stderr or nowhere."""
+    """Return what a study returns; silent: what it prints does not go to stdout but to stderr."""
     from contextlib import redirect_stdout
 
     if not silent:

@@ -41,7 +41,7 @@ class Beam:
             raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
         if self.material is not None and not isinstance(self.material, Material):
             raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
-        if not isinstance(self.section, CrossSection) and not callable(self.section):
+        if isinstance(self.section, type) or not (isinstance(self.section, CrossSection) or callable(self.section)):
             raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
         if not isinstance(self.section, CrossSection):
             function_of_one("section", self.section, "arc length")

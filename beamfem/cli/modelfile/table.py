@@ -28,7 +28,7 @@ class Source:
         known = path
         while known and known not in self.lines:
             known = known[:-1]
-        return ModelFileError(message, self.file, self.lines.get(known), _written(path))
+        return ModelFileError(message, self.file, self.lines.get(known), _written(path) or None)
 
 
 @dataclass(frozen=True)
@@ -146,11 +146,11 @@ def shown(value: Any) -> str:
 def _plain(table: Table, key: str, hint: Any) -> Any:
     """Return a value as it is. Raises ModelFileError for true and false where they make no sense, and the reverse."""
     value = table.values[key]
+    if hint in (float, int, float | None) and isinstance(value, bool | dict | list | str):
+        raise table.error(f"must be a number, got {shown(value)}", key)
     if isinstance(value, bool) != (hint is bool):
         wanted = "true or false" if hint is bool else "a number, an array or a text"
         raise table.error(f"must be {wanted}, got {shown(value)}", key)
-    if hint in (float, int, float | None) and isinstance(value, dict | list | str):
-        raise table.error(f"must be a number, got {shown(value)}", key)
     return value
 
 

@@ -134,11 +134,13 @@ def test_a_free_model_is_bad_input_of_its_file(tmp_path):
         ("--vtk", "a.vtu", "a.pvd would be right"),
         ("--plot", "a.xyz", "a.png would be right"),
         ("--plot", "folder.png", "is a folder"),
+        ("--out", "file.txt/a.h5", "takes no files"),
     ],
 )
 def test_what_cannot_be_written_is_refused_before_the_solve(option, path, words, tmp_path, monkeypatch):
     monkeypatch.setattr("beamfem.cli.modelfile.analyses.solve_static", lambda *_: pytest.fail("solved"))
     (tmp_path / "folder.png").mkdir()
+    (tmp_path / "file.txt").touch()
     done = invoke("run", CANTILEVER, option, tmp_path / path)
     assert done.exit_code == 2
     assert words in done.stderr
@@ -273,7 +275,7 @@ def test_doctor(monkeypatch):
     ]
     monkeypatch.setattr(doctor, "_RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
     monkeypatch.setattr(doctor, "_installed", lambda name: name != "h5py")
-    monkeypatch.setattr("beamfem.cli.compiled.writable", lambda folder: False)
+    monkeypatch.setattr("beamfem.cli.targets.writable", lambda folder: False)
     text = invoke("doctor").stdout
     assert "VTK died of signal 11" in text
     assert 'missing h5py: pip install "beamfem[store]"' in text

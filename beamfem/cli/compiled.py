@@ -3,7 +3,6 @@
 import importlib
 import pkgutil
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -25,19 +24,6 @@ def cache_folder() -> Path | None:
     """Return where numba keeps compiled kernels, None where it found no folder to write to."""
     paths = {kernel.stats.cache_path for kernel in kernels().values()} - {None}
     return Path(sorted(paths)[0]) if paths else None
-
-
-def writable(folder: Path | None) -> bool:
-    """Tell whether a file can be made in a folder, or in the nearest one above that exists."""
-    if folder is None:
-        return False
-    while not folder.exists():
-        folder = folder.parent
-    try:
-        with tempfile.NamedTemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
 
 
 def cached() -> int:

@@ -24,14 +24,14 @@ def doctor(as_json: AsJson = False) -> None:
     """Show versions, compiled kernels, a first solve, whether pictures of bodies work and which extras are missing."""
     with reported(as_json):
         begun = time.perf_counter()
-        from beamfem.cli import compiled
+        from beamfem.cli import compiled, targets
 
         cache = compiled.cache_folder()
         found: dict[str, Any] = {
             "versions": versions(),
             "cache": {
                 "folder": cache,
-                "writable": compiled.writable(cache),
+                "writable": cache is not None and targets.writable(cache),
                 "compiled_kernels": compiled.cached(),
                 "import_seconds": time.perf_counter() - begun,
             },

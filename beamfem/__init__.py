@@ -28,6 +28,7 @@ from beamfem.io.cad import read_dxf
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.grading import graded
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
@@ -98,6 +99,7 @@ __all__ = [
     "UnknownPointError",
     "converge",
     "elliptic_arc",
+    "graded",
     "load",
     "read_dxf",
     "simulate",

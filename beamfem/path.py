@@ -7,7 +7,6 @@ from typing import Any, overload
 import numpy as np
 
 from beamfem.model.beam import Beam, Point
-from beamfem.model.model import Model
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
 
@@ -15,8 +14,6 @@ from beamfem.solution import Solution, State, Statistics
 @dataclass(frozen=True, eq=False)
 class PathState(State):
     """One state of a path, with what a Solution offers but without its axis of steps."""
-
-    model: Model
 
     @property
     def load_factor(self) -> float:

@@ -48,8 +48,9 @@ class Components:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Work conjugates at the Gauss points: normal (> 0 in tension) and shear force [N], moment [N m] (steps, stations).
+    """Work conjugates (steps, stations) at the start, the Gauss points and the end of a beam.
 
+    normal (> 0 in tension) and shear force [N], moment [N m].
     arc_length (stations,) [m].
     """
 

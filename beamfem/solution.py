@@ -9,6 +9,7 @@ from typing import Any, overload
 import numpy as np
 
 from beamfem import postprocess
+from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
@@ -29,14 +30,15 @@ class Statistics:
     ended: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
-    """Coordinates p (n,), their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
+    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
 
     p: np.ndarray
     v: np.ndarray
     a: np.ndarray
     at: float
+    model: Model
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ class Solution:
         return self._state(number)
 
     def _state(self, row: int) -> State:
-        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]))
+        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
 
     def _rows(self, rows: slice) -> "Solution":
         if len(self.at[rows]) == 0:
@@ -155,8 +157,11 @@ class Solution:
         return reaction(self, point)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force and moment at the Gauss points of a beam (steps, stations)."""
-        return postprocess.section_forces(self.model.meshes[self.model.number_of(beam)], self.p)
+        """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
+        from beamfem.end_forces import with_ends
+
+        self.model.number_of(beam)  # refuses what is no beam of this model
+        return with_ends(self, beam)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
@@ -200,6 +205,19 @@ class Solution:
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
         return np.asarray(sum(m.angular for m in self._momenta))
+
+    def spline(self, beam: Beam, row: int = -1) -> BSpline:
+        """Return the deformed axis of a beam of cubic elements in a row as a cubic B-spline, exactly.
+
+        Knots are those of the beam's own spline, or arc lengths. Raises InputError for other elements.
+        """
+        mesh = self.model.mesh_of(beam.start)
+        if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
+            raise InputError(
+                f"the axis of {beam.element.name} elements is no cubic spline; cubic ones such as ANCF are"
+            )
+        e = postprocess.nodal_vectors(mesh, self.p[row][None])[0]
+        return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
     def to_vtk(self, path: str | PathLike[str]) -> None:
         """Write the deformed body and the centreline for ParaView: `path` ends in .pvd."""

@@ -158,7 +158,8 @@ def test_a_compressed_column_diverges_beyond_its_critical_load():
     load = 2e11 * beam.section.second_moment * 1.2 * 2.4567382724132
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-load, 0))])
     states = bf.solve_static(model, steps=2)
-    assert bf.solve_modes(model, 1, about=states[-2]).growth[0] == 0.0
+    below = int(np.flatnonzero(states.load_factor < 0.8)[-1])
+    assert bf.solve_modes(model, 1, about=states[below]).growth[0] == 0.0
     modes = bf.solve_modes(model, 2, about=states)
     assert modes.growth[0] > 0.0
     assert modes.frequencies[0] == 0.0
@@ -237,7 +238,7 @@ def test_bad_input_is_named():
         bf.solve_modes(model, 10)
     with pytest.raises(bf.InputError, match="not in equilibrium"):
         bf.solve_modes(bf.Model([beam], [bf.Clamp(beam.start)]), 1, about=solution)
-    with pytest.raises(bf.InputError, match="about has 12 coordinates"):
+    with pytest.raises(bf.InputError, match="about has 4 nodes of CRBF-1"):
         bf.solve_modes(bf.Model([thick(bf.CRBF(1), 4)]), 1, about=solution)
     with pytest.raises(bf.InputError, match="about must be a state"):
         bf.solve_modes(model, 1, about=solution.p[-1])

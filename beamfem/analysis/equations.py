@@ -28,6 +28,18 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     return result
 
 
+def element_residual(
+    system: System, block: int, element: int, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float
+) -> np.ndarray:
+    """Return inertia + elastic - body forces (n,) [N, N m] of one element of a block, without loads at points."""
+    own = slice(element, element + 1)
+    whole = system.blocks[block]
+    part = whole._replace(**{name: getattr(whole, name)[own] for name in ("kind", "carrier", "frame", "dof", "beam")})
+    result = np.zeros(len(p))
+    assemble(part, system.layouts[block], p, v, a, system.body(time), np.ones(3), _NO_STRESS, result, _EMPTY)
+    return result
+
+
 def linearise(
     system: System,
     p: np.ndarray,

@@ -33,11 +33,15 @@ class Ended(Enum):
 
 @dataclass(frozen=True)
 class NewtonResult:
-    """The last state (n,) of an iteration, how many iterations it took and why it ended."""
+    """The last state (n,) of an iteration, how many iterations it took and why it ended.
+
+    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable.
+    """
 
     state: np.ndarray
     iterations: int
     ended: Ended
+    negative_pivots: int = 0
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ class Newton:
 
     tolerance: float = 1e-10
     residual_tolerance: float = 1e-9
-    iterations: int = 30
+    iterations: int = 15
     independent_stresses: bool = True
 
     def __post_init__(self) -> None:
@@ -79,7 +83,8 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
         if iteration == 1 and np.any(held_step):
             right -= _held_force(system, p, held_step, load_factor)[free]
         try:
-            step[free] = tangent.solve(right, system.turned)
+            factors = tangent.factorised(system.turned)
+            step[free] = factors.solve(right)
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if newton.independent_stresses:
@@ -88,7 +93,8 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
         if ended is not None:
-            return NewtonResult(start if ended is Ended.DIVERGED else p, iteration, ended)
+            state = start if ended is Ended.DIVERGED else p
+            return NewtonResult(state, iteration, ended, factors.negative_pivots)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 

@@ -14,6 +14,7 @@ from beamfem.validation import count
 
 _SMALLEST_STEP = 1e-6
 _EASY_ITERATIONS = 8
+_STABILITY_STEP = 1.0 / 64.0  # of the load; larger steps must not lose stability
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 
 
@@ -37,6 +38,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
         )
     done.add(0.0, first.state)
     done.ended = first.ended
+    done.unstable = first.negative_pivots if system.symmetric else 0
     reached, step = 0.0, 1.0 / steps
     with progress("load factor", 1.0) as report:
         while reached < 1.0:
@@ -46,10 +48,13 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
                 target = reached + step
             result = solve_equilibrium(system, done.states[-1], target, newton)
             done.iterations += result.iterations
-            if result.ended.good:
+            # one large step may land on another equilibrium; small steps that lose stability have met a real loss
+            jumped = system.symmetric and result.negative_pivots > done.unstable and step > _STABILITY_STEP
+            if result.ended.good and not jumped:
                 reached = target
                 done.add(reached, result.state)
                 done.ended = result.ended
+                done.unstable = result.negative_pivots if system.symmetric else 0
                 report(reached)
                 if result.iterations <= _EASY_ITERATIONS:
                     step *= 2.0
@@ -89,6 +94,7 @@ class _Record:
         self.iterations = 0
         self.cuts = 0
         self.ended = Ended.CONVERGED
+        self.unstable = 0
 
     def add(self, load_factor: float, state: np.ndarray) -> None:
         self.load_factors.append(load_factor)
@@ -96,7 +102,10 @@ class _Record:
 
     def solution(self) -> Solution:
         states = np.array(self.states)
-        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, self.ended.value)
+        ended = self.ended.value
+        if self.unstable:
+            ended += f"; the equilibrium is unstable, {self.unstable} eigenvalues of its tangent are negative"
+        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended)
         return Solution(
             self.model,
             True,

@@ -50,10 +50,18 @@ class BSpline:
         return tuple(self._arc_length.at(ends[jumps]).tolist())
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        return self.evaluate(self._arc_length.parameter(arc_length))
+        return self.evaluate(self.parameter(arc_length))
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        return unit(self.derivative(self._arc_length.parameter(arc_length)))
+        return unit(self.derivative(self.parameter(arc_length)))
+
+    def parameter(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return u (n,) at arc lengths (n,) [m]."""
+        return self._arc_length.parameter(arc_length)
+
+    def arc_length(self, u: np.ndarray) -> np.ndarray:
+        """Return the arc lengths (n,) [m] at parameters (n,)."""
+        return self._arc_length.at(u)
 
     @cached_property
     def breaks(self) -> np.ndarray:

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from beamfem.curves import Curve
+from beamfem.curves import BSpline, Curve
 from beamfem.element.element import Element
+from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
@@ -19,19 +21,22 @@ Tapered = Callable[[float], CrossSection]
 class Beam:
     """A beam along a curve, free of stress there.
 
-    elements: number of equal elements, or the fractions of the arc length from 0 to 1 where elements end; element: see
-    `beamfem.element`; section: a section, or a function of the arc length [m] from the start that gives one; material:
-    not needed where the section brings its own. Raises InputError.
+    elements: number of equal elements, or the fractions of the arc length from 0 to 1 where elements end, or "knots"
+    for one cubic element a knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
+    or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
+    own. Raises InputError.
     """
 
     curve: Curve
-    elements: int | Sequence[float]
+    elements: int | Sequence[float] | Literal["knots"]
     element: Element
     section: CrossSection | Tapered
     material: Material | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.elements, Sequence | np.ndarray) and not isinstance(self.elements, str):
+        if isinstance(self.elements, str):
+            _check_knots(self.elements, self.curve, self.element)
+        elif not isinstance(self.elements, int | np.integer | float):
             object.__setattr__(self, "elements", _fractions(self.elements))
         else:
             object.__setattr__(self, "elements", count("elements", self.elements))
@@ -95,7 +100,20 @@ class Point:
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:
     """Check the ends of elements that a user gives."""
+    if not isinstance(values, Sequence | np.ndarray):
+        raise InputError(f'elements must be a whole number, a list of fractions or "knots", got {values!r}')
     ends = tuple(finite("elements", value) for value in values)
     if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or np.any(np.diff(ends) <= 0.0):
         raise InputError(f"elements as a list must rise from 0 to 1, the fractions where elements end, got {ends!r}")
     return ends
+
+
+def _check_knots(elements: str, curve: Curve, element: Element) -> None:
+    """Refuse a mesh of knot spans where elements are not the spline's cubics."""
+    if elements != "knots":
+        raise InputError(f'elements must be a number, a list of fractions or "knots", got {elements!r}')
+    if not isinstance(curve, BSpline):
+        raise InputError(f'elements="knots" needs a BSpline as curve, got a {type(curve).__name__}')
+    curve.hermite()
+    if not isinstance(element.field, Cubic):
+        raise InputError(f'elements="knots" needs a cubic element such as ANCF(), got {element.name}')

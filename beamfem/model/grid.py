@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import MeshLine
 
-from beamfem.curves import Line
+from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
 
 
@@ -14,16 +14,20 @@ from beamfem.model.beam import Beam
 class Grid:
     """Elements and nodes of a beam; at a corner of the curve two nodes stand at the same place.
 
-    vertices: arc lengths of the ends of the elements (ne + 1,) [m]; node: nodes of each element (ne, nn);
-    arc (nodes,) [m], position (nodes, 2) [m] and unit tangent (nodes, 2) of the nodes.
+    vertices: arc lengths of the ends of the elements (ne + 1,) [m]; parameter: mesh coordinates there (ne + 1,), the
+    arc lengths or the knots of a spline; rate: mesh length [m] of a unit of the parameter; node: nodes of each element
+    (ne, nn); arc (nodes,) [m], position (nodes, 2) [m], unit tangent (nodes, 2) and |r_x| (nodes,) of the nodes.
     """
 
     beam: Beam
     vertices: np.ndarray
+    parameter: np.ndarray
+    rate: float
     node: np.ndarray
     arc: np.ndarray
     position: np.ndarray
     tangent: np.ndarray
+    speed: np.ndarray
 
     @property
     def skfem(self) -> MeshLine:
@@ -37,7 +41,7 @@ class Grid:
     @property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
-        return np.diff(self.vertices)
+        return self.rate * np.diff(self.parameter)
 
     @property
     def nodes(self) -> int:
@@ -49,10 +53,10 @@ class Grid:
 
     def locate(self, fraction: float) -> tuple[int, float]:
         """Return element and xi in [0, 1] of a point of the beam."""
-        s = fraction * self.vertices[-1]
-        element = int(np.clip(np.searchsorted(self.vertices, s, side="right") - 1, 0, self.elements - 1))
-        xi = float(np.clip((s - self.vertices[element]) / self.lengths[element], 0.0, 1.0))
-        return element, xi
+        along = self._along(fraction * self.vertices[-1])
+        element = int(np.clip(np.searchsorted(self.parameter, along, side="right") - 1, 0, self.elements - 1))
+        start, end = self.parameter[element : element + 2]
+        return element, float(np.clip((along - start) / (end - start), 0.0, 1.0))
 
     def node_at(self, fraction: float) -> int:
         """Return the node at a support or joint; `make_grid` has put one there."""
@@ -60,11 +64,24 @@ class Grid:
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc length [m] of points (element, xi)."""
-        return self.vertices[element] + xi * self.lengths[element]
+        along = self.parameter[element] + xi * np.diff(self.parameter)[element]
+        if self.beam.elements == "knots":
+            assert isinstance(self.beam.curve, BSpline)
+            return self.beam.curve.arc_length(along)
+        return along
+
+    def _along(self, arc_length: float) -> float:
+        """Mesh coordinate at an arc length [m]."""
+        if self.beam.elements == "knots":
+            assert isinstance(self.beam.curve, BSpline)
+            return float(self.beam.curve.parameter(np.array([arc_length]))[0])
+        return arc_length
 
 
 def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     """Return the grid of a beam with a node at each of the fractions and at each corner of its curve."""
+    if beam.elements == "knots":
+        return _knot_spans(beam, fractions)
     length = beam.curve.length
     corners = np.array(beam.curve.corners, dtype=float)
     vertices = _vertices(beam, [*fractions, *(corners / length)]) * length
@@ -83,12 +100,33 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     nudge = 1e-10 * length
     seen_from[node[parted, -1]] -= nudge
     seen_from[node[parted + 1, 0]] += nudge
-    return Grid(beam, vertices, node, arc, beam.curve.position(arc), beam.curve.tangent(seen_from))
+    position, tangent = beam.curve.position(arc), beam.curve.tangent(seen_from)
+    return Grid(beam, vertices, vertices, 1.0, node, arc, position, tangent, np.ones(len(arc)))
+
+
+def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
+    """Return the grid whose cubic elements are the spans of a cubic spline, and parts of them at the fractions."""
+    spline = beam.curve
+    assert isinstance(spline, BSpline)
+    u = spline.breaks
+    near = 1e-9 * np.diff(u).min()
+    for fraction in sorted(set(fractions)):
+        here = spline.parameter(np.array([fraction * spline.length]))[0]
+        if np.abs(u - here).min() > near:
+            u = np.sort(np.append(u, here))
+    arc = spline.arc_length(u)
+    arc[-1] = spline.length
+    rate = spline.length / (u[-1] - u[0])
+    slope = spline.derivative(u) / rate
+    speed = np.hypot(slope[:, 0], slope[:, 1])
+    node = np.arange(len(u) - 1)[:, None] + np.arange(2)
+    return Grid(beam, arc, u, rate, node, arc, spline.evaluate(u), slope / speed[:, None], speed)
 
 
 def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
     """Fractions where elements end: those that were asked for, and one more wherever one of `fractions` is between."""
     asked = beam.elements
+    assert not isinstance(asked, str)
     grid = np.linspace(0.0, 1.0, asked + 1) if isinstance(asked, int) else np.array(asked, dtype=float)
     near = 1e-9 * np.diff(grid).min()
     extra = [f for f in sorted(set(fractions)) if np.abs(grid - f).min() > near]

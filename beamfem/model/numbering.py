@@ -120,6 +120,7 @@ def _frames(grids: Sequence[Grid], carrier: np.ndarray, leader: np.ndarray) -> n
     tangent = np.concatenate([grid.tangent for grid in grids])
     frame = np.ones((len(angle), 3))
     frame[:, :2] = tangent
+    frame[:, 2] = np.concatenate([grid.speed for grid in grids])
     turned = carrier == TURNED_GRADIENTS
     between = angle[turned] - angle[leader[turned]]
     frame[turned, 0], frame[turned, 1] = np.cos(between), np.sin(between)

@@ -27,7 +27,7 @@ def reference_vectors(grid: Grid, element: np.ndarray) -> np.ndarray:
         position = along[:, :, None] * tangent
     else:
         position = grid.position[node] - grid.position[node[:, :1]]
-    values = {"r": position, "r_x": tangent, "r_y": across(tangent)}
+    values = {"r": position, "r_x": tangent * grid.speed[node][:, :, None], "r_y": across(tangent)}
     stacked = np.stack([values[name] for name in grid.beam.element.field.vectors], axis=2)
     return np.asarray(stacked.reshape(len(element), -1, 2))
 

@@ -30,10 +30,10 @@ class System:
         p = np.zeros(self.model.size)
         # backwards, so that shared vectors are those of the first of the joined nodes
         for mesh in reversed(self.model.meshes):
-            values = {"r": mesh.position, "r_x": mesh.tangent, "r_y": across(mesh.tangent)}
+            values = {"r": mesh.position, "r_x": mesh.tangent * mesh.speed[:, None], "r_y": across(mesh.tangent)}
             for label, nodes, dofs in coordinate_columns(mesh, reverse=True):
                 if label == "s":
-                    p[dofs] = 1.0
+                    p[dofs] = mesh.speed[nodes]
                 elif label != "theta":
                     name, axis = label.split("^")
                     p[dofs] = values[name][nodes, "xy".index(axis)]

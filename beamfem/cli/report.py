@@ -25,6 +25,8 @@ def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
     try:
         with no_progress() if quiet else nullcontext():
             yield
+    except BrokenPipeError:  # whoever reads has read enough; typer ends the process quietly
+        raise
     except ConvergenceError as error:
         _fail(error, FAILED, as_json)
     except (BeamfemError, OSError) as error:

@@ -181,8 +181,8 @@ class Solution:
         write_pvd(self, path)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
-        """Draw deformed shapes with matplotlib, into a file where `path` is given; return the figure."""
-        from beamfem.view.plots import plot_shapes
+        """Draw deformed shapes into a file where `path` is given; return the figure. Options: `view.drawing`."""
+        from beamfem.view.drawing import plot_shapes
 
         return plot_shapes(self, path, **options)
 

@@ -12,6 +12,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 import beamfem as bf
 from beamfem import postprocess
+from beamfem.io import samples as cells
 from beamfem.io import vtk
 
 HEIGHT = 0.02
@@ -120,7 +121,7 @@ def test_strain_belongs_to_the_height_of_its_point():
         bf.Line((0, 0), (1, 0)), 2, bf.BilinearCRBF(), bf.Rectangle(0.02, HEIGHT), bf.Material(2e6, 0.0, 1.0)
     )
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e-3)]))
-    samples = vtk._body(solution.model.meshes[0])
+    samples = cells.body(solution.model.meshes[0])
     data = samples.arrays(solution.p, solution.v)
     strain = data["green_strain_xx"][-1]
     assert (strain[[0, 1, 4, 5]] > 0.0).all()
@@ -130,7 +131,7 @@ def test_strain_belongs_to_the_height_of_its_point():
 
 def test_velocity_is_the_rate_of_the_points():
     solution = swing(bf.ANCFCRBF(), duration=0.02, step=1e-4)
-    samples = vtk._body(solution.model.meshes[0])
+    samples = cells.body(solution.model.meshes[0])
     data = samples.arrays(solution.p, solution.v)
     rate = (data["points"][101] - data["points"][99]) / 2e-4
     # the integrator's velocity and the central difference both are of second order in the step
@@ -156,7 +157,7 @@ def test_rotation_counts_full_turns_over_chunks(element, tmp_path, monkeypatch):
     beam = bf.Beam(bf.Line((0, 0), (0.1, 0)), 1, element, bf.Rectangle(0.02, HEIGHT), material)
     model, velocity = bf.Model([beam], [bf.Pin(beam.start)]), bf.RigidVelocity(angular=spin)
     solution = bf.simulate(model, 0.25, 0.0005, velocity=velocity, save_every=10)
-    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 1)
     solution.to_vtk(tmp_path / "spin.pvd")
     rotation = point_data(read(tmp_path / "spin" / "0050.vtu"))["rotation"]
     expected = solution.rotation(beam.end)[-1]
@@ -174,7 +175,7 @@ def test_other_suffixes_are_refused(solution, tmp_path):
 
 def test_what_was_written_before_a_failure_can_be_read(solution, tmp_path, monkeypatch):
     (tmp_path / "swing" / "0003.vtu").mkdir(parents=True)
-    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 1)
     with pytest.raises(OSError, match=r"0003\.vtu"):
         solution.to_vtk(tmp_path / "swing.pvd")
     assert len(collection(tmp_path / "swing.pvd")[0]) == 3

@@ -87,9 +87,7 @@ def section_forces(points: AxisPoints, p: np.ndarray) -> dict[str, np.ndarray]:
 
 def rotation(points: AxisPoints, p: np.ndarray) -> np.ndarray:
     """Return the rotation of the section from the reference (steps, points) [rad]; steps must follow each other."""
-    now = postprocess.axis(
-        points.mesh, postprocess.nodal_vectors(points.mesh, p), points.element, points.xi
-    )
+    now = postprocess.axis(points.mesh, postprocess.nodal_vectors(points.mesh, p), points.element, points.xi)
     return postprocess.turning(points.mesh, p, now, points.element, points.xi)
 
 

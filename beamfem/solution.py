@@ -195,7 +195,7 @@ class Solution:
         return write_player(self, path, **options)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
-        """Draw deformed shapes, into a file where `path` is given; return the figure. See `view.drawing.plot_shapes`."""
+        """Draw deformed shapes, into a file where `path` is given; return the figure. See `view.drawing`."""
         from beamfem.view.drawing import plot_shapes
 
         return plot_shapes(self, path, **options)

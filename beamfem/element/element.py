@@ -1,6 +1,7 @@
 """An element as a user chooses it, and the named combinations of the paper."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -82,10 +83,14 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
+@lru_cache
 def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points (points,) and weights (points,) on [0, 1]."""
     xi, weights = np.polynomial.legendre.leggauss(points)
-    return 0.5 * (xi + 1.0), 0.5 * weights
+    rule = 0.5 * (xi + 1.0), 0.5 * weights
+    for part in rule:
+        part.setflags(write=False)
+    return rule
 
 
 def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:

@@ -67,7 +67,12 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
                 tail = values.shape[2:]
                 size = max(1, min(_CHUNK_BYTES // (8 * int(np.prod(tail, dtype=int))), steps * cells.points))
                 place.create_dataset(
-                    key, (steps * cells.points, *tail), np.float64, chunks=(size, *tail), compression="gzip", shuffle=True
+                    key,
+                    (steps * cells.points, *tail),
+                    np.float64,
+                    chunks=(size, *tail),
+                    compression="gzip",
+                    shuffle=True,
                 )
             flat = values.reshape(-1, *values.shape[2:])
             place[key][first * cells.points : first * cells.points + len(flat)] = flat

@@ -115,7 +115,9 @@ def _distributed(axes: Any, solution: "Solution", load: DistributedLoad, weight:
     vector = 0.7 * _LONGEST * vector / size[:, None]
     drawn = [_arrows(axes, places, vector, "tip", 1.0)]
     if not load.follower:
-        foot = axes.transData + ScaledTranslation(*(-vector[0] / 72.0), axes.figure.dpi_scale_trans)
+        foot = axes.transData + ScaledTranslation(
+            -vector[0, 0] / 72.0, -vector[0, 1] / 72.0, axes.figure.dpi_scale_trans
+        )
         drawn += axes.plot(*places.T, color=FORCE, linewidth=1.0, transform=foot, zorder=5.0)
     return drawn
 
@@ -127,12 +129,32 @@ def _gravity(axes: Any, vector: np.ndarray) -> list[Any]:
     # to the left of the upper right corner, which is left to the arrow
     at, ahead = np.array([0.955, 0.9]), vector / size
     arrow = axes.quiver(
-        *at, *(26.0 * ahead / 72.0), angles="uv", units="inches", scale=1.0, scale_units="inches", width=1.5 / 72.0,
-        headwidth=4.5, headlength=5.5, headaxislength=5.0, color=FORCE, pivot="mid", transform=axes.transAxes, zorder=5.0,
+        *at,
+        *(26.0 * ahead / 72.0),
+        angles="uv",
+        units="inches",
+        scale=1.0,
+        scale_units="inches",
+        width=1.5 / 72.0,
+        headwidth=4.5,
+        headlength=5.5,
+        headaxislength=5.0,
+        color=FORCE,
+        pivot="mid",
+        transform=axes.transAxes,
+        zorder=5.0,
     )
     offset = -9.0 * np.abs(across(ahead))
     name = axes.annotate(
-        "g", at, offset, xycoords="axes fraction", textcoords="offset points", ha="center", va="center", color=FORCE,
-        fontstyle="italic", zorder=5.0,
+        "g",
+        at,
+        offset,
+        xycoords="axes fraction",
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        color=FORCE,
+        fontstyle="italic",
+        zorder=5.0,
     )
     return [arrow, name]

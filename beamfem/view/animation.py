@@ -60,7 +60,7 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     What stands still is drawn once.
     """
     solution = shapes.solution
-    figure, axes = equal_axes(shapes.box)
+    figure, axes = equal_axes(shapes.box, shapes.quantity is not None)
     figure.set_dpi(dpi)
     size = np.ceil(figure.get_size_inches() * dpi / 2.0) * 2.0
     figure.set_size_inches(size / dpi)
@@ -71,7 +71,6 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     title = axes.set_title(" ", fontsize=10)
     canvas = figure.canvas
     canvas.draw()
-    figure.set_layout_engine("none")
     still = canvas.copy_from_bbox(figure.bbox)
     for order, row in enumerate(shapes.rows):
         canvas.restore_region(still)

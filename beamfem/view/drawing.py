@@ -16,6 +16,8 @@ from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]
+_LEAST = np.array([3.2, 1.3])  # of the axes [inch]
+_LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 
 
@@ -40,7 +42,7 @@ def plot_shapes(
         raise InputError("the solution has no rows, so there is nothing to draw")
     rows = spread_rows(solution, count("shapes", shapes))
     drawn = Shapes(solution, rows, colour)
-    figure, axes = equal_axes(drawn.box)
+    figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED)
     if undeformed:
         draw_undeformed(axes, drawn.points)
     for order in range(len(rows)):
@@ -63,29 +65,31 @@ def plot_shapes(
     return figure
 
 
-def equal_axes(box: np.ndarray) -> tuple[Any, Any]:
+def equal_axes(box: np.ndarray, with_bar: bool) -> tuple[Any, Any]:
     """Return a figure and axes [m] of equal scale around a box (2, 2) [m], with room for symbols around it."""
-    size = np.maximum(box[1] - box[0], 1e-3 * max(float(np.max(box[1] - box[0])), 1e-12))
-    # the scale at which the box and the room around it fit the figure
-    inches = _LONGER_SIDE / size.max()
-    width, height = np.maximum(size * inches, 0.6) + 2.0 * _ROOM
-    figure = empty_figure(width + 1.4, height + 0.7)
-    axes = figure.subplots()
-    frame(axes, box)
+    scale = _LONGER_SIDE / _extent(box)
+    inches = np.maximum((box[1] - box[0]) * scale + 2.0 * _ROOM, _LEAST)
+    right = _BAR if with_bar else _RIGHT
+    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP, layout=None)
+    width, height = figure.get_size_inches()
+    axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
+    frame(axes, box.mean(axis=0), inches / scale, inches)
     return figure, axes
 
 
-def frame(axes: Any, box: np.ndarray) -> None:
-    """Set limits of equal scale around a box (2, 2) [m] and label the axes."""
+def _extent(box: np.ndarray) -> float:
+    """Longer side of a box [m]; of a point 1."""
+    return float(np.max(box[1] - box[0])) or 1.0
+
+
+def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray) -> None:
+    """Set limits of equal scale around a middle (2,) [m] and label the axes; size (2,) [m] takes inches (2,)."""
     quiet(axes)
-    size = float(np.max(box[1] - box[0]))
-    room = _ROOM * size / _LONGER_SIDE
-    middle = box.mean(axis=0)
-    half = np.maximum(0.5 * (box[1] - box[0]), 0.3 * size / _LONGER_SIDE) + room
     axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
-    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    axes.locator_params(axis="y", nbins=max(3, min(8, int(9 * half[1] / half[0]))))
+    axes.set_xlim(middle[0] - 0.5 * size[0], middle[0] + 0.5 * size[0])
+    axes.set_ylim(middle[1] - 0.5 * size[1], middle[1] + 0.5 * size[1])
+    for name, length, apart in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
+        axes.locator_params(axis=name, nbins=int(np.clip(length / apart, 2, 9)))
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
 
@@ -122,12 +126,13 @@ def _names_of_rows(figure: Any, solution: Solution, rows: np.ndarray) -> None:
         Line2D([], [], color=colour, linewidth=3, label=moment_of(solution, int(row)))
         for row, colour in zip(rows, colours, strict=True)
     ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(rows), frameon=False)
+    figure.legend(handles=handles, loc="upper center", ncols=len(rows), frameon=False)
 
 
 def _add_bar(figure: Any, axes: Any, colours: Any, label: str) -> Any:
     width = figure.get_size_inches()[0]
-    place = axes.inset_axes([1.0 + 0.12 / width, 0.0, 0.16 / width, 1.0])
+    left, bottom, across, height = axes.get_position().bounds
+    place = figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))
     shown = figure.colorbar(colours, cax=place, label=label)
     shown.outline.set_visible(False)
     return shown

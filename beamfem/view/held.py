@@ -34,6 +34,12 @@ class Stamps:
         self.outlines[key] = outline
         self.places[key, colour, width, fill].append(at)
 
+    def add_all(self, other: "Stamps") -> None:
+        """Add what others hold."""
+        self.outlines.update(other.outlines)
+        for key, places in other.places.items():
+            self.places[key].extend(places)
+
     def draw(self, axes: Any, size: float = SIZE, layer: float = 4.0) -> list[Any]:
         """Add all to the axes and return them."""
         from matplotlib.collections import PathCollection
@@ -60,9 +66,14 @@ class Stamps:
 
 
 def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray) -> list[Any]:
-    """Draw the supports of a model where they are in a row; `centre` (2,) [m] of all shapes tells where there is room.
+    """Draw the supports of a model where they are in a row; see `supports_of`."""
+    return supports_of(solution, row, centre).draw(axes)
 
-    Rollers roll; what pulls or springs start from the reference.
+
+def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
+    """Return the supports of a model where they are in a row: rollers roll, what pulls starts from the reference.
+
+    centre: of all shapes (2,) [m]; it tells where there is room.
     """
     only = one_row(solution, row)
     stamps = Stamps()
@@ -81,18 +92,23 @@ def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray)
             _spring(stamps, support, at)
         elif isinstance(support, Prescribed):
             _prescribed(stamps, support, at, only.position(support.point)[0], centre)
-    return stamps.draw(axes)
+    return stamps
 
 
 def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
-    """Draw the hinges of a model as circles where they are in a row."""
+    """Draw the hinges of a model where they are in a row; see `joints_of`."""
+    return joints_of(solution, row).draw(axes, layer=6.0)
+
+
+def joints_of(solution: "Solution", row: int) -> Stamps:
+    """Return the hinges of a model as circles where they are in a row."""
+    stamps = Stamps()
     hinges = [joint for joint in solution.model.joints if isinstance(joint, Hinge)]
-    if not hinges:
-        return []
-    only = one_row(solution, row)
-    places = np.array([only.position(hinge.a)[0] for hinge in hinges])
-    (drawn,) = axes.plot(*places.T, "o", color=INK, markerfacecolor="white", markersize=5.5, zorder=6)
-    return [drawn]
+    if hinges:
+        only = one_row(solution, row)
+        for hinge in hinges:
+            stamps.add(only.position(hinge.a)[0], symbols.HINGE, INK, 1.1, "white")
+    return stamps
 
 
 def _stamp(stamps: Stamps, symbol: list[np.ndarray], at: np.ndarray, down: np.ndarray, width: float = 1.0) -> None:

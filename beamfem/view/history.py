@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.path import Path
-from beamfem.solution import Solution
+from beamfem.solution import Solution, State
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
@@ -101,7 +101,7 @@ def plot_load_displacement(
         for name, states, shape, colour in kinds:
             if not states:
                 continue
-            alone = Solution(solution.model, True, *_rows(states), solution.statistics)
+            alone = _together(solution, states)
             (x,) = values(alone, point).values()
             axes.plot(
                 x, alone.at, shape, color=COLOURS[colour], markersize=8, markeredgecolor="white", label=name, zorder=3
@@ -127,6 +127,8 @@ def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str
     return _OF_POINT[name]
 
 
-def _rows(states: Sequence[Any]) -> tuple[np.ndarray, ...]:
-    names = ("at", "p", "v", "a")
-    return tuple(np.array([getattr(state, name) for state in states]) for name in names)
+def _together(path: Solution, states: Sequence[State]) -> Solution:
+    """Return states of a path as the rows of a solution."""
+    at = np.array([state.at for state in states])
+    p, v, a = (np.array([getattr(state, name) for state in states]) for name in "pva")
+    return Solution(path.model, True, at, p, v, a, path.statistics)

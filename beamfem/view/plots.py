@@ -11,14 +11,14 @@ COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#B
 _DOTS_PER_INCH = 160
 
 
-def empty_figure(width: float, height: float) -> Any:
-    """Return a figure [inch] that lays itself out; needs no display. Raises BeamfemError without matplotlib."""
+def empty_figure(width: float, height: float, layout: Any = "constrained") -> Any:
+    """Return a figure [inch], by default one that lays itself out. Raises BeamfemError without matplotlib."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
         raise BeamfemError("pictures need matplotlib: pip install beamfem[plot]") from None
-    figure = Figure(figsize=(width, height), layout="constrained", dpi=100)
+    figure = Figure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure
 

@@ -69,16 +69,15 @@ class Shapes:
     @cached_property
     def limits(self) -> tuple[float, float]:
         """Smallest and largest value of the field in these rows."""
-        low, high = min(v.min() for v in self.values), max(v.max() for v in self.values)
-        # round-off around a constant is no field
-        size = max(abs(low), abs(high))
-        return (float(low), float(high)) if high - low > 1e-9 * size else (float(low - size), float(high + size))
+        return limits(self.values)
 
     @cached_property
     def box(self) -> np.ndarray:
         """Lower left and upper right corner of all shapes and the undeformed axes (2, 2) [m]."""
         found = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
-        return np.stack([np.min([f.min(axis=0) for f in found], axis=0), np.max([f.max(axis=0) for f in found], axis=0)])
+        return np.stack(
+            [np.min([f.min(axis=0) for f in found], axis=0), np.max([f.max(axis=0) for f in found], axis=0)]
+        )
 
     @cached_property
     def centre(self) -> np.ndarray:
@@ -98,7 +97,7 @@ class Shapes:
 
         colour = shade(share)
         lines = LineCollection([axis[order] for axis in self.axis], colors=[colour], linewidths=1.3, zorder=2 + share)
-        drawn = [lines]
+        drawn: list[Any] = [lines]
         if self._bodies_drawn:
             outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
             fill = PolyCollection(outlines, facecolors=[(*colour, 0.45)], edgecolors="none", zorder=2 + share)
@@ -128,15 +127,22 @@ class Shapes:
         layer = 2 + share
         drawn: list[Any] = []
         if self._bodies_drawn:
-            fill = PolyCollection(np.concatenate(slabs), facecolors=colours, edgecolors="face", linewidths=0.3)
+            fill = PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
             outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
             edges = str(1.0 - 0.75 * strength)
             drawn += [fill, PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4)]
-        drawn.append(LineCollection(np.concatenate(pieces), colors=colours, linewidths=2.0, capstyle="round"))
+        drawn.append(LineCollection(list(np.concatenate(pieces)), colors=colours, linewidths=2.0, capstyle="round"))
         for artist in drawn:
             artist.set_zorder(layer)
             axes.add_collection(artist, autolim=False)
         return drawn
+
+
+def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Return the smallest and the largest value, further apart where the values are constant up to round-off."""
+    low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+    size = max(abs(low), abs(high))
+    return (low, high) if high - low > 1e-9 * size else (low - (size or 1.0), high + (size or 1.0))
 
 
 def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:

@@ -83,14 +83,15 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
-@lru_cache
 def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points (points,) and weights (points,) on [0, 1]."""
-    xi, weights = np.polynomial.legendre.leggauss(points)
-    rule = 0.5 * (xi + 1.0), 0.5 * weights
-    for part in rule:
-        part.setflags(write=False)
-    return rule
+    xi, weights = _legendre(points)
+    return 0.5 * (xi + 1.0), 0.5 * weights
+
+
+@lru_cache
+def _legendre(points: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(points)
 
 
 def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:

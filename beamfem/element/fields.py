@@ -71,9 +71,7 @@ def _lobatto(order: int) -> np.ndarray:
     """Gauss-Lobatto nodes (order + 1,) on [0, 1]."""
     # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
     inner = np.polynomial.legendre.Legendre.basis(order).deriv().roots()
-    nodes = np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
-    nodes.setflags(write=False)
-    return nodes
+    return np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
 
 
 # frames of many members ask for the same points again and again
@@ -91,9 +89,7 @@ def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -
             for left_out in combinations(others, derivative)
         ]
         columns.append(factorial(derivative) * sum(parts) / np.prod(own - nodes[others]))
-    table = np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
-    table.setflags(write=False)
-    return table
+    return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -117,11 +113,12 @@ class Lagrange:
 
     @property
     def nodes(self) -> np.ndarray:
-        return _lobatto(self.order)
+        return _lobatto(self.order).copy()
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         points = np.asarray(xi, dtype=float)
-        return _table(self.order, points.tobytes(), points.shape, derivative)
+        # a copy: kernels are compiled anew for arrays that cannot be written to
+        return _table(self.order, points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return self.centreline(xi, derivative)

@@ -49,7 +49,7 @@ def test_picture_of_the_body(bent, tmp_path):
 def test_slider_moves_the_body():
     solution = pendulum()
     plotter = body.slider_scene(solution, "moment", (300, 200), off_screen=True)
-    (slider,) = plotter.slider_widgets
+    (slider,) = plotter.widgets.slider_widgets
     (mesh,) = [mesh for mesh in plotter.meshes if "field" in mesh.array_names]
     end = solution.model.beams[0].end
     np.testing.assert_allclose(mesh.points[-4:, :2].mean(axis=0), solution.position(end)[-1], atol=1e-6)

@@ -25,6 +25,7 @@ class Field(Protocol):
     def director_degree(self) -> int: ...  # polynomial degree of d
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nr)
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nd)
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]: ...  # nodes of d (nd,) and weights (nd,) on [0, 1]
 
 
 def r_slots(field: Field) -> np.ndarray:
@@ -64,6 +65,9 @@ class Cubic:
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return Lagrange(1).director(xi, derivative)
+
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        return Lagrange(1).director_rule()
 
 
 @lru_cache
@@ -122,3 +126,7 @@ class Lagrange:
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return self.centreline(xi, derivative)
+
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        xi, weights = np.polynomial.legendre.leggauss(self.order + 1)
+        return self.nodes, 0.5 * weights @ self.director(0.5 * (xi + 1.0))

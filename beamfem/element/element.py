@@ -121,8 +121,8 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
 def ShearRigid(stretchable: bool = True, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Cubic field without shear at its nodes, 4 coordinates a node, or 3; paper, sections 1.5 and 3.5.
 
-    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in stretch
-    and shear.
+    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in shear, and
+    in stretch where the length is none.
     """
     label = "shear-rigid-stretchable" if stretchable else "shear-rigid"
     return Element(Cubic(), ShearFree(stretchable), forces or Structural(), integration, label)

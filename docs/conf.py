@@ -11,10 +11,13 @@ from plain_docstrings import as_markup, without_constants
 project = "beamfem"
 version = release = installed("beamfem")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
-myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = "beamfem"
+html_static_path = ["_static"]
+html_css_files = ["wide.css"]
+html_show_copyright = False
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_use_type_comments = False

@@ -15,8 +15,8 @@ def as_markup(app, kind, name, thing, options, lines):
         text = " ".join(line.strip() for line in paragraph.split("\n")).strip()
         if names:
             # "radius [m], angle: ..." stays one phrase; a new one begins where a parameter does
-            text = re.sub(rf"(?<=[.;] )(?=(?:{names})(?:, (?:{names}))*(?: [^:.;]*)?: )", "\n\n", text)
-        paragraphs += text.split("\n\n")
+            text = re.sub(rf"(?<=[.;] )(?=(?:{names})(?:, (?:{names}))*(?: [\[(][^:;]*?[\])])?: )", "\n\n", text)
+        paragraphs += re.sub(r"(?<=[.;]) (?=(?:Raises|Source:) )", "\n\n", text).split("\n\n")
     marked = []
     for text in paragraphs:
         text = re.sub(r"([\\*|])", r"\\\1", text)
@@ -36,7 +36,9 @@ def _parameters(thing):
 
 
 def without_constants(app, kind, name, thing, options, signature, returns):
-    """Leave constants of the code out of the signatures of fields, coordinates and forces."""
+    """Leave constants of the code out of the signatures of fields, coordinates and forces; protocols have none."""
+    if getattr(thing, "_is_protocol", False):
+        return "", returns
     if kind != "class" or not getattr(thing, "__module__", "").startswith("beamfem.element") or "Element" in name:
         return None
     kept = [p for p in inspect.signature(thing).parameters.values() if p.name not in _CONSTANTS]

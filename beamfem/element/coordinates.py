@@ -27,7 +27,8 @@ class Rotation:
 class ShearFree:
     """r_x = s (cos t, sin t), r_y = (-sin t, cos t): no shear at the nodes; paper, sections 1.5 and 3.5.
 
-    stretchable: whether s is a coordinate; otherwise it is 1. Needs a field that has r_x.
+    stretchable: whether s is a coordinate; otherwise it stays as in the reference (1 by arc length). Needs a field that
+    has r_x.
     """
 
     stretchable: bool = True

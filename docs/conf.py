@@ -1,0 +1,30 @@
+"""Sphinx: `make docs` builds these pages into out/docs."""
+
+import sys
+from importlib.metadata import version as installed
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from plain_docstrings import as_markup, without_constants
+
+project = "beamfem"
+version = release = installed("beamfem")
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
+myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+html_theme = "furo"
+html_title = "beamfem"
+html_static_path = ["_static"]
+html_css_files = ["wide.css"]
+html_show_copyright = False
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_use_type_comments = False
+python_maximum_signature_line_length = 100
+suppress_warnings = ["myst.xref_missing"]
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", as_markup)
+    app.connect("autodoc-process-signature", without_constants)

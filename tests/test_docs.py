@@ -1,0 +1,119 @@
+"""Every code block of README and docs runs, prints what the page shows, and what pages name exists."""
+
+import contextlib
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import beamfem as bf
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+_FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
+_TINY = 1e-8  # two numbers below this are round-off of zero
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block of a page: its code, the line it starts after, the output that the page shows (None for none)."""
+
+    code: str
+    line: int
+    output: str | None
+
+
+def blocks_of(text: str) -> list[Block]:
+    """Python blocks in order; a text block shows what the python block before it prints."""
+    found: list[Block] = []
+    for fence in _FENCE.finditer(text):
+        language, body = fence.groups()
+        if language == "python":
+            found.append(Block(body, text[: fence.start(2)].count("\n"), None))
+        elif language == "text":
+            assert found, "a text block is the output of a python block, and there is none before"
+            assert found[-1].output is None, "two outputs of one block"
+            found[-1] = Block(found[-1].code, found[-1].line, body)
+    return found
+
+
+def run(page: Path, text: str) -> Iterator[tuple[Block, str]]:
+    """Run the blocks of a page in one namespace; a block whose first line is `# name.py` becomes that file."""
+    namespace: dict[str, object] = {"__name__": "page"}
+    for block in blocks_of(text):
+        file = re.match(r"# (\w+\.py)\n", block.code)
+        if file:
+            Path(file[1]).write_text(block.code)
+            continue
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            # empty lines in front: a traceback names the line of the page
+            exec(compile("\n" * block.line + block.code, str(page), "exec"), namespace)
+        yield block, printed.getvalue()
+
+
+def same(shown: str, printed: str) -> bool:
+    """Whether texts agree; numbers up to one unit of the last digit shown, "..." for anything."""
+    shown, printed = " ".join(shown.split()), " ".join(printed.split())
+    pattern, numbers = "", []
+    for part in re.split(r"(\.\.\.)", shown):
+        if part == "...":
+            pattern += ".*"
+            continue
+        last = 0
+        for number in _NUMBER.finditer(part):
+            pattern += re.sub(r"(\\ )+", " *", re.escape(part[last : number.start()])) + f"({_NUMBER.pattern})"
+            numbers.append(number[0])
+            last = number.end()
+        pattern += re.sub(r"(\\ )+", " *", re.escape(part[last:]))
+    match = re.fullmatch(pattern, printed)
+    return match is not None and all(_close(*pair) for pair in zip(numbers, match.groups(), strict=True))
+
+
+def _close(shown: str, printed: str) -> bool:
+    mantissa, _, exponent = shown.partition("e")
+    digits = mantissa.partition(".")[2]
+    if "." not in mantissa and not exponent:
+        return shown == printed
+    a, b = float(shown), float(printed)
+    # NumPy leaves zeros out: "2." stands for more digits than it shows
+    unit = 10.0 ** (int(exponent or 0) - len(digits)) if digits or exponent else 1e-4 * abs(a)
+    return abs(a - b) <= 1.001 * unit or max(abs(a), abs(b)) < _TINY
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    for block, printed in run(page, page.read_text()):
+        if block.output is not None:
+            assert same(block.output, printed), f"{page}, line {block.line}: it prints\n{printed}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_what_a_page_names_exists(page):
+    text = page.read_text()
+    for name in re.findall(r"\bbf\.(\w+)", text):
+        assert hasattr(bf, name), f"bf.{name}"
+    for path in re.findall(r"`((?:beamfem|studies|tests|docs)/[\w/.]*)`", text):
+        assert (ROOT / path).exists(), path
+    for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+        assert (page.parent / link).exists(), link
+
+
+def test_reference_lists_every_public_name():
+    listed = "".join(path.read_text() for path in (ROOT / "docs" / "reference").glob("*.md"))
+    missing = [name for name in bf.__all__ if not re.search(rf":: {name}\b", listed)]
+    assert not missing
+
+
+def test_outputs_are_compared_by_the_digits_shown():
+    assert same("u 0.12 m", "u 0.1249 m\n")
+    assert not same("u 0.12 m", "u 0.14 m")
+    assert same("a ... 3 c", "a b 3 c")
+    assert not same("3 iterations", "4 iterations")
+    assert same("[ 1.0e-17 2.]", "[-3.1e-18  2.]")

@@ -21,10 +21,13 @@ from beamfem.curves import (
     spline_through_hermite,
     without_removable_knots,
 )
+from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
+from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
 from beamfem.io.cad import read_dxf
+from beamfem.io.frame import Frame
 from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
 from beamfem.material import Material
@@ -57,17 +60,21 @@ __all__ = [
     "Clamp",
     "ContinuumMechanics",
     "ConvergenceError",
+    "Cubic",
     "Curve",
     "DistributedLoad",
     "ElasticLine",
     "Element",
     "Fields",
     "Foundation",
+    "Frame",
     "FreeMotionError",
     "GeneralizedAlpha",
+    "Gradients",
     "Gravity",
     "Hinge",
     "InputError",
+    "Lagrange",
     "Layer",
     "Layered",
     "Line",
@@ -89,8 +96,10 @@ __all__ = [
     "Rigid",
     "RigidVelocity",
     "Roller",
+    "Rotation",
     "Section",
     "SectionForces",
+    "ShearFree",
     "ShearRigid",
     "Solution",
     "SplitContinuum",

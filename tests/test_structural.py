@@ -71,9 +71,24 @@ def test_pendulum_with_structural_forces():
     assert solution.position(beam.end)[-1] == pytest.approx([0.354311304, -1.307082330], abs=2e-5)
 
 
-def test_structural_gradients_with_reduced_integration_are_refused():
-    with pytest.raises(bf.InputError, match="thickness can change"):
-        bf.BilinearANCF(forces=bf.Structural(), integration="reduced")
+@pytest.mark.parametrize("slenderness", [10, 100, 1000])
+@pytest.mark.parametrize(
+    ("gradients", "rotations", "elements"),
+    [
+        (bf.ANCF(bf.Structural()), bf.ANCFCRBF(bf.Structural()), 24),
+        (bf.BilinearANCF(bf.Structural(), "reduced"), bf.CRBF(1), 32),
+        (bf.Element(bf.Lagrange(4), bf.Gradients(), bf.Structural(), "reduced"), bf.CRBF(4), 6),
+    ],
+)
+def test_gradients_do_not_lock_in_thickness(gradients, rotations, elements, slenderness):
+    """The thickness strain of gradients is taken at the nodes, so that thin beams come where rotations come."""
+    errors = []
+    for element in (gradients, rotations):
+        beam, solution = cantilever(element, elements, slenderness, tip_force)
+        _, fine = cantilever(bf.CRBF(6), 10, slenderness, lambda b, bending: tip_force(b, bending))
+        limit = fine.displacement(fine.model.beams[0].end)[-1]
+        errors.append(np.abs(solution.displacement(beam.end)[-1] - limit).max())
+    assert errors[0] < 1.3 * errors[1] + 1e-8, errors
 
 
 @pytest.mark.parametrize("order", [0, 9, 1.5])

@@ -7,11 +7,10 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
+from beamfem.analysis.orientation import inverted
 from beamfem.errors import InputError
 from beamfem.kernels.block import ELASTIC_LINE, Block
-from beamfem.model.reference import stations
 from beamfem.model.system import System
-from beamfem.postprocess import axis, nodal_vectors
 from beamfem.validation import count, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
@@ -126,16 +125,6 @@ def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, si
     else:
         return None
     return Ended.INVERTED if inverted(system, p) else ended
-
-
-def inverted(system: System, p: np.ndarray) -> bool:
-    """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
-    for mesh in system.model.meshes:
-        element, xi = stations(mesh)
-        now = axis(mesh, nodal_vectors(mesh, p[None]), element, xi)
-        if np.any(now.r_s[..., 0] * now.d[..., 1] <= now.r_s[..., 1] * now.d[..., 0]):
-            return True
-    return False
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:

@@ -227,10 +227,9 @@ def _tables(result: Curved) -> list[Table]:
             for name in dict.fromkeys(name for name, _ in result.castigliano)
         ],
         "Structural forces but for the elastic line, whose formula has no shear. Order k with k points does not know "
-        "how thin the ring is. Gradients lock: between two nodes whose r_y point apart bending makes r_y shorter, and "
-        "the thickness stiffness E A resists (curvature thickness locking); with 24 ANCF elements and R/h = 1000 "
-        "hardly a twentieth of the deflection is left. It falls with the fourth power of the element's length where "
-        "r_y is linear.",
+        "how thin the ring is. Gradients come where rotations come, because their thickness strain is taken at the "
+        "nodes of r_y; between these r_y is shorter wherever the beam bends. With continuum forces the thickness "
+        "strain is that of the whole body and locks (curvature thickness locking).",
     )
     pulled = Table(
         "Tapered half ring pulled open, 36 node intervals",
@@ -282,8 +281,7 @@ def part(folder: Path) -> Part:
             folder / "quarter.svg",
             "",
             "Orders 1 to 4 converge with 2, 4, 6 and 8 on the arc, on a cubic spline through 5 of its points and on a "
-            "polygon through 9; ANCF/CRBF with 2. ANCF with structural forces first has to overcome its thickness "
-            "locking.",
+            "polygon through 9; ANCF/CRBF with 2.",
         ),
         Entry(
             "Tapered half ring, pulled open",

@@ -185,7 +185,8 @@ def table(found: list[Found]) -> Table:
         "because the square of the shear enters the stretch and the limit is a little different from that of "
         "rotations. A fixed |r_x| with the elastic line comes to the elastica up to (N / (E A))^2 only. Order k with k "
         "points falls with 2 k; continuum forces on gradients have boundary layers of the thickness at the ends, which "
-        "uniform meshes of high order feel first. Orders other than 2 of cubic and bilinear elements at L/h = 100 are "
+        "uniform meshes of high order feel first. Orders other than 2 of cubic and bilinear elements with continuum "
+        "forces at L/h = 100 are "
         "not the last word: a director that is linear between two nodes is shorter in the middle, the thickness "
         "stiffness resists that, and this locking falls with the fourth power until the second order shows."
     )

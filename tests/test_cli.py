@@ -250,7 +250,7 @@ def test_the_studies_of_the_repository_have_options(monkeypatch):
     assert "cantilever_small" in invoke("study").stdout
     done = invoke("study", "--json", "cantilever_small", "--meshes", "3,48")
     found = json.loads(done.stdout)["result"]
-    assert found["ANCF-CRBF, True"][1] == pytest.approx(0.01819510330389, rel=2e-4)
+    assert found["ANCF-CRBF, continuum, plane stress"][1] == pytest.approx(0.01819510330389, rel=2e-4)
 
 
 def test_a_parameter_that_no_text_can_describe_needs_a_default():

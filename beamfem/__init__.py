@@ -25,9 +25,11 @@ from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, Bilinear
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
 from beamfem.io.cad import read_dxf
+from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.grading import graded
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
@@ -69,6 +71,7 @@ __all__ = [
     "Layer",
     "Layered",
     "Line",
+    "LineMesh",
     "Material",
     "Model",
     "Modes",
@@ -98,8 +101,10 @@ __all__ = [
     "UnknownPointError",
     "converge",
     "elliptic_arc",
+    "graded",
     "load",
     "read_dxf",
+    "read_mesh",
     "simulate",
     "solve_buckling",
     "solve_modes",

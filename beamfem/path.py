@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from beamfem.model.beam import Beam, Point
-from beamfem.model.model import Model
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
 
@@ -15,8 +14,6 @@ from beamfem.solution import Solution, State, Statistics
 @dataclass(frozen=True, eq=False)
 class PathState(State):
     """One state of a path, with what a Solution offers but without its axis of steps."""
-
-    model: Model
 
     @property
     def load_factor(self) -> float:
@@ -63,10 +60,11 @@ class Bifurcation(PathState):
     """A state where another branch crosses the path.
 
     mode (n,): the change of the coordinates that the tangent does not resist, its root mean square 1 in lengths of the
-    model and radians, its largest coordinate positive.
+    model and radians, its largest coordinate positive; tangent (n + 1,): direction of the path, the load factor last.
     """
 
     mode: np.ndarray
+    tangent: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,19 +23,26 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     near = [s for s in model.point_supports if s.point.beam is point.beam]
     if not any(abs(support.point.fraction - point.fraction) < 1e-9 for support in near):
         raise InputError(f"there is no support at {point}, so there is no reaction")
+    dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
+    result = np.zeros((len(solution), 3))
+    for column, name in enumerate(("r^x", "r^y", "theta")):
+        if name in dofs:
+            result[:, column] = solution.support_forces[:, dofs[name]]
+    return result
+
+
+def support_forces(solution: "Solution") -> np.ndarray:
+    """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
+    model = solution.model
     system = System(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
     held[system.held_dofs] = True
     for dof, _ in system.inclined:
         held[dof : dof + 2] = True
-    dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
     springs = system.springs
-    result = np.zeros((len(solution), 3))
+    result = np.zeros((len(solution), model.size))
     for row, at in enumerate(solution.at):
         p = solution.p[row]
-        force = np.where(held, residual(system, p, solution.v[row], solution.a[row], at), 0.0)
-        np.subtract.at(force, springs.dof, springs.stiffness * (p[springs.dof] - springs.rest))
-        for column, name in enumerate(("r^x", "r^y", "theta")):
-            if name in dofs:
-                result[row, column] = force[dofs[name]]
+        result[row] = np.where(held, residual(system, p, solution.v[row], solution.a[row], at), 0.0)
+        np.subtract.at(result[row], springs.dof, springs.stiffness * (p[springs.dof] - springs.rest))
     return result

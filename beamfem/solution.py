@@ -28,14 +28,15 @@ class Statistics:
     ended: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
-    """Coordinates p (n,), their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
+    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
 
     p: np.ndarray
     v: np.ndarray
     a: np.ndarray
     at: float
+    model: Model
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class Solution:
         return len(self.at)
 
     def __getitem__(self, row: int) -> State:
-        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]))
+        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
 
     @property
     def time(self) -> np.ndarray:
@@ -128,6 +129,13 @@ class Solution:
         from beamfem.reactions import reaction
 
         return reaction(self, point)
+
+    @cached_property
+    def support_forces(self) -> np.ndarray:
+        """Generalized forces of all supports and springs (steps, n) [N, N m]."""
+        from beamfem.reactions import support_forces
+
+        return support_forces(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""

@@ -35,7 +35,7 @@ def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
     """Return a table with frames and the width of the terminal, or plain and as wide as it needs to be in a pipe."""
     terminal = sys.stdout.isatty()
     table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if _unicode() else box.ASCII2)
-    table.title, table.title_justify = title or None, "left"
+    table.title, table.title_justify = Text(title) if title else None, "left"  # [m] is no markup
     out = StringIO()
     # a pipe has no width: nothing is cut there
     Console(file=out, force_terminal=terminal, width=None if terminal else 10_000, legacy_windows=False).print(table)

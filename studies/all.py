@@ -4,13 +4,23 @@ import time
 from pathlib import Path
 
 import cantilever_small
+import curved
+import elements
+import locking
 import pendulum
+import rollup
 from pendulum_figures import FIGURES, draw, table_of_times
 
-from beamfem.view.page import Entry, Part, Table, write_page
-from beamfem.view.plots import COLOURS, new_figure, save_figure
+from beamfem.view.page import Part, write_page
 
 OUT = Path("out")
+STUDIES = {
+    "cantilever": cantilever_small,
+    "elements": elements,
+    "locking": locking,
+    "curved": curved,
+    "rollup": rollup,
+}
 CASES = {
     "printed": (
         pendulum.PRINTED,
@@ -38,55 +48,17 @@ def pendulum_part(name: str) -> Part:
     return Part(f"Falling pendulum, {name} section", text, entries, [table_of_times(runs)])
 
 
-def cantilever_part() -> Part:
-    """Run the cantilever of section 3.4 and draw its convergence."""
-    meshes = (3, 6, 12, 24, 48, 96)
-    results = cantilever_small.main(meshes)
-    canvas, axes = new_figure()
-    for i, ((name, flag), values) in enumerate(results.items()):
-        limit = cantilever_small.LIMITS[flag]
-        errors = [abs(value / limit - 1.0) for value in values]
-        label = f"{name}, {'plane stress' if flag else '3D'}"
-        axes.loglog(meshes, errors, "o-" if flag else "s--", color=COLOURS[i], label=label)
-    axes.set_xlabel("elements")
-    axes.set_ylabel("relative error of the tip deflection")
-    axes.legend(frameon=False)
-    for suffix in (".svg", ".png"):
-        save_figure(canvas, OUT / "cantilever" / f"convergence{suffix}")
-    rows = [
-        [name, "plane stress" if flag else "3D", *(f"{value:.6e}" for value in values)]
-        for (name, flag), values in results.items()
-    ]
-    table = Table(
-        "Tip deflection [m]",
-        ["element", "lambda", *(f"{count} elements" for count in meshes)],
-        rows,
-        f"Limits of the continuum: {cantilever_small.LIMITS[False]:.8f} m (3D), {cantilever_small.LIMITS[True]:.8f} m "
-        f"(plane stress). P L^3 / (3 E I) with the printed data is {cantilever_small.linear():.4e} m; the paper prints "
-        f"{cantilever_small.PRINTED:.4e} m. The bilinear element with full integration locks in shear.",
-    )
-    text = "P = 10 N, L = 1 m, 0.01 m square, E = 2e11 Pa, nu = 0.3, continuum forces."
-    twelve = 1e3 * results["ANCF-CRBF", False][meshes.index(12)]
-    entry = Entry(
-        "Convergence of the tip deflection",
-        OUT / "cantilever" / "convergence.svg",
-        "1.990e-2 m with 12 ANCF/CRBF elements and the elastic line, which is not built yet; continuum forces here",
-        f"{twelve:.3f} mm with 12 elements and continuum forces (3D lambda): by its limit 1.346 times too stiff in "
-        "bending, because the transverse strain cannot vary over the height. Cubic fields converge with order 2.",
-    )
-    return Part("Cantilever of section 3.4", text, [entry], [table])
-
-
 def main() -> None:
     """Run everything and say where to look."""
     begun = time.perf_counter()
     print("compiling kernels on first use (some seconds), then computing ...", flush=True)
     parts = [pendulum_part(name) for name in CASES]
-    parts.append(cantilever_part())
+    parts += [study.part(OUT / folder) for folder, study in STUDIES.items()]
     page = write_page(OUT / "index.html", "The paper's examples, computed by beamfem", parts)
     print(f"done in {time.perf_counter() - begun:.0f} s")
     print(f"page           {page}")
-    print(f"figures        {OUT}/pendulum-printed/figure*.png, {OUT}/pendulum-thin/figure*.png, {OUT}/cantilever/")
+    print(f"figures        {OUT}/pendulum-printed/figure*.png, {OUT}/pendulum-thin/figure*.png")
+    print(f"               {', '.join(f'{OUT}/{folder}/' for folder in STUDIES)}")
     print(f"ParaView files {OUT}/pendulum-*/paraview/*.pvd")
 
 

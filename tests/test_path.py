@@ -5,6 +5,7 @@ import pytest
 from scipy.special import ellipk
 
 import beamfem as bf
+from beamfem.analysis.bifurcations import bifurcations
 from beamfem.analysis.continuation import begin
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.newton import Newton
@@ -137,7 +138,7 @@ def test_two_limit_points_in_one_step_are_told_apart():
     segment = Segment(line, *(line.linearised(y, first.tangent) for y in ends))
     loads = [segment.at(x).load_factor for x in segment.limit_points()]
     assert loads == pytest.approx([load for load, _ in WILLIAMS], rel=2e-9)
-    assert segment.bifurcations(segment.limit_points()) == []
+    assert bifurcations(segment, segment.limit_points()) == []
 
 
 def test_the_buckling_load_of_a_column_and_its_mode():
@@ -198,7 +199,7 @@ def test_several_bifurcations_in_one_step_are_told_apart():
     far = start.y + 70.0 * start.tangent / start.tangent[-1]
     far = line.correct(far, line.stresses(start.y, far - start.y), start.tangent).y
     segment = Segment(line, start, line.linearised(far, start.tangent))
-    loads = [segment.at(x).load_factor for x in segment.bifurcations([])]
+    loads = [found.y[-1] for found in bifurcations(segment, [])]
     assert loads == pytest.approx(np.pi**2 / 4 * np.array([1.0, 9.0, 25.0]), rel=3e-5)
 
 
@@ -283,3 +284,16 @@ def test_paths_that_cannot_be_followed_are_refused():
     ):
         with pytest.raises(bf.InputError):
             trace_equilibrium(model, **wrong)
+
+
+def test_columns_that_buckle_together_have_a_mode_each():
+    """Three equal columns in one model: the stiffness of three modes vanishes at one load; each branch is one's own."""
+    columns = [cantilever(10, (0.0, -1.0))[0] for _ in range(3)]
+    supports, loads = zip(*((bf.Clamp(c.start), bf.PointForce(c.end, (0.0, -1.0))) for c in columns), strict=True)
+    model = bf.Model(columns, supports, loads)
+    path = trace_equilibrium(model, 3.0)
+    assert [found.load_factor for found in path.bifurcations] == pytest.approx([2.4567382724132] * 3, rel=1e-8)
+    modes = np.array([found.mode for found in path.bifurcations])
+    assert modes @ modes.T == pytest.approx(np.diag(np.diag(modes @ modes.T)), abs=1e-6 * (modes @ modes.T).max())
+    branch = trace_equilibrium(model, points=4, start=path.bifurcations[1])
+    assert np.abs([branch.displacement(c.end)[-1, 0] for c in columns]).max() > 0.01

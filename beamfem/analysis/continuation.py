@@ -1,5 +1,6 @@
 """Points of an equilibrium path, corrected and linearised with the load factor among the unknowns."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -135,12 +136,17 @@ class Continuation:
         tangent = along / self.length(along)
         return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
 
-    def softest(self, factors: Factorised) -> np.ndarray:
-        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive."""
+    def softest(self, factors: Factorised, besides: Sequence[np.ndarray] = ()) -> np.ndarray:
+        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive.
+
+        besides: softer modes (n + 1,) that it is orthogonal to.
+        """
         free = self.system.free_dofs
         weights = self.weights[free]
-        mode = np.random.default_rng(0).standard_normal(len(free)) / np.sqrt(weights)
+        mode = np.random.default_rng(len(besides)).standard_normal(len(free)) / np.sqrt(weights)
         for _ in range(_INVERSE_ITERATIONS):
+            for other in besides:
+                mode -= (weights * mode) @ other[free] * other[free]
             mode /= np.sqrt(weights @ mode**2)
             found = factors.solve(weights * mode)
             change = abs(weights @ (mode * found)) / np.sqrt(weights @ found**2)

@@ -1,4 +1,4 @@
-"""Limit points and bifurcations between two points of an equilibrium path."""
+"""The path between two of its points, and the limit points there."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -11,10 +11,7 @@ from scipy.optimize import brentq
 from beamfem.analysis.continuation import Continuation, PathPoint
 
 _SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
-_BESIDE = 1e-3  # of a segment: how far from a critical point signs of pivots and positions are trusted
-_JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
 _LEVEL = 1e-4  # slope of the load factor at a limit point, at most
-_ZERO = 1e-4  # of the stiffness at the ends, where a change of its sign is taken for a zero and not for a pole
 
 
 class SegmentLostError(Exception):
@@ -113,61 +110,6 @@ class Segment:
             return None
         slope = left + x * (6.0 * rise - 4.0 * left - 2.0 * right) + x**2 * 0.5 * curvature
         return float(x) if slope * left < 0.0 else None
-
-    def bifurcations(self, limits: list[float]) -> list[float]:
-        """Return the shares x where the tangent is singular but the load factor has no extremum, in order.
-
-        limits: shares of the limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
-        """
-        starts = [0.0, *(min(x + _BESIDE, 1.0) for x in limits)]
-        ends = [*(max(x - _BESIDE, 0.0) for x in limits), 1.0]
-        pairs = zip(starts, ends, strict=True)
-        return [x for start, end in pairs if start < end for x in self._singular(start, end)]
-
-    def _singular(self, start: float, end: float) -> list[float]:
-        self._require_one_path(start, end)
-        left, right = self.at(start), self.at(end)
-        change = abs(left.negative_pivots - right.negative_pivots)
-        if change == 0 or (change % 2 == 0 and not (self._symmetric(left) and self._symmetric(right))):
-            return []
-        middle = 0.5 * (start + end)
-        if end - start < _SHARPNESS:
-            return [middle]
-        if change == 1:
-            x = self._zero(start, end)
-            if x is not None:
-                self._require_one_path(max(x - _BESIDE, start), min(x + _BESIDE, end))
-                return [x]
-        return [*self._singular(start, middle), *self._singular(middle, end)]
-
-    def _require_one_path(self, start: float, end: float) -> None:
-        """Raise SegmentLostError where two points are further apart than the way from one to the other can be."""
-        apart = self.line.length(self.at(end).y - self.at(start).y) / self.line.length(self.chord)
-        if apart > 2.0 * (end - start) + _JUMP:
-            raise SegmentLostError("the step leads to another path")
-
-    def _zero(self, start: float, end: float) -> float | None:
-        """Return where the stiffness of the softest mode of the middle vanishes, None where it does not."""
-        mode = self.line.softest(self.at(0.5 * (start + end)).factors)
-
-        def stiffness(x: float) -> float:
-            try:
-                return 1.0 / self.line.softness(self.at(x).factors, mode)
-            except (LinAlgError, ValueError):
-                return 0.0
-
-        left, right = stiffness(start), stiffness(end)
-        if left * right >= 0.0:
-            return None
-        x = float(brentq(stiffness, start, end, xtol=_SHARPNESS, rtol=1e-9))
-        return x if abs(stiffness(x)) < _ZERO * max(abs(left), abs(right)) else None
-
-    def _symmetric(self, point: PathPoint) -> bool:
-        """Tell whether a tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
-        weights = self.line.weights[self.line.system.free_dofs]
-        a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
-        one, other = a @ point.factors.solve(b), b @ point.factors.solve(a)
-        return bool(abs(one - other) < 1e-6 * max(abs(one), abs(other)))
 
 
 def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:

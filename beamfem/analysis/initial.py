@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.analysis.transfer import transferred
 from beamfem.errors import InputError
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.system import System, coordinate_columns
@@ -32,12 +33,7 @@ def start_state(system: System, start: State | None, name: str = "start") -> np.
         return system.reference.copy()
     if not isinstance(start, State):
         raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
-    if len(start.p) != system.model.size:
-        raise InputError(
-            f"{name} has {len(start.p)} coordinates, this model has {system.model.size}; "
-            "take it from a model of the same beams, elements and support points"
-        )
-    return np.array(start.p)
+    return transferred(start, system, name)[0]
 
 
 def start_velocity(
@@ -50,7 +46,9 @@ def start_velocity(
 
     A function takes the reference position (2,) [m] and gives (vx, vy) [m/s]; sections then do not turn.
     """
-    result = np.zeros(system.model.size) if start is None or velocity is not None else np.array(start.v)
+    result = np.zeros(system.model.size)
+    if start is not None and velocity is None:
+        result = transferred(start, system, "start")[1]
     if velocity is None:
         return result
     if not isinstance(velocity, RigidVelocity) and not callable(velocity):

@@ -112,7 +112,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if rigid:
         shapes[:rigid], words = sort_rigid(pencil, np.real(shapes[:rigid]))
     rates = rates[keep][:count]
-    rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor)
+    rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
     return Modes(model, rest_state, frequencies, rates.real, upright(shapes[:count]), words[:count])
 

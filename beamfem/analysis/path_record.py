@@ -25,8 +25,8 @@ class PathRecord:
         self.cuts = 0
         self.ended = "the path was not followed to its end"
 
-    def add(self, point: PathPoint) -> None:
-        self.points.append(point.y)
+    def add(self, y: np.ndarray) -> None:
+        self.points.append(y)
 
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
@@ -34,16 +34,16 @@ class PathRecord:
         share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
         for x in step.limits:
             if x <= share:
-                self.limit_points.append(self.state(segment.at(x)))
-        for x in step.bifurcations:
-            if x <= share:
-                point = segment.at(x)
-                mode = line.softest(point.factors)[:-1]
-                self.bifurcations.append(Bifurcation(**vars(self.state(point)), mode=mode))
+                self.limit_points.append(self.state(segment.at(x).y))
+        for crossing in step.crossings:
+            if crossing.share <= share:
+                state = vars(self.state(crossing.y))
+                self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
-    def state(self, point: PathPoint) -> PathState:
+    def state(self, y: np.ndarray) -> PathState:
+        """Return the state of y (n + 1,), coordinates and load factor."""
         rest = np.zeros(self.model.size)
-        return PathState(point.y[:-1], rest, rest, point.load_factor, self.model)
+        return PathState(y[:-1], rest, rest, float(y[-1]), self.model)
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)

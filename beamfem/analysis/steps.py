@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.analysis.bifurcations import Crossing, bifurcations
 from beamfem.analysis.continuation import Continuation, PathPoint
 from beamfem.analysis.critical_points import Segment, SegmentLostError
 
@@ -20,11 +21,11 @@ _LARGEST_INCREASE = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step: the segment, the shares of its limit points and bifurcations, and the length of the next."""
+    """An accepted step: the segment, the shares of its limit points, its bifurcations, and the length of the next."""
 
     segment: Segment
     limits: list[float]
-    bifurcations: list[float]
+    crossings: list[Crossing]
     iterations: int
     next_size: float
 
@@ -68,9 +69,9 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     segment = Segment(line, point, new)
     try:
         limits = segment.limit_points()
-        bifurcations = segment.bifurcations(limits)
+        crossings = bifurcations(segment, limits)
     except SegmentLostError as error:
         return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
-    return Step(segment, limits, bifurcations, iterations, size * max(increase, 0.25))
+    return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))

@@ -63,13 +63,16 @@ def trace_equilibrium(
     _require_crossing(model, start)
     record = PathRecord(model)
     with kept(record), progress("points of the path", points) as report:
-        line, point = _first(system, newton or Newton(iterations=_ITERATIONS), start, record)
+        line, point = _first(system, newton or Newton(iterations=_ITERATIONS), record)
+        size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
-            size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
-        elif points > 1:
-            point, size = _branch(line, point, start, direction, record)
+            record.add(point.y)
+        else:
+            record.add(np.append(start.p, start.at))
+            if points > 1:
+                point, size = _branch(line, start, direction, record)
         landed = False
-        while not (landed or _met(until, record.state(point))):
+        while not (landed or _met(until, record.state(record.points[-1]))):
             if len(record.points) >= points:
                 record.ended = f"the {points} points are used up"
                 break
@@ -78,7 +81,7 @@ def trace_equilibrium(
             landing = _landing(line, taken, until) if isinstance(until, float) else None
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
-            record.add(point)
+            record.add(point.y)
             record.add_critical(line, taken, point)
             report(len(record.points))
         else:
@@ -108,35 +111,26 @@ def _require_crossing(model: Model, start: Bifurcation | None) -> None:
         raise InputError("start is a bifurcation of another model; trace the path of this one first")
 
 
-def _first(
-    system: System, newton: Newton, start: Bifurcation | None, record: PathRecord
-) -> tuple[Continuation, PathPoint]:
-    """Return the continuation and the first point: at load factor 0, or the bifurcation `start`."""
+def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continuation, PathPoint]:
+    """Return the continuation and the point at load factor 0."""
     first = first_equilibrium(system, newton)
     record.iterations += first.iterations
     if not first.ended.good:
-        record.points.append(np.append(system.reference, 0.0))
+        record.add(np.append(system.reference, 0.0))
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
-        line, point = begin(system, first.state, 0.0, newton)
-        if start is not None:
-            point = line.linearised(np.append(start.p, start.at), point.tangent)
+        return begin(system, first.state, 0.0, newton)
     except (LinAlgError, ValueError):
-        at = 0.0 if start is None else start.at
-        raise ConvergenceError(f"there is no path from load factor {at:.6g}: the tangent is singular") from None
-    record.add(point)
-    return line, point
+        raise ConvergenceError("there is no path from load factor 0: the tangent is singular") from None
 
 
-def _branch(
-    line: Continuation, point: PathPoint, start: Bifurcation, direction: int, record: PathRecord
-) -> tuple[PathPoint, float]:
+def _branch(line: Continuation, start: Bifurcation, direction: int, record: PathRecord) -> tuple[PathPoint, float]:
     """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
-    found = leave(line, point, start, direction)
+    found = leave(line, start, direction)
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
-    record.add(found)
-    return found, line.length(found.y - point.y)
+    record.add(found.y)
+    return found, line.length(found.y - record.points[0])
 
 
 def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:

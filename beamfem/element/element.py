@@ -1,6 +1,7 @@
 """An element as a user chooses it, and the named combinations of the paper."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -82,10 +83,14 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
+@lru_cache(maxsize=32)  # asked for by every beam of a model
 def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points (points,) and weights (points,) on [0, 1]."""
     xi, weights = np.polynomial.legendre.leggauss(points)
-    return 0.5 * (xi + 1.0), 0.5 * weights
+    xi, weights = 0.5 * (xi + 1.0), 0.5 * weights
+    xi.setflags(write=False)
+    weights.setflags(write=False)
+    return xi, weights
 
 
 def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:

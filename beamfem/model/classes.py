@@ -1,5 +1,6 @@
 """Classes of identical elements of a beam, and what the kernels need of each."""
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +58,28 @@ def element_classes(grid: Grid) -> Classes:
         gravity,
         length,
     )
+
+
+def likeness(grid: Grid) -> Hashable:
+    """Return what straight prismatic beams of one element have in common if their classes are the same.
+
+    Lengths count as equal within 1e-12 of themselves. None for a beam that is like no other.
+    """
+    beam = grid.beam
+    if not (grid.straight and isinstance(beam.section, CrossSection)):
+        return None
+    unit = 2.0 ** np.ceil(np.log2(grid.lengths.max()))
+    lengths = np.round(grid.lengths / unit, 12).tobytes()
+    return unit, lengths, _by_value(beam.section), _by_value(beam.material)
+
+
+def _by_value(item: object) -> Hashable:
+    """Return the item itself, or its identity where it cannot be compared by value."""
+    try:
+        hash(item)
+    except TypeError:
+        return id(item)
+    return item
 
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

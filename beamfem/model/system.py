@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from beamfem.element.coordinates import across, labels
-from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.block import TURNED_GRADIENTS, Block, Layout, PointLoads, Springs
 from beamfem.model.actions import Actions, build_actions
 from beamfem.model.blocks import build_block
 from beamfem.model.held import Held, held_coordinates, inclined_rollers
@@ -28,15 +28,16 @@ class System:
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
         p = np.zeros(self.model.size)
-        # backwards, so that shared vectors are those of the first of the joined nodes
-        for mesh in reversed(self.model.meshes):
+        for mesh in self.model.meshes:
             values = {"r": mesh.position, "r_x": mesh.tangent * mesh.speed[:, None], "r_y": across(mesh.tangent)}
-            for label, nodes, dofs in coordinate_columns(mesh, reverse=True):
+            for label, nodes, dofs in coordinate_columns(mesh):
                 if label == "s":
                     p[dofs] = mesh.speed[nodes]
                 elif label != "theta":
                     name, axis = label.split("^")
-                    p[dofs] = values[name][nodes, "xy".index(axis)]
+                    # a turned vector is that of the first of the joined nodes
+                    own = mesh.carried.carrier[nodes] != TURNED_GRADIENTS if name == "r_y" else slice(None)
+                    p[dofs[own]] = values[name][nodes[own], "xy".index(axis)]
         return p
 
     @cached_property
@@ -167,14 +168,10 @@ class System:
         return scale
 
 
-def coordinate_columns(mesh: BeamMesh, reverse: bool = False) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
-
-    reverse: nodes from the end to the start, and turned vectors before those that they are turned from.
-    """
+def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers."""
     result = []
-    for carrier, nodes in reversed(mesh.carriers) if reverse else mesh.carriers:
-        ordered = nodes[::-1] if reverse else nodes
+    for carrier, nodes in mesh.carriers:
         for column, label in enumerate(labels(carrier, mesh.vectors)):
-            result.append((label, ordered, mesh.carried.dof[ordered, column]))
+            result.append((label, nodes, mesh.carried.dof[nodes, column]))
     return result

@@ -1,0 +1,200 @@
+"""Meshes in input files of Abaqus and CalculiX.
+
+meshio 5.3.5 gives sets of elements to the wrong cells where a block of elements has no set of its own or two share one,
+drops sets of nodes made of other sets, and keeps only the last of several blocks of nodes: all without a word.
+Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); node order of B32: end, middle, end.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.io.mesh_file import MeshFile
+
+_STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")
+_QUADRATIC = re.compile(r"(T[23]D3|B[23]2|PIPE[23]2)")
+_GENERATORS = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "SYSTEM")
+
+
+@dataclass(frozen=True)
+class _Section:
+    """A keyword line with its parameters and the rows below; `place` names it for messages."""
+
+    keyword: str
+    parameters: dict[str, str]
+    rows: list[list[str]]
+    place: str
+
+
+@dataclass
+class _Sets:
+    """Named lists of numbers; names do not know upper from lower case."""
+
+    kind: str
+    names: dict[str, str] = field(default_factory=dict)
+    numbers: dict[str, list[int]] = field(default_factory=dict)
+
+    def add(self, name: str, numbers: list[int]) -> None:
+        self.names.setdefault(name.upper(), name)
+        self.numbers.setdefault(name.upper(), []).extend(numbers)
+
+    def define(self, section: _Section) -> None:
+        """Add what a *NSET or *ELSET lists: numbers, ranges or other sets. Raises InputError."""
+        numbers: list[int] = []
+        for row in section.rows:
+            if "GENERATE" in section.parameters:
+                first, last, *step = (int(value) for value in row)
+                numbers += range(first, last + 1, *step)
+                continue
+            for value in row:
+                if value.upper() in self.numbers:
+                    numbers += self.numbers[value.upper()]
+                elif value.lstrip("-").isdigit():
+                    numbers.append(int(value))
+                else:
+                    known = ", ".join(self.names.values()) or "none"
+                    raise InputError(f"{section.place}: there is no {self.kind} {value!r} so far; known: {known}")
+        self.add(section.parameters[self.kind.upper()], numbers)
+
+    def placed(self, place: dict[int, int]) -> dict[str, np.ndarray]:
+        """Return the sets as places. Raises InputError for a number that the file does not give."""
+        for key, numbers in self.numbers.items():
+            missing = [number for number in numbers if number not in place]
+            if missing:
+                raise InputError(f"{self.kind} {self.names[key]} lists {missing[0]}, which the file does not give")
+        return {
+            self.names[key]: np.array(sorted({place[number] for number in numbers}), dtype=np.int64)
+            for key, numbers in self.numbers.items()
+        }
+
+
+def read_abaqus(path: Path) -> MeshFile:
+    """Return what an input file holds. Raises InputError for what cannot be read, naming the line."""
+    nodes: dict[int, tuple[float, ...]] = {}
+    cells: dict[int, tuple[str, list[int]]] = {}
+    node_sets, element_sets = _Sets("nset"), _Sets("elset")
+    for section in _sections(path):
+        try:
+            if section.keyword == "NODE":
+                _add_nodes(section, nodes, node_sets)
+            elif section.keyword == "ELEMENT":
+                _add_elements(section, cells, element_sets)
+            elif section.keyword == "NSET":
+                node_sets.define(section)
+            elif section.keyword == "ELSET":
+                element_sets.define(section)
+            elif section.keyword in _GENERATORS or (section.keyword == "INSTANCE" and section.rows):
+                raise InputError(f"{section.place}: *{section.keyword} cannot be read; write out all nodes in place")
+        except (ValueError, KeyError, IndexError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"{section.place}: the lines below *{section.keyword} cannot be read: {error}") from error
+    return _assembled(path, nodes, cells, node_sets, element_sets)
+
+
+def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:
+    for row in section.rows:
+        point = (*(float(value or 0.0) for value in row[1:4]), 0.0, 0.0)[:3]
+        if nodes.setdefault(int(row[0]), point) != point:
+            raise InputError(
+                f"{section.place}: node {row[0]} is given twice at different places; files of several parts "
+                "must be written flat, without parts and assemblies"
+            )
+    if "NSET" in section.parameters:
+        sets.add(section.parameters["NSET"], [int(row[0]) for row in section.rows])
+
+
+def _add_elements(section: _Section, cells: dict[int, tuple[str, list[int]]], sets: _Sets) -> None:
+    kind = section.parameters["TYPE"].upper()
+    size = 2 if _STRAIGHT.match(kind) else 3 if _QUADRATIC.match(kind) else None
+    name = {2: "line", 3: "line3", None: kind}[size]
+    for row in section.rows:
+        corners = [int(value) for value in row[1:]][:size]  # beams may name one more node for their orientation
+        if size is not None and len(corners) < size:
+            raise InputError(f"{section.place}: element {row[0]} of type {kind} needs {size} nodes")
+        if size == 2 and len(row) > 3 and kind.startswith("B33"):  # meshio writes quadratic lines under this name
+            raise InputError(
+                f"{section.place}: element {row[0]} of type {kind} has 2 nodes; a quadratic line is a B32, and a node "
+                "for the orientation must be left out"
+            )
+        if int(row[0]) in cells:
+            raise InputError(f"{section.place}: element {row[0]} is given twice")
+        cells[int(row[0])] = name, corners
+    if "ELSET" in section.parameters:
+        sets.add(section.parameters["ELSET"], [int(row[0]) for row in section.rows])
+
+
+def _assembled(
+    path: Path,
+    nodes: dict[int, tuple[float, ...]],
+    cells: dict[int, tuple[str, list[int]]],
+    node_sets: _Sets,
+    element_sets: _Sets,
+) -> MeshFile:
+    points = np.array(list(nodes.values()), dtype=float).reshape(-1, 3)
+    place = {number: i for i, number in enumerate(nodes)}
+    blocks, order = [], []
+    for kind in dict.fromkeys(name for name, _ in cells.values()):
+        own = {number: corners for number, (name, corners) in cells.items() if name == kind}
+        order += list(own)
+        for number, corners in own.items():
+            if any(corner not in place for corner in corners):
+                raise InputError(f"{path}: element {number} has nodes that the file does not give: {corners}")
+        if kind in ("line", "line3"):
+            table = np.array([[place[corner] for corner in corners] for corners in own.values()])
+            blocks.append((kind, _middle_last(table, points) if kind == "line3" else table))
+        else:
+            blocks.append((kind, np.empty((len(own), 0), dtype=np.int64)))
+    cell_place = {number: i for i, number in enumerate(order)}
+    return MeshFile(points, tuple(blocks), element_sets.placed(cell_place), node_sets.placed(place))
+
+
+def _middle_last(table: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Order the nodes of quadratic cells (m, 3): ends, middle; the middle is opposite the longest side.
+
+    Abaqus, CalculiX and Gmsh write the middle second, meshio writes it last.
+    """
+    corner = points[table]
+    opposite = [np.linalg.norm(corner[:, i - 2] - corner[:, i - 1], axis=1) for i in range(3)]
+    middle = np.argmax(opposite, axis=0)
+    order = np.array([[1, 2, 0], [0, 2, 1], [0, 1, 2]])[middle]
+    return np.take_along_axis(table, order, axis=1)
+
+
+def _sections(path: Path, depth: int = 0) -> Iterator[_Section]:
+    """Yield the keywords of a file and of those it includes."""
+    if depth > 10:
+        raise InputError(f"{path}: files include each other without end")
+    try:
+        lines = path.read_text(errors="replace").splitlines()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
+    section: _Section | None = None
+    number = 0
+    while number < len(lines):
+        line = lines[number].strip()
+        begun = number = number + 1
+        if not line or line.startswith("**"):
+            continue
+        if not line.startswith("*"):
+            if section is not None:
+                section.rows.append([value.strip() for value in line.rstrip(",").split(",")])
+            continue
+        while line.endswith(",") and number < len(lines):
+            line += lines[number].strip()
+            number += 1
+        if section is not None:
+            yield section
+        keyword, *words = line[1:].split(",")
+        pairs = (word.partition("=") for word in words)
+        parameters = {name.strip().upper(): value.strip().strip('"') for name, _, value in pairs}
+        section = _Section(keyword.strip().upper(), parameters, [], f"{path}, line {begun}")
+        if section.keyword == "INCLUDE":
+            yield from _sections(path.parent / parameters.get("INPUT", ""), depth + 1)
+            section = None
+    if section is not None:
+        yield section

@@ -1,0 +1,174 @@
+"""Beams along the lines of a mesh, and the joints where they share nodes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
+from beamfem.errors import InputError
+from beamfem.io.chains import Piece, chains
+from beamfem.model.beam import Beam, Point
+from beamfem.model.joints import Hinge, Joint, Rigid
+from beamfem.validation import count, vector
+
+if TYPE_CHECKING:
+    from beamfem.io.mesh import LineMesh
+
+Members = Literal["cells", "chains"]
+_STRAIGHT = 1e-9  # of a chord: a smaller rise of the middle node is round-off
+_COLLINEAR = 1e-9  # [rad]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Beams along the lines of a mesh and the joints between them, for a `Model`.
+
+    owner: number of the beam of each cell; places: points of the beams at each node, empty at the middle of a line3.
+    """
+
+    beams: tuple[Beam, ...]
+    joints: tuple[Joint, ...]
+    mesh: "LineMesh"
+    owner: np.ndarray
+    places: tuple[tuple[Point, ...], ...]
+
+    def members(self, name: str) -> tuple[Beam, ...]:
+        """Return the beams of a member set. Raises InputError for an unknown name."""
+        numbers = np.unique(self.owner[_named(self.mesh.member_sets, "member", name)])
+        return tuple(self.beams[number] for number in numbers)
+
+    def points(self, name: str) -> tuple[Point, ...]:
+        """Return a point at each node of a point set, on the first of the beams there. Raises InputError."""
+        nodes = _named(self.mesh.point_sets, "point", name)
+        if np.any(nodes < 0) or not all(self.places[node] for node in nodes):
+            raise InputError(f"point set {name!r} has a point at which no line ends")
+        return tuple(self.places[node][0] for node in nodes)
+
+    def at(self, x: float, y: float) -> Point:
+        """Return the point at the node at (x, y) [m], on the first of the beams there. Raises InputError."""
+        wanted = np.array(vector("point", (x, y)))
+        nodes = np.array([node for node, here in enumerate(self.places) if here])
+        distance = np.linalg.norm(self.mesh.nodes[nodes] - wanted, axis=1)
+        nearest = nodes[int(np.argmin(distance))]
+        if distance.min() > 1e-6 * float(np.max(np.ptp(self.mesh.nodes, axis=0))):
+            near = self.mesh.nodes[nearest]
+            raise InputError(f"no line ends at ({x:g}, {y:g}); the nearest end is at ({near[0]:g}, {near[1]:g})")
+        return self.places[nearest][0]
+
+
+def build_frame(
+    mesh: "LineMesh",
+    elements: Any,
+    element: Any,
+    section: Any,
+    material: Any,
+    members: Members,
+    hinges: str | Sequence[str],
+) -> Frame:
+    """Return the frame of a mesh; see `LineMesh.frame`."""
+    if members not in ("cells", "chains"):
+        raise InputError(f'members must be "cells" or "chains", got {members!r}')
+    hinged = np.zeros(len(mesh.nodes), dtype=bool)
+    for name in (hinges,) if isinstance(hinges, str) else hinges:
+        nodes = _named(mesh.point_sets, "point", name)
+        hinged[nodes[nodes >= 0]] = True
+    given = {
+        name: _each(mesh, name, value)
+        for name, value in (("elements", elements), ("element", element), ("section", section), ("material", material))
+    }
+    lines = [[(cell, False)] for cell in range(len(mesh.cells))] if members == "cells" else chains(mesh, hinged)
+    owner = np.empty(len(mesh.cells), dtype=np.int64)
+    places: list[list[Point]] = [[] for _ in mesh.nodes]
+    beams = []
+    for number, line in enumerate(lines):
+        first = line[0][0]
+        own = {name: values[first] for name, values in given.items()}
+        curve, ends = _axis([_curve(mesh, piece) for piece in line])
+        parts = count("elements", own.pop("elements"))
+        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **own)
+        beams.append(beam)
+        owner[[cell for cell, _ in line]] = number
+        for (cell, backwards), fraction in zip(line, ends, strict=False):
+            places[mesh.cells[cell, 1 if backwards else 0]].append(Point(beam, float(fraction)))
+        cell, backwards = line[-1]
+        places[mesh.cells[cell, 0 if backwards else 1]].append(Point(beam, 1.0))
+    joints = tuple(
+        (Hinge if hinged[node] else Rigid)(here[0], other) for node, here in enumerate(places) for other in here[1:]
+    )
+    return Frame(tuple(beams), joints, mesh, owner, tuple(tuple(here) for here in places))
+
+
+def _named(sets: Mapping[str, np.ndarray], kind: str, name: str) -> np.ndarray:
+    if name not in sets:
+        raise InputError(f"the mesh has no {kind} set {name!r}; its {kind} sets: {', '.join(sets) or 'none'}")
+    return sets[name]
+
+
+def _each(mesh: "LineMesh", what: str, value: Any) -> Sequence[Any]:
+    """Return the value of each cell, given for all or by member set. Raises InputError."""
+    if not isinstance(value, Mapping):
+        return [value] * len(mesh.cells)
+    source = np.full(len(mesh.cells), -1)
+    for number, name in enumerate(value):
+        cells = _named(mesh.member_sets, "member", name)
+        twice = cells[source[cells] >= 0]
+        if len(twice):
+            other = list(value)[source[twice[0]]]
+            raise InputError(f"{what}: line {twice[0]} (counted from 0) is in {other!r} and in {name!r}; give it once")
+        source[cells] = number
+    missing = np.flatnonzero(source < 0)
+    if len(missing):
+        x, y = mesh.nodes[mesh.cells[missing[0], :2]].mean(axis=0)
+        raise InputError(
+            f"{what}: {len(missing)} line(s) are in none of {list(value)}, such as the one at ({x:g}, {y:g})"
+        )
+    choices = list(value.values())
+    return [choices[number] for number in source]
+
+
+def _curve(mesh: "LineMesh", piece: Piece) -> Curve:
+    """Return the axis of a cell, from its end to its start if it is taken backwards."""
+    cell, backwards = piece
+    start, end, middle = mesh.cells[cell]
+    a, b = mesh.nodes[[end, start] if backwards else [start, end]]
+    first, last = tuple(a.tolist()), tuple(b.tolist())
+    if middle < 0:
+        return Line(first, last)
+    chord, inner = b - a, mesh.nodes[middle] - a
+    share = inner @ chord / (chord @ chord)
+    if abs(inner[0] * chord[1] - inner[1] * chord[0]) <= _STRAIGHT * (chord @ chord):
+        if not 0.25 < share < 0.75:
+            raise InputError(
+                f"line {cell} (counted from 0) turns back: its middle node stands at {share:g} of the way between its "
+                "ends and must be between 0.25 and 0.75"
+            )
+        return Line(first, last)
+    control = 2.0 * mesh.nodes[middle] - 0.5 * (a + b)
+    return BSpline(2, (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), (first, tuple(control.tolist()), last))
+
+
+def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
+    """Return one axis through curves that follow each other, and the fractions of its length where they end."""
+    reach = np.concatenate([[0.0], np.cumsum([curve.length for curve in curves])])
+    ends = reach / reach[-1]
+    if len(curves) == 1:
+        return curves[0], ends
+    straight = [curve for curve in curves if isinstance(curve, Line)]
+    if len(straight) < len(curves):
+        return Chain(tuple(curves)), ends
+    points = (straight[0].start, *(line.end for line in straight))
+    way = np.diff(np.array(points), axis=0)
+    whole = way.sum(axis=0)
+    off = np.abs(way[:, 0] * whole[1] - way[:, 1] * whole[0])
+    if np.all(off <= _COLLINEAR * np.linalg.norm(way, axis=1) * np.linalg.norm(whole)):
+        return Line(points[0], points[-1]), ends
+    return Polyline(points), ends
+
+
+def _divided(ends: np.ndarray, parts: int) -> tuple[float, ...]:
+    """Return the ends of elements where each piece takes so many."""
+    inner = [np.linspace(a, b, parts + 1)[:-1] for a, b in pairwise(ends)]
+    return (*np.concatenate(inner).tolist(), 1.0)

@@ -1,0 +1,169 @@
+"""Line meshes: members between nodes, named sets of both, from the files that mesh generators write."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from beamfem.element.element import Element
+from beamfem.errors import InputError
+from beamfem.io.abaqus import read_abaqus
+from beamfem.io.frame import Frame, Members, build_frame
+from beamfem.io.mesh_file import MeshFile, read_through_meshio
+from beamfem.material import Material
+
+# distances from the plane z = 0 and between nodes that count as none, as a share of the size of the mesh
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class LineMesh:
+    """Lines that share nodes, and named sets of them.
+
+    nodes (n, 2) [m]; cells (m, 3): nodes at start, end and, of a quadratic line3, in the middle (parameter 1/2), else
+    -1; member_sets: cells of each set by name; point_sets: nodes of each set by name.
+    """
+
+    nodes: np.ndarray
+    cells: np.ndarray
+    member_sets: Mapping[str, np.ndarray]
+    point_sets: Mapping[str, np.ndarray]
+
+    def frame(
+        self,
+        elements: int | Mapping[str, int],
+        element: Element | Mapping[str, Element],
+        section: Any,
+        material: Material | Mapping[str, Material] | None = None,
+        members: Members = "cells",
+        hinges: str | Sequence[str] = (),
+    ) -> Frame:
+        """Return beams along the lines and the joints between those that share a node.
+
+        elements: finite elements a cell; each of elements, element, section (see `Beam`) and material may be a mapping
+        from names of member sets, which together must name each cell once. members: "cells" makes each cell a beam,
+        "chains" joins cells that follow each other between branches, hinges, turns of 30 degrees or more and changes
+        of their sets into one beam. Members that share a node are joined rigidly; hinges: point sets where they turn
+        freely against each other. Raises InputError.
+        """
+        return build_frame(self, elements, element, section, material, members, hinges)
+
+
+def read_mesh(path: str | PathLike[str]) -> LineMesh:
+    """Return the lines of a mesh file, in its units.
+
+    Gmsh .msh (physical groups of curves and points are the sets, by number where they have no name), Abaqus and
+    CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
+    cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
+    Raises FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another kind, nodes
+    off the plane z = 0, lines of no length, lines given twice, and nodes at the same place.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileNotFoundError(f"there is no file {source}")
+    content = read_abaqus(source) if source.suffix.lower() == ".inp" else read_through_meshio(source)
+    try:
+        return _line_mesh(content)
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+
+
+def _line_mesh(content: MeshFile) -> LineMesh:
+    _refuse_other_cells(content)
+    tables, numbers = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    vertices: dict[int, int] = {}
+    counted = 0
+    for kind, table in content.blocks:
+        if kind == "vertex":
+            vertices.update(zip(range(counted, counted + len(table)), table[:, 0].tolist(), strict=True))
+        else:
+            middle = table[:, 2:] if kind == "line3" else np.full((len(table), 1), -1)
+            tables.append(np.hstack([table[:, :2], middle]).astype(np.int64))
+            numbers.append(np.arange(counted, counted + len(table)))
+        counted += len(table)
+    cells, number = np.concatenate(tables), np.concatenate(numbers)
+    if not len(cells):
+        raise InputError("there are no lines in it")
+    used = np.unique(cells[cells >= 0])
+    points = content.points[used]
+    place = np.full(len(content.points) + 1, -1)
+    place[used] = np.arange(len(used))
+    cells = place[cells]  # the last place keeps -1
+    size = float(np.max(np.ptp(points, axis=0)))
+    _check_nodes(points, size)
+    nodes = points[:, :2].copy()
+    _check_cells(nodes, cells, size)
+    member = np.full(counted, -1)
+    member[number] = np.arange(len(number))
+    member_sets, point_sets = {}, {}
+    for name, chosen in content.cell_sets.items():
+        lines = member[chosen]
+        if np.any(lines >= 0):
+            member_sets[name] = lines[lines >= 0]
+        own = np.array([vertices[i] for i in chosen.tolist() if i in vertices], dtype=np.int64)
+        if len(own):
+            point_sets[name] = np.unique(place[own])
+    for name, chosen in content.point_sets.items():
+        point_sets[name] = np.unique(place[chosen])
+    return LineMesh(nodes, cells, member_sets, point_sets)
+
+
+def _refuse_other_cells(content: MeshFile) -> None:
+    others: dict[str, int] = {}
+    for kind, table in content.blocks:
+        if kind not in ("line", "line3", "vertex") and len(table):
+            others[kind] = others.get(kind, 0) + len(table)
+    if others:
+        named = ", ".join(f"{count} {kind}" for kind, count in others.items())
+        raise InputError(
+            f"it holds cells that are no line or line3: {named}; save only the lines, of order 1 or 2 "
+            "(in Gmsh, put only curves and points into physical groups)"
+        )
+
+
+def _check_nodes(points: np.ndarray, size: float) -> None:
+    if not np.isfinite(points).all():
+        raise InputError("it has a node whose coordinates are not finite")
+    height = np.abs(points[:, 2:]).max(axis=1, initial=0.0)
+    if np.any(height > _SAME * size):
+        x, y, z = points[int(np.argmax(height))]
+        count = int((height > _SAME * size).sum())
+        raise InputError(f"beams lie in the plane z = 0, but {count} node(s) do not, such as ({x:g}, {y:g}, {z:g})")
+
+
+def _check_cells(nodes: np.ndarray, cells: np.ndarray, size: float) -> None:
+    chord = np.linalg.norm(nodes[cells[:, 1]] - nodes[cells[:, 0]], axis=1)
+    short = np.flatnonzero(chord <= _SAME * size)
+    if len(short):
+        raise InputError(
+            f"line {short[0]} (counted from 0) has no length, both ends are at {_at(nodes, cells[short[0], 0])}"
+        )
+    ends = np.unique(cells[:, :2])
+    pairs = cKDTree(nodes[ends]).query_pairs(_SAME * size, output_type="ndarray")
+    if len(pairs):
+        raise InputError(
+            f"two nodes are at {_at(nodes, ends[pairs[0, 0]])}, so that lines which meet there are not joined (and "
+            f"{len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name the node"
+        )
+    middle = cells[:, 2][cells[:, 2] >= 0]
+    crossed = np.intersect1d(middle, ends)
+    if len(crossed):
+        raise InputError(f"a line ends in the middle of a line3 at {_at(nodes, crossed[0])}; split the line3 there")
+    curved = cells[:, 2] >= 0
+    half = nodes[cells[:, :2]].mean(axis=1)
+    half[curved] = nodes[cells[curved, 2]]
+    key = np.column_stack([np.sort(cells[:, :2], axis=1), np.round(half / (1e3 * _SAME * size))])
+    _, first, inverse = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    again = np.flatnonzero(first[inverse.ravel()] != np.arange(len(cells)))
+    if len(again):
+        other = first[inverse.ravel()[again[0]]]
+        where = f"{_at(nodes, cells[other, 0])} to {_at(nodes, cells[other, 1])}"
+        raise InputError(f"lines {other} and {again[0]} (counted from 0) are the same line from {where}; remove one")
+
+
+def _at(nodes: np.ndarray, node: int) -> str:
+    return f"({nodes[node, 0]:g}, {nodes[node, 1]:g})"

@@ -1,0 +1,96 @@
+"""What mesh files hold, read through meshio: points, cells of any type and named sets of both."""
+
+import contextlib
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+
+_DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFile:
+    """Points (n, 2 or 3) [m], blocks (type, nodes (m, k)) of cells, sets of cells counted over all blocks, of points.
+
+    A line3 has its ends first and its middle last.
+    """
+
+    points: np.ndarray
+    blocks: tuple[tuple[str, np.ndarray], ...]
+    cell_sets: dict[str, np.ndarray]
+    point_sets: dict[str, np.ndarray]
+
+
+def read_through_meshio(path: Path) -> MeshFile:
+    """Return what a file holds. Raises InputError where meshio cannot read it."""
+    import meshio  # slow to import, and seldom needed
+
+    known = meshio.extension_to_filetypes
+    if path.suffix.lower() not in known:
+        raise InputError(f"{path}: mesh files end in {', '.join(sorted(known))}")
+    kind = "gmsh" if path.suffix.lower() == ".msh" else known[path.suffix.lower()][0]
+    try:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            mesh = meshio.read(path, file_format=kind)
+    except (Exception, SystemExit) as error:  # meshio raises anything for a bad file, and exits for some
+        raise InputError(f"{path} cannot be read as {kind}: {error or type(error).__name__}{_advice(path)}") from error
+    blocks = tuple((block.type, np.asarray(block.data)) for block in mesh.cells)
+    sizes = [len(nodes) for _, nodes in blocks]
+    cell_sets = _groups(mesh)
+    cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
+    point_sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in mesh.point_sets.items()}
+    for name, values in mesh.cell_data.items():
+        cell_sets |= _by_value(name, np.concatenate(values))
+    for name, values in mesh.point_data.items():
+        point_sets |= _by_value(name, np.asarray(values))
+    return MeshFile(np.asarray(mesh.points, dtype=float), blocks, cell_sets, point_sets)
+
+
+def _internal(name: str) -> bool:
+    return name.startswith("gmsh:")
+
+
+def _counted(parts: list[Any], sizes: list[int]) -> np.ndarray:
+    """Count the cells of a set, given block by block, over all blocks."""
+    first = np.concatenate([[0], np.cumsum(sizes)])
+    numbers = [first[i] + np.asarray(part, dtype=np.int64) for i, part in enumerate(parts) if part is not None]
+    return np.concatenate([np.empty(0, dtype=np.int64), *numbers])
+
+
+def _groups(mesh: Any) -> dict[str, np.ndarray]:
+    """Return the cells of the physical groups of a Gmsh file, by number where they have no name."""
+    if "gmsh:physical" not in mesh.cell_data:
+        return {}
+    tags = np.concatenate(mesh.cell_data["gmsh:physical"])
+    dimension = np.concatenate([np.full(len(block.data), _DIMENSION.get(block.type, 2)) for block in mesh.cells])
+    names = {(int(tag), int(size)): name for name, (tag, size) in mesh.field_data.items()}
+    result: dict[str, np.ndarray] = {}
+    for tag, size in sorted(set(zip(tags.tolist(), dimension.tolist(), strict=True))):
+        if tag != 0:
+            # a group of curves and one of points may have the same number
+            name = names.get((tag, size), str(tag))
+            own = np.flatnonzero((tags == tag) & (dimension == size))
+            result[name] = np.concatenate([result.get(name, own[:0]), own])
+    return result
+
+
+def _by_value(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the sets that whole numbers on cells or points make: `name` where not zero, `name=k` where k."""
+    if _internal(name) or values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
+        return {}
+    sets = {f"{name}={value}": np.flatnonzero(values == value) for value in np.unique(values)}
+    return {name: np.flatnonzero(values), **sets}
+
+
+def _advice(path: Path) -> str:
+    """Say what helps with an ASCII file of Gmsh, which meshio reads only in part."""
+    with path.open("rb") as file:
+        head = file.read(64).split()
+    if len(head) > 2 and head[0] == b"$MeshFormat" and head[2] == b"0":
+        return "; it is an ASCII file: save it as a binary one (gmsh -bin, or Mesh.Binary = 1)"
+    return ""

@@ -1,0 +1,18 @@
+"""Meshes whose elements grow along the beam."""
+
+import numpy as np
+
+from beamfem.validation import count, positive
+
+
+def graded(elements: int, ratio: float) -> tuple[float, ...]:
+    """Return the fractions from 0 to 1 (elements + 1,) where elements end whose lengths grow geometrically.
+
+    ratio: length of the last element over that of the first; below 1 they shrink. For `Beam(elements=...)`.
+    Raises InputError.
+    """
+    number = count("elements", elements)
+    growth = positive("ratio", ratio) ** (1.0 / max(number - 1, 1))
+    ends = np.cumsum(np.concatenate([[0.0], growth ** np.arange(number)]))
+    ends /= ends[-1]
+    return (*(float(end) for end in ends[:-1]), 1.0)

@@ -92,29 +92,42 @@ def test_a_layered_cantilever_bends_as_the_transformed_section(forces):
 )
 def test_pulled_above_its_neutral_axis_a_layered_beam_bends_down(element):
     """A pull P at the axis is P at the neutral axis and a moment -P BELOW."""
-    pull = 1e-2
+    pull = 1.0
     beam, solution = solve(LAYERS, [lambda b: bf.PointForce(b.end, (pull, 0.0))], element, 8)
     turn = -pull * BELOW / BENDING
     assert turn < 0.0
-    assert solution.rotation(beam.end)[-1] == pytest.approx(turn, rel=1e-6)
-    assert solution.displacement(beam.end)[-1] == pytest.approx([pull / AXIAL - turn * BELOW, 0.5 * turn], rel=1e-6)
+    assert solution.rotation(beam.end)[-1] == pytest.approx(turn, rel=3e-6)
+    assert solution.displacement(beam.end)[-1] == pytest.approx([pull / AXIAL - turn * BELOW, 0.5 * turn], rel=3e-6)
     forces = solution.section_forces(beam)
-    assert forces.normal[-1] == pytest.approx(pull, rel=1e-8)
-    assert np.abs(forces.moment[-1]).max() < 1e-8 * pull
+    assert forces.normal[-1] == pytest.approx(pull, rel=1e-5)
+    assert np.abs(forces.moment[-1]).max() < 1e-5 * pull
 
 
 def test_a_layered_body_is_the_layered_beam_in_the_slender_limit():
-    """Without Poisson's ratio continuum forces know no thickness coupling, and shear dies out with (h / L)^2."""
-    layers = bf.Layered(
-        (bf.Layer(replace(STEEL, poisson_ratio=0.0), 2e-4), bf.Layer(replace(ALUMINIUM, poisson_ratio=0.0), 6e-4)), 0.05
-    )
-    rigidity = layers.rigidity()
-    load = 2.0 * (rigidity.bending - rigidity.coupling**2 / rigidity.axial)
-    tips = []
-    for forces in (bf.ContinuumMechanics(), bf.Structural()):
-        beam, solution = solve(layers, [lambda b: bf.PointForce(b.end, (-0.5 * load, load))], bf.CRBF(5, forces), 6)
-        tips.append(np.append(solution.displacement(beam.end)[-1], solution.rotation(beam.end)[-1]))
-    assert np.abs(tips[0] - tips[1]).max() < 1e-6
+    """Without Poisson's ratio and shear factor they are the same at small strain.
+
+    At large strain the quadratic terms of Green's strain see the third moment of stiffness: first order in h / L.
+    """
+    steel, aluminium = replace(STEEL, poisson_ratio=0.0), replace(ALUMINIUM, poisson_ratio=0.0)
+
+    def difference(thickness, size):
+        layers = (bf.Layer(steel, 0.25 * thickness), bf.Layer(aluminium, 0.75 * thickness))
+        section = bf.Layered(layers, 0.05, shear_factor=1.0)
+        rigidity = section.rigidity()
+        load = size * (rigidity.bending - rigidity.coupling**2 / rigidity.axial)
+        tips = []
+        for forces in (bf.ContinuumMechanics(), bf.Structural()):
+            element = bf.CRBF(5, forces)
+            beam, solution = solve(
+                section, [lambda b, load=load: bf.PointForce(b.end, (-0.5 * load, load))], element, 6
+            )
+            tips.append(np.append(solution.displacement(beam.end)[-1], solution.rotation(beam.end)[-1]))
+        return np.abs(tips[0] - tips[1]).max() / np.abs(tips[1]).max()
+
+    assert difference(0.08, 1e-6) < 1e-6
+    thick, thin = difference(8e-3, 2.0), difference(8e-4, 2.0)
+    assert thin < 3e-4
+    assert thick / thin == pytest.approx(10.0, rel=0.05)
 
 
 ELEMENTS = [bf.CRBF(3), bf.ANCF(bf.Structural()), bf.ANCFCRBF(bf.ElasticLine()), bf.ShearRigid(False)]
@@ -186,13 +199,15 @@ def test_mass_first_moment_and_rotary_inertia_of_layers():
 def test_a_layered_beam_hangs_by_its_centre_of_mass(angle):
     """The moment of the weight about the clamp has the centre of mass as its lever, off the axis."""
     along = np.array([np.cos(angle), np.sin(angle)])
-    beam, solution = solve(LAYERS, [lambda b: bf.Gravity((0.0, -1e-6))], end=tuple(along))
+    beam, solution = solve(LAYERS, [lambda b: bf.Gravity((0.0, -1e-2))], end=tuple(along))
     inertia = LAYERS.inertia()
     offset = inertia.first_moment / inertia.mass
     assert offset < 0.0  # steel is at the bottom
     centre = 0.5 * along + offset * np.array([-along[1], along[0]])
-    weight = 1e-6 * inertia.mass
-    assert solution.reaction(beam.start)[-1] == pytest.approx([0.0, weight, weight * centre[0]], rel=1e-8, abs=1e-14)
+    weight = 1e-2 * inertia.mass
+    assert solution.reaction(beam.start)[-1] == pytest.approx(
+        [0.0, weight, weight * centre[0]], rel=2e-6, abs=2e-6 * weight
+    )
 
 
 def test_a_layered_beam_that_spins_has_the_momentum_of_its_mass():
@@ -228,9 +243,7 @@ BAD = {
     "stiffness of zero": (lambda: bf.Section.from_stiffness(1.0, 0.0, 1.0, 1.0, 1.0), "shear"),
     "stiffness for a body": (lambda: a_beam(bf.Section.from_stiffness(1, 1, 1, 1, 1), bf.ANCF()), "Structural"),
     "no material": (lambda: a_beam(SQUARE, material=None), "needs a material"),
-    "a function of nothing": (lambda: a_beam(lambda: SQUARE), "section"),
     "a function that gives a number": (lambda: a_beam(lambda s: 0.1), r"arc length 0 m must be a section"),
-    "a function that fails": (lambda: a_beam(lambda s: {}[s]), "arc length 0 m"),
     "a height below zero at the end": (
         lambda: a_beam(lambda s: bf.Rectangle(0.1, 0.1 - 0.2 * s)),
         r"arc length 0\.5 m.*height",

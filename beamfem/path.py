@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -77,7 +77,15 @@ class Path(Solution):
     limit_points: tuple[PathState, ...] = ()
     bifurcations: tuple[Bifurcation, ...] = ()
 
-    def __getitem__(self, row: int) -> PathState:
+    @overload
+    def __getitem__(self, row: int) -> PathState: ...
+    @overload
+    def __getitem__(self, row: slice) -> Solution: ...
+    def __getitem__(self, row: int | slice) -> PathState | Solution:
+        """Return the state of a row, or a Solution of the rows of a slice, without limit points and bifurcations."""
+        return self._state(row) if isinstance(row, int) else super().__getitem__(row)
+
+    def _state(self, row: int) -> PathState:
         return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
 
 

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from operator import index
 from os import PathLike
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -72,8 +73,34 @@ class Solution:
     def __len__(self) -> int:
         return len(self.at)
 
-    def __getitem__(self, row: int) -> State:
+    @overload
+    def __getitem__(self, row: int) -> State: ...
+    @overload
+    def __getitem__(self, row: slice) -> "Solution": ...
+    def __getitem__(self, row: int | slice) -> "State | Solution":
+        """Return the state of a row, or a Solution of the rows of a slice with the statistics of the whole.
+
+        With gradients, rotations of a slice start anew within half a turn. Raises InputError for an empty slice and
+        what is neither, IndexError beyond the last row.
+        """
+        if isinstance(row, slice):
+            return self._rows(row)
+        try:
+            number = index(row)
+        except TypeError:
+            raise InputError(f"a row of a solution is a number or a slice such as solution[2:5], got {row!r}") from None
+        return self._state(number)
+
+    def _state(self, row: int) -> State:
         return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+
+    def _rows(self, rows: slice) -> "Solution":
+        if len(self.at[rows]) == 0:
+            first, last, stride = ("" if value is None else value for value in (rows.start, rows.stop, rows.step))
+            text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
+            raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
+        parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
+        return Solution(self.model, self.static, *parts, self.statistics)
 
     @property
     def time(self) -> np.ndarray:
@@ -141,6 +168,7 @@ class Solution:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
         from beamfem.end_forces import with_ends
 
+        self.model.number_of(beam)  # refuses what is no beam of this model
         return with_ends(self, beam)
 
     @cached_property

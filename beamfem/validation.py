@@ -1,5 +1,6 @@
 """Checks of what a user gives; each returns the value in the type that the rest of the code expects."""
 
+import inspect
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -57,3 +58,17 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 def function_value(name: str, function: Callable[[float], float], at: float) -> float:
     """Return the finite value of a user's function, or raise InputError naming it and the argument."""
     return finite(f"{name}({at:g})", function(at))
+
+
+def function_of_one(name: str, function: Any, argument: str) -> None:
+    """Raise InputError where `function` cannot be called with one argument, the `argument`."""
+    if not callable(function):
+        raise InputError(f"{name} must be a function of {argument}, got {function!r}")
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # some compiled functions have none
+        return
+    try:
+        signature.bind(0.0)
+    except TypeError as error:
+        raise InputError(f"{name} must be a function of {argument} alone, but {error}: it takes {signature}") from None

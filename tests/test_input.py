@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.analysis import memory
 
 LINE = bf.Line((0, 0), (1, 0))
 SECTION = bf.Rectangle(0.01, 0.01)
@@ -18,6 +19,7 @@ def a_beam(**changes):
 
 
 BEAM = a_beam()
+MODEL = bf.Model([BEAM])
 BAD = {
     "line without length": (lambda: bf.Line((1, 1), (1, 1)), "two different points"),
     "line with nan": (lambda: bf.Line((0, math.nan), (1, 1)), "start"),
@@ -60,6 +62,22 @@ BAD = {
     "no load steps": (lambda: bf.solve_static(bf.Model([BEAM]), steps=0), "steps"),
     "start from a solution": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, start="a"), "start"),
     "velocity of numbers": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, velocity=(1, 0)), "velocity"),
+    "amplitude of nothing": (
+        lambda: bf.PointForce(BEAM.end, (0, 1), amplitude=lambda: 1.0),
+        "amplitude .* of time alone",
+    ),
+    "amplitude of two": (lambda: bf.Gravity((0, -9.81), amplitude=lambda t, x: t), "amplitude .* missing .* 'x'"),
+    "prescribed of nothing": (lambda: bf.Prescribed(BEAM.end, uy=lambda: 0.0), "uy .* of time alone"),
+    "section of two": (lambda: a_beam(section=lambda s, t: SECTION), "section .* of arc length alone"),
+    "section as a class": (lambda: a_beam(section=bf.Section), "section of a Beam must be a section"),
+    "integrator by name": (lambda: bf.simulate(MODEL, 1.0, 0.1, integrator="newmark"), "GeneralizedAlpha"),
+    "integrator as a class": (lambda: bf.simulate(MODEL, 1.0, 0.1, integrator=bf.GeneralizedAlpha), "GeneralizedAlpha"),
+    "integrator as a number": (lambda: bf.simulate(MODEL, 1.0, 0.1, 0.9), "integrator"),
+    "negative tolerance": (lambda: bf.Newton(tolerance=-1e-9), "tolerance must be greater"),
+    "negative residual tolerance": (lambda: bf.Newton(residual_tolerance=-1.0), "residual_tolerance"),
+    "no iterations": (lambda: bf.Newton(iterations=0), "iterations must be at least 1"),
+    "half an iteration": (lambda: bf.Newton(iterations=2.5), "iterations must be a whole"),
+    "stresses of words": (lambda: bf.Newton(independent_stresses="no"), "independent_stresses"),
     "save every half step": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, save_every=0.5), "save_every"),
 }
 
@@ -119,6 +137,85 @@ def test_a_start_of_another_model_is_refused():
     state = bf.simulate(other, 1e-3, 1e-3)[-1]
     with pytest.raises(bf.InputError, match="4 nodes of ANCF on beam 0"):
         bf.simulate(bf.Model([BEAM]), 1e-3, 1e-3, start=state)
+
+
+class Callable:
+    def __call__(self, time: float) -> float:
+        return time
+
+
+@pytest.mark.parametrize("function", [np.sin, math.sin, Callable(), lambda t, scale=2.0: t, lambda *t: 1.0, abs])
+def test_functions_of_one_argument_are_taken_as_they_are(function):
+    assert bf.PointForce(BEAM.end, (0, 1), amplitude=function).amplitude is function
+    assert bf.Prescribed(BEAM.end, uy=function).uy is function
+
+
+def test_more_states_than_memory_are_refused_with_the_size_and_a_way_out(monkeypatch):
+    with pytest.raises(bf.InputError, match=r"1e\+18 steps of 18 coordinates.*GiB, and this computer has .* GiB"):
+        bf.simulate(MODEL, 1e15, 1e-3)
+    monkeypatch.setattr(memory, "installed_memory", lambda: 2**30)
+    # 18 coordinates of 3 x 8 bytes and 64 bytes a step: 1.39 GiB for 3e6 of them, 0.784 GiB where every other is kept
+    with pytest.raises(bf.InputError, match=r"every one is kept, need 1\.39 GiB.*has 1 GiB; save_every=2 would fit"):
+        bf.simulate(MODEL, 3e6, 1.0)
+    memory.require_memory(MODEL.size, 3e6, 1.0, save_every=2)
+    with pytest.raises(bf.InputError, match=r"every 1000th is kept, .* take a larger step"):
+        bf.simulate(MODEL, 2e7, 1.0, save_every=1000)
+
+
+def test_memory_that_the_system_does_not_tell_refuses_nothing(monkeypatch):
+    def unknown(name):
+        raise ValueError(name)
+
+    assert memory.installed_memory() > 2**28
+    monkeypatch.setattr(memory.os, "sysconf", unknown)
+    assert memory.installed_memory() is None
+    memory.require_memory(18, 1e15, 1e-3, 1)
+
+
+def test_a_slice_of_a_solution_is_a_solution_of_these_rows():
+    whole = bf.simulate(bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0, 1))]), 1e-2, 1e-3)
+    for rows in (slice(2, 5), slice(None, None, -3), slice(-2, None), slice(0, 99)):
+        part = whole[rows]
+        assert isinstance(part, bf.Solution)
+        np.testing.assert_array_equal(part.time, whole.time[rows])
+        np.testing.assert_array_equal(part.position(BEAM.end), whole.position(BEAM.end)[rows])
+        np.testing.assert_array_equal(part.reaction(BEAM.start), whole.reaction(BEAM.start)[rows])
+        np.testing.assert_allclose(part.energy().strain, whole.energy().strain[rows], rtol=1e-9)
+    assert [state.at for state in whole] == whole.time.tolist()
+    assert whole[np.int64(-1)].at == whole.time[-1]
+    for rows in (slice(5, 5), slice(20, 30), slice(4, 2)):
+        with pytest.raises(bf.InputError, match=r"holds no row; this solution has the rows 0 to 10"):
+            whole[rows]
+    for row in ("last", 1.0, None, (0, 1), [0, 1]):
+        with pytest.raises(bf.InputError, match="a number or a slice"):
+            whole[row]
+    with pytest.raises(IndexError):
+        whole[11]
+
+
+def test_rows_and_slices_of_a_path():
+    model = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0, 1))])
+    path = bf.trace_equilibrium(model, points=5)
+    assert path[np.int64(-1)].load_factor == path[-1].load_factor == path.load_factor[4]
+    part = path[1:3]
+    assert (len(part), part.static) == (2, True)
+    np.testing.assert_array_equal(part.displacement(BEAM.end), path.displacement(BEAM.end)[1:3])
+
+
+@pytest.mark.parametrize("place", ["tip", (1.0, 0.0), BEAM, 1.0, None])
+def test_a_question_about_what_is_no_point_is_refused(place):
+    solution = bf.solve_static(bf.Model([BEAM], [bf.Clamp(BEAM.start)]))
+    for ask in (solution.position, solution.displacement, solution.rotation, solution.fields, solution.reaction):
+        with pytest.raises(bf.InputError, match=r"a point is asked for, such as beam\.end"):
+            ask(place)
+
+
+def test_section_forces_are_those_of_a_beam():
+    solution = bf.solve_static(bf.Model([BEAM], [bf.Clamp(BEAM.start)]))
+    with pytest.raises(bf.InputError, match="a beam is asked for"):
+        solution.section_forces(BEAM.end)
+    with pytest.raises(bf.UnknownPointError):
+        solution.section_forces(a_beam())
 
 
 def test_moments_of_a_rectangle():

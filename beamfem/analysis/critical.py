@@ -1,7 +1,6 @@
 """Find where on a path the tangent is singular."""
 
 import numpy as np
-from scipy.interpolate import krogh_interpolate
 
 from beamfem.analysis.lost_stiffness import Start
 from beamfem.analysis.primary_path import PathEndsError, PrimaryPath
@@ -44,6 +43,8 @@ def _share(path: PrimaryPath, start: Start, load_factor: float, number: int, cou
 
 def _interpolated(loads: list[float], shares: list[float]) -> float:
     """Return the load at which the share is 1, from the four samples nearest to it."""
+    from scipy.interpolate import krogh_interpolate  # slow to import
+
     near = np.argsort(np.abs(np.array(shares) - 1.0))[:4]
     return float(krogh_interpolate(np.array(shares)[near], np.array(loads)[near], 1.0))
 

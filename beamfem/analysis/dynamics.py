@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.analysis.equations import INERTIA, linearise
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.memory import require_memory
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.advance import advance
 from beamfem.model.model import Model
@@ -46,6 +47,9 @@ def simulate(
     count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
+    if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
+        raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {integrator!r}")
+    require_memory(model.size, duration, step, save_every)
     system = System(model, static=False)
     if system.unknowns.pattern is not None:
         raise InputError(

@@ -7,9 +7,11 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
+from beamfem.errors import InputError
 from beamfem.model.reference import stations
 from beamfem.model.system import System
 from beamfem.postprocess import axis, nodal_vectors
+from beamfem.validation import count, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 
@@ -49,12 +51,20 @@ class Newton:
     tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
     relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
     resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
+    Raises InputError.
     """
 
     tolerance: float = 1e-10
     residual_tolerance: float = 1e-9
     iterations: int = 15
     independent_stresses: bool = True
+
+    def __post_init__(self) -> None:
+        positive("tolerance", self.tolerance)
+        positive("residual_tolerance", self.residual_tolerance)
+        count("iterations", self.iterations)
+        if not isinstance(self.independent_stresses, bool):
+            raise InputError(f"independent_stresses must be True or False, got {self.independent_stresses!r}")
 
 
 def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:

@@ -12,7 +12,7 @@ from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite
+from beamfem.validation import count, finite, function_of_one
 
 Tapered = Callable[[float], CrossSection]
 
@@ -46,8 +46,10 @@ class Beam:
             raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
         if self.material is not None and not isinstance(self.material, Material):
             raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
-        if not isinstance(self.section, CrossSection) and not callable(self.section):
+        if isinstance(self.section, type) or not (isinstance(self.section, CrossSection) or callable(self.section)):
             raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
+        if not isinstance(self.section, CrossSection):
+            function_of_one("section", self.section, "arc length")
         for share in (0.0, 0.5, 1.0):
             section = self.section_at(share * self.curve.length)
             section.inertia(self.material)

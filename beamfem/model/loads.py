@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.validation import finite, function_value, vector
+from beamfem.validation import finite, function_of_one, function_value, vector
 
 Amplitude = Callable[[float], float] | None
 
@@ -31,8 +30,8 @@ def factor(load: Scaled, time: float, static: bool) -> float:
 
 
 def _check_amplitude(amplitude: Amplitude) -> None:
-    if amplitude is not None and not callable(amplitude):
-        raise InputError(f"amplitude must be a function of time, got {amplitude!r}")
+    if amplitude is not None:
+        function_of_one("amplitude", amplitude, "time")
 
 
 @dataclass(frozen=True)

@@ -123,13 +123,17 @@ class Model:
         return tuple(dict.fromkeys(beam.element for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
-        """Return the place of a beam among the beams. Raises UnknownPointError."""
+        """Return the place of a beam among the beams. Raises InputError, UnknownPointError."""
+        if not isinstance(beam, Beam):
+            raise InputError(f"a beam is asked for, one of the model's beams, got {beam!r}")
         if id(beam) not in self._numbers:
             raise UnknownPointError(f"the beam {beam!r} is not in this model")
         return self._numbers[id(beam)]
 
     def mesh_of(self, point: Point) -> BeamMesh:
-        """Return the mesh that a point lies on. Raises UnknownPointError."""
+        """Return the mesh that a point lies on. Raises InputError, UnknownPointError."""
+        if not isinstance(point, Point):
+            raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {point!r}")
         if id(point.beam) not in self._numbers:
             raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
         return self.meshes[self._numbers[id(point.beam)]]

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.validation import finite, vector
+from beamfem.validation import finite, function_of_one, vector
 
 Value = float | Callable[[float], float]
 
@@ -69,7 +69,9 @@ class Prescribed:
         if not self.held():
             raise InputError("Prescribed needs at least one of ux, uy and rotation")
         for name, value in self.held().items():
-            if not callable(value):
+            if callable(value):
+                function_of_one(name, value, "time")
+            else:
                 finite(name, value)
 
     def held(self) -> dict[str, Value]:

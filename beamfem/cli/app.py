@@ -1,0 +1,49 @@
+"""The commands of `beamfem`; what they need is imported when they run."""
+
+from typing import Annotated
+
+import typer
+
+from beamfem.cli import files, study
+from beamfem.cli.doctor import doctor
+from beamfem.cli.run import run
+
+app = typer.Typer(
+    name="beamfem",
+    help="Planar beams that bend far: run model files and studies, look at results.",
+    epilog="Exit codes: 0 all well, 1 a solve failed, 2 the input is wrong.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"beamfem {version('beamfem')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version and exit.", callback=_version, is_eager=True)
+    ] = False,
+) -> None:
+    pass
+
+
+app.command()(run)
+app.command(context_settings={"allow_interspersed_args": False, "allow_extra_args": True})(study.study)
+app.command()(files.info)
+app.command()(files.export)
+app.command()(files.plot)
+app.command()(doctor)
+
+
+def main() -> None:
+    """Run the command with the arguments of the process."""
+    app(prog_name="beamfem")

@@ -1,0 +1,27 @@
+"""Elements as a text: the name of a preset, with its order where it has one."""
+
+import re
+
+from beamfem.cli.modelfile.parts import ELEMENTS
+from beamfem.cli.modelfile.table import nearest
+from beamfem.element.element import CRBF, Element
+from beamfem.errors import InputError
+
+_TEXT = re.compile(r"(?P<name>\w+)(?:\((?P<order>\d+)\))?")
+
+
+def element_from_text(text: str) -> Element:
+    """Return the element of a text such as "ANCFCRBF" or "CRBF(4)". Raises InputError."""
+    found = _TEXT.fullmatch(text.strip())
+    name = found["name"] if found else text
+    if not found or name not in ELEMENTS:
+        raise InputError(f"there is no element {name!r}; {nearest(name, ELEMENTS)}")
+    if ELEMENTS[name] is CRBF:
+        if found["order"] is None:
+            raise InputError('CRBF needs its order, such as "CRBF(4)"')
+        return CRBF(int(found["order"]))
+    if found["order"] is not None:
+        raise InputError(f"{name} has no order, only CRBF has")
+    element = ELEMENTS[name]()
+    assert isinstance(element, Element)
+    return element

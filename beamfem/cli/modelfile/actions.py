@@ -1,0 +1,141 @@
+"""Beams of a model file, what holds and joins them and what acts on them."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from beamfem.cli.modelfile import parts
+from beamfem.cli.modelfile.parts import Kinds
+from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, nearest, shown
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
+from beamfem.model.joints import Hinge, Rigid
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.model import Model
+from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring, Support
+from beamfem.model.system import System
+
+SUPPORTS: Kinds = {
+    "clamp": Clamp,
+    "pin": Pin,
+    "roller": Roller,
+    "prescribed": Prescribed,
+    "spring": Spring,
+    "foundation": Foundation,
+}
+LOADS: Kinds = {"gravity": Gravity, "force": PointForce, "moment": PointMoment, "distributed": DistributedLoad}
+JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
+
+_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
+
+
+def beams(root: Table) -> dict[str, Beam]:
+    """Return the beams of a file by name. Raises ModelFileError."""
+    material, element = parts.materials(root), parts.elements(root)
+    section = parts.sections(root, material)
+    readers: dict[str, Reader] = {
+        "curve": parts.curve,
+        "element": element,
+        "section": section,
+        "material": material,
+    }
+    found = {name: build(table, Beam, readers) for name, table in root.named("beams").items()}
+    if not found:
+        raise root.error("a model needs at least one beam, a table headed [beams.NAME]")
+    for named in (material, element, section):
+        named.check_all()
+    return found
+
+
+class Places:
+    """Reads what means a beam of the file, or a point of one."""
+
+    def __init__(self, beams: Mapping[str, Beam]) -> None:
+        self.beams = beams
+
+    def beam(self, table: Table, key: str) -> Beam:
+        """Return the beam named at a key. Raises ModelFileError."""
+        name = table.text(key)
+        if name not in self.beams:
+            raise table.error(f"there is no beam {name!r}; {nearest(name, self.beams)}", key)
+        return self.beams[name]
+
+    def point(self, table: Table, key: str) -> Point:
+        """Return the point at a key: NAME.start, NAME.end or NAME.at(fraction). Raises ModelFileError."""
+        text = table.text(key)
+        found = _POINT.fullmatch(text.strip())
+        if not found:
+            raise table.error(f'must be a point such as "NAME.start", "NAME.end" or "NAME.at(0.5)", got "{text}"', key)
+        name = found["beam"]
+        if name not in self.beams:
+            raise table.error(f"there is no beam {name!r}; {nearest(name, self.beams)}", key)
+        if found["end"]:
+            return self.beams[name].start if found["end"] == "start" else self.beams[name].end
+        try:
+            share = float(found["share"])
+        except ValueError:
+            raise table.error(f"the fraction along the beam must be a number, got {found['share']!r}", key) from None
+        try:
+            return self.beams[name].at(share)
+        except InputError as error:
+            raise table.error(str(error), key) from None
+
+
+def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
+    """Return the model of a file; moving: for an analysis in time. Raises ModelFileError."""
+    places, function = Places(known), parts.functions(root)
+    function.check_all()
+    all_beams = list(known.values())
+
+    def value(table: Table, key: str) -> Any:
+        given = table.values[key]
+        if isinstance(given, bool) or not isinstance(given, int | float | str | dict):
+            raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
+        if isinstance(given, int | float):
+            return given
+        found = function(table, key)
+        if moving and not found.smooth:
+            raise table.error(
+                "a table of values has no acceleration at its points, so it cannot prescribe a motion; "
+                'take a function of kind "smooth-ramp" or "sine"',
+                key,
+            )
+        return found
+
+    readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
+    readers |= {"point": places.point, **dict.fromkeys(("ux", "uy", "rotation"), value)}
+
+    def items(key: str, kinds: Kinds, trial: Callable[[Any], Model]) -> list[Any]:
+        found = []
+        for table in root.tables(key):
+            found.append(build_kind(table, kinds, readers))
+            try:
+                trial(found[-1])
+            except InputError as error:
+                raise table.refused(error) from None
+        return found
+
+    supports = items("supports", SUPPORTS, lambda item: Model(all_beams, supports=[item]))
+    loads = items("loads", LOADS, lambda item: Model(all_beams, loads=[item]))
+    joints = items("joints", JOINTS, lambda item: Model(all_beams, joints=[item]))
+    whole = Model(all_beams, supports, loads, joints)
+    _require_compatible(root, whole, not moving)
+    return whole
+
+
+def _require_compatible(root: Table, model: Model, static: bool) -> None:
+    """Raise ModelFileError at the first support that holds what another one holds already."""
+
+    def check(supports: Sequence[Support]) -> None:
+        system = System(Model(model.beams, supports, joints=model.joints), static)
+        _ = system.held, system.inclined
+
+    try:
+        check(model.supports)
+    except InputError:
+        for number, table in enumerate(root.tables("supports"), 1):
+            try:
+                check(model.supports[:number])
+            except InputError as error:
+                raise table.error(str(error)) from None
+        raise

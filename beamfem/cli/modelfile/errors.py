@@ -1,0 +1,17 @@
+"""What is wrong in a model file, and where."""
+
+from pathlib import Path
+
+from beamfem.errors import InputError
+
+
+class ModelFileError(InputError):
+    """A mistake in a model file; the message begins with `file:line: key:`."""
+
+    def __init__(self, message: str, file: Path, line: int | None, key: str | None) -> None:
+        where = f"{file}:{line}" if line else str(file)
+        super().__init__(f"{where}: {key}: {message}" if key else f"{where}: {message}")
+        self.message = message
+        self.file = file
+        self.line = line
+        self.key = key

@@ -1,0 +1,120 @@
+"""Materials, sections, elements, curves and functions of a model file."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beamfem.cli.modelfile.functions import FUNCTIONS
+from beamfem.cli.modelfile.table import Table, build, build_kind, nearest, shown
+from beamfem.curves import Arc, BSpline, Chain, Line, Polyline
+from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
+from beamfem.material import Material
+from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
+
+Kinds = Mapping[str, Callable[..., Any]]
+
+
+def _continuum(plane_stress: bool = False) -> Forces:
+    return ContinuumMechanics(plane_stress)
+
+
+def _split() -> Forces:
+    return SplitContinuum()
+
+
+def _elastic_line() -> Forces:
+    return ElasticLine()
+
+
+def _structural() -> Forces:
+    return Structural()
+
+
+FORCES: Kinds = {
+    "continuum": _continuum,
+    "split-continuum": _split,
+    "elastic-line": _elastic_line,
+    "structural": _structural,
+}
+ELEMENTS: Kinds = {kind.__name__: kind for kind in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
+CURVES: Kinds = {"line": Line, "arc": Arc, "polyline": Polyline, "bspline": BSpline, "chain": Chain}
+SECTIONS: Kinds = {
+    "rectangle": Rectangle,
+    "circle": Circle,
+    "tube": Tube,
+    "moments": Section,
+    "stiffness": Section.from_stiffness,
+    "layered": Layered,
+}
+
+
+@dataclass(frozen=True)
+class Named:
+    """Parts that a file gives a name, to be used by it; each is made once."""
+
+    kind: str
+    tables: Mapping[str, Table]
+    made: dict[str, Any]
+    make: Callable[[Table], Any]
+    short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name alone will do
+
+    def __call__(self, table: Table, key: str) -> Any:
+        """Return the part at a key: a name, a table of its own, or a kind alone. Raises ModelFileError."""
+        value = table.values[key]
+        if isinstance(value, dict):
+            return self.make(table.table(key))
+        if not isinstance(value, str):
+            raise table.error(f"must be a name or a table, got {shown(value)}", key)
+        if value in self.tables:
+            return self.part(value)
+        if value in self.short:
+            return self.make(Table(table.source, (*table.path, key), {"kind": value}))
+        raise table.error(f"there is no {self.kind} {value!r}; {nearest(value, [*self.tables, *self.short])}", key)
+
+    def part(self, name: str) -> Any:
+        if name not in self.made:
+            self.made[name] = self.make(self.tables[name])
+        return self.made[name]
+
+    def check_all(self) -> None:
+        """Make every part, so that a mistake in one that is not used is found too."""
+        for name in self.tables:
+            self.part(name)
+
+
+def materials(root: Table) -> Named:
+    """Return the materials of a file."""
+    return Named("material", root.named("materials"), {}, lambda table: build(table, Material))
+
+
+def elements(root: Table) -> Named:
+    """Return the elements of a file; presets go without a name as well."""
+    forces = Named("kind of forces", {}, {}, lambda table: build_kind(table, FORCES, {}), tuple(FORCES))
+    readers = {"forces": forces}
+    short = tuple(name for name in ELEMENTS if name != "CRBF")
+    make = lambda table: build_kind(table, ELEMENTS, readers)  # noqa: E731
+    return Named("element", root.named("elements"), {}, make, short)
+
+
+def sections(root: Table, material: Named) -> Named:
+    """Return the sections of a file; layers use its materials."""
+
+    def layers(table: Table, key: str) -> list[Layer]:
+        return [build(layer, Layer, {"material": material}) for layer in table.tables(key)]
+
+    return Named("section", root.named("sections"), {}, lambda table: build_kind(table, SECTIONS, {"layers": layers}))
+
+
+def functions(root: Table) -> Named:
+    """Return the functions of a file."""
+    return Named("function", root.named("functions"), {}, lambda table: build_kind(table, FUNCTIONS, {}))
+
+
+def curve(table: Table, key: str) -> Any:
+    """Return the curve at a key. Raises ModelFileError."""
+
+    def parts(chain: Table, name: str) -> list[Any]:
+        return [build_kind(part, CURVES, {"curves": parts}) for part in chain.tables(name)]
+
+    return build_kind(table.table(key), CURVES, {"curves": parts})

@@ -1,0 +1,82 @@
+"""Read a model file."""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from beamfem.cli.modelfile import actions
+from beamfem.cli.modelfile.analyses import Analysis, Found, analysis
+from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.lines import key_lines
+from beamfem.cli.modelfile.outputs import Output, outputs
+from beamfem.cli.modelfile.table import Source, Table
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam
+from beamfem.model.model import Model
+
+_KEYS = (
+    "title",
+    "materials",
+    "sections",
+    "elements",
+    "functions",
+    "beams",
+    "supports",
+    "joints",
+    "loads",
+    "analysis",
+    "outputs",
+)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a model file describes: the model with its beams by name, the analysis and what to print."""
+
+    title: str
+    beams: dict[str, Beam]
+    model: Model
+    kind: str
+    analysis: Analysis
+    outputs: tuple[Output, ...]
+    file: Path
+
+    def solve(self) -> Found:
+        """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
+        try:
+            return self.analysis.run(self.model)
+        except ModelFileError:
+            raise
+        except InputError as error:
+            raise ModelFileError(str(error), self.file, None, None) from error
+
+
+def read_model_file(path: str | PathLike[str]) -> Job:
+    """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key."""
+    file = Path(path)
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ModelFileError("there is no such file", file, None, None) from None
+    except IsADirectoryError:
+        raise ModelFileError("this is a folder, not a model file", file, None, None) from None
+    except UnicodeDecodeError:
+        raise ModelFileError("this is not a text in UTF-8, as TOML files are", file, None, None) from None
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        message = str(error)
+        place = re.search(r"\(at line (\d+), column \d+\)", message)
+        line = int(place[1]) if place else text.count("\n") + 1
+        raise ModelFileError(f"not valid TOML: {message}", file, line, None) from None
+    root = Table(Source(file, key_lines(text)), (), values)
+    root.require_known(_KEYS)
+    title = root.text("title") if "title" in values else file.stem
+    beams = actions.beams(root)
+    places = actions.Places(beams)
+    chosen = analysis(root, places)
+    model = actions.model(root, beams, chosen.moving)
+    kind = values.get("analysis", {}).get("kind", "static")
+    return Job(title, beams, model, kind, chosen, tuple(outputs(root, places, model, chosen)), file)

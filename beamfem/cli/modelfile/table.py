@@ -1,0 +1,166 @@
+"""Tables of a model file: their keys checked one by one and handed to what is made of them."""
+
+import difflib
+import inspect
+import re
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.lines import Path as KeyPath
+from beamfem.errors import InputError
+
+Reader = Callable[["Table", str], Any]  # takes a table and one of its keys
+
+
+@dataclass(frozen=True)
+class Source:
+    """The file that is read and the line of each of its keys."""
+
+    file: Path
+    lines: Mapping[KeyPath, int]
+
+    def error(self, path: KeyPath, message: str) -> ModelFileError:
+        """Return the error of a key; of one that is not there, with the line of what it should be in."""
+        known = path
+        while known and known not in self.lines:
+            known = known[:-1]
+        return ModelFileError(message, self.file, self.lines.get(known), _written(path) or None)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with its place in the file."""
+
+    source: Source
+    path: KeyPath
+    values: Mapping[str, Any]
+
+    def error(self, message: str, key: str | None = None) -> ModelFileError:
+        """Return the error of the table, or of one of its keys."""
+        return self.source.error(self.path if key is None else (*self.path, key), message)
+
+    def refused(self, error: InputError) -> ModelFileError:
+        """Return an error of the library as one of the key that it names first, or of the table."""
+        if isinstance(error, ModelFileError):
+            return error
+        named = {key: re.search(rf"\b{re.escape(key)}\b", str(error)) for key in self.values}
+        places = {key: match.start() for key, match in named.items() if match}
+        return self.error(str(error), min(places, key=lambda key: places[key]) if places else None)
+
+    def table(self, key: str) -> "Table":
+        """Return the table at a key. Raises ModelFileError for any other value."""
+        return self.sub(self.values[key], key)
+
+    def sub(self, value: Any, *path: str | int) -> "Table":
+        """Return a value below this table as a table of its own. Raises ModelFileError where it is none."""
+        if not isinstance(value, dict):
+            raise self.source.error((*self.path, *path), f"must be a table, got {shown(value)}")
+        return Table(self.source, (*self.path, *path), value)
+
+    def tables(self, key: str) -> list["Table"]:
+        """Return the array of tables at a key, empty where there is none. Raises ModelFileError."""
+        values = self.values.get(key, [])
+        if not isinstance(values, list):
+            raise self.error(f"must be an array of tables, each headed [[{key}]], got {shown(values)}", key)
+        return [self.sub(value, key, i) for i, value in enumerate(values)]
+
+    def named(self, key: str) -> dict[str, "Table"]:
+        """Return the tables [key.name] by name. Raises ModelFileError."""
+        if key not in self.values:
+            return {}
+        found = self.table(key)
+        return {name: found.table(name) for name in found.values}
+
+    def text(self, key: str) -> str:
+        """Return the text at a key. Raises ModelFileError for any other value."""
+        value = self.values[key]
+        if not isinstance(value, str):
+            raise self.error(f"must be a text, got {shown(value)}", key)
+        return value
+
+    def require_known(self, names: Iterable[str]) -> None:
+        """Raise ModelFileError for the first key that is none of these names."""
+        names = list(names)
+        for key in self.values:
+            if key not in names:
+                raise self.error(f"unknown key; {nearest(key, names)}", key)
+
+
+def build(table: Table, make: Callable[..., Any], readers: Mapping[str, Reader] | None = None) -> Any:
+    """Return what `make` makes of a table: its parameters are the keys, `kind` aside.
+
+    readers: how to read the values of some keys; the others are taken as they are. Raises ModelFileError.
+    """
+    parameters = inspect.signature(make).parameters
+    hints = typing.get_type_hints(make)
+    table.require_known([*(["kind"] if "kind" in table.values else []), *parameters])
+    arguments = {}
+    for name, parameter in parameters.items():
+        if name not in table.values:
+            if parameter.default is parameter.empty:
+                raise table.error(f"the key {name} is missing; needed are {_needed(parameters)}")
+        elif readers and name in readers:
+            arguments[name] = readers[name](table, name)
+        else:
+            arguments[name] = _plain(table, name, hints.get(name))
+    try:
+        return make(**arguments)
+    except InputError as error:
+        raise table.refused(error) from None
+
+
+def build_kind(table: Table, kinds: Mapping[str, Callable[..., Any]], readers: Mapping[str, Reader]) -> Any:
+    """Return what a table with a `kind` describes. Raises ModelFileError."""
+    if "kind" not in table.values:
+        raise table.error(f"the key kind is missing; it is one of {', '.join(kinds)}")
+    kind = table.text("kind")
+    if kind not in kinds:
+        raise table.error(f"there is no kind {kind!r}; {nearest(kind, kinds)}", "kind")
+    return build(table, kinds[kind], readers)
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return what a word could have meant."""
+    known = list(known)
+    close = difflib.get_close_matches(word.lower(), [name.lower() for name in known], 1, 0.6)
+    meant = [name for name in known if close and name.lower() == close[0]]
+    listed = ", ".join(known) if known else "none"
+    return f"did you mean {meant[0]}? Known are {listed}" if meant else f"known are {listed}"
+
+
+def shown(value: Any) -> str:
+    """Return a value as a reader of the file knows it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'the text "{value}"'
+    if isinstance(value, dict):
+        return "a table"
+    return f"the array {value}" if isinstance(value, list) else str(value)
+
+
+def _plain(table: Table, key: str, hint: Any) -> Any:
+    """Return a value as it is. Raises ModelFileError for true and false where they make no sense, and the reverse."""
+    value = table.values[key]
+    if hint in (float, int, float | None) and isinstance(value, bool | dict | list | str):
+        raise table.error(f"must be a number, got {shown(value)}", key)
+    if isinstance(value, bool) != (hint is bool):
+        wanted = "true or false" if hint is bool else "a number, an array or a text"
+        raise table.error(f"must be {wanted}, got {shown(value)}", key)
+    return value
+
+
+def _needed(parameters: Mapping[str, inspect.Parameter]) -> str:
+    return ", ".join(name for name, parameter in parameters.items() if parameter.default is parameter.empty)
+
+
+def _written(path: KeyPath) -> str:
+    """Return a path as text; items of an array are counted from 1."""
+    text = ""
+    for part in path:
+        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if text else part
+    return text

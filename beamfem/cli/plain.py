@@ -1,0 +1,50 @@
+"""Any result as what JSON knows."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from beamfem.solution import Solution
+
+
+def plain(value: Any) -> Any:
+    """Return a value in mappings, lists, texts, numbers and None; what is not finite becomes None.
+
+    Of a solution its statistics and its ends, of anything unknown its text.
+    """
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, np.generic | np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    if isinstance(value, Solution):
+        return summary(value)
+    if isinstance(value, Mapping):
+        return {_key(key): plain(item) for key, item in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Iterable) and not isinstance(value, bytes):
+        return [plain(item) for item in value]
+    return str(value)
+
+
+def summary(solution: Solution) -> dict[str, Any]:
+    """Return how many states a solution has, from where to where, and how it was solved."""
+    axis = "load_factor" if solution.static else "time"
+    return {
+        "kind": "static" if solution.static else "motion",
+        "coordinates": solution.model.size,
+        "states": len(solution),
+        axis: [float(solution.at[0]), float(solution.at[-1])],
+        "statistics": plain(solution.statistics),
+    }
+
+
+def _key(key: Any) -> str:
+    return ", ".join(str(part) for part in key) if isinstance(key, tuple) else str(key)

@@ -1,0 +1,76 @@
+"""What commands print: results on stdout, in words or as JSON, mistakes without a traceback, an exit code."""
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Annotated, Any
+
+import typer
+
+FAILED, BAD_INPUT = 1, 2
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, mistakes too.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but mistakes.")]
+
+
+@contextmanager
+def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
+    """Turn the errors of the library into a message and an exit code; quiet: show no progress either."""
+    from contextlib import nullcontext
+
+    from beamfem.errors import BeamfemError, ConvergenceError
+    from beamfem.progress import no_progress
+
+    try:
+        with no_progress() if quiet else nullcontext():
+            yield
+    except BrokenPipeError:  # whoever reads has read enough; typer ends the process quietly
+        raise
+    except ConvergenceError as error:
+        _fail(error, FAILED, as_json)
+    except (BeamfemError, OSError) as error:
+        _fail(error, BAD_INPUT, as_json)
+
+
+def _fail(error: Exception, code: int, as_json: bool) -> None:
+    notes = list(getattr(error, "__notes__", ()))
+    if as_json:
+        known = {name: getattr(error, name) for name in ("message", "file", "line", "key") if hasattr(error, name)}
+        fields = {"type": type(error).__name__, "message": str(error)} | known
+        print_json({"error": fields | ({"notes": notes} if notes else {}), "exit_code": code})
+    else:
+        print("\n".join([f"error: {error}", *notes]), file=sys.stderr)
+    raise typer.Exit(code) from None
+
+
+def print_json(value: Any) -> None:
+    """Print a value as one JSON document; what is not finite becomes null."""
+    from beamfem.cli.plain import plain
+
+    print(json.dumps(plain(value), indent=2, allow_nan=False))
+
+
+def print_table(title: str, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print rows that share their keys as a table; lists in them become lines of it, side by side."""
+    lines = [line for row in rows for line in _lines(row)]
+    if not lines:
+        return
+    texts = [{name: _text(value) for name, value in line.items()} for line in lines]
+    widths = {name: max(len(name), *(len(line[name]) for line in texts)) for name in texts[0]}
+    print(f"\n{title}" if title else "")
+    print("  ".join(name.rjust(width) for name, width in widths.items()))
+    for line in texts:
+        print("  ".join(line[name].rjust(width) for name, width in widths.items()))
+
+
+def _lines(row: Mapping[str, Any]) -> list[dict[str, Any]]:
+    lists = {name: value for name, value in row.items() if isinstance(value, list)}
+    if not lists:
+        return [dict(row)]
+    longest = max(len(value) for value in lists.values())
+    return [{name: value[i] if name in lists else value for name, value in row.items()} for i in range(longest)]
+
+
+def _text(value: Any) -> str:
+    return f"{value:.8g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,155 @@
+"""`beamfem study`: list the studies of a folder and run one."""
+
+import ast
+import importlib.util
+import inspect
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any
+
+import typer
+
+from beamfem.cli.report import AsJson, Quiet, print_json, reported
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as a file: its name and what its docstring says first."""
+
+    name: str
+    title: str
+    file: Path
+
+
+def study(
+    context: typer.Context,
+    name: Annotated[str | None, typer.Argument(help="The study to run; without it they are listed.")] = None,
+    folder: Annotated[Path, typer.Option(help="Where the studies are; stands before NAME.")] = Path("studies"),
+    as_json: AsJson = False,
+    quiet: Quiet = False,
+) -> None:
+    """List the studies, or run one with its own options: `beamfem study NAME --help` shows them."""
+    with reported(as_json, quiet):
+        studies = find_studies(folder)
+        if name is None:
+            if as_json:
+                print_json([{"name": item.name, "title": item.title, "file": item.file} for item in studies])
+            else:
+                width = max(len(item.name) for item in studies)
+                print("\n".join(f"{item.name:{width}s}  {item.title}" for item in studies))
+            return
+        main = _main_of(_named(name, studies, folder))
+        _run(name, main, context.args, as_json, quiet)
+
+
+def find_studies(folder: Path) -> list[Study]:
+    """Return the files of a folder that have a function main. Raises InputError where there are none."""
+    from beamfem.errors import InputError
+
+    right = "give the folder of the studies with --folder, or start beamfem where it is; they come with the sources"
+    if not folder.is_dir():
+        raise InputError(f"there is no folder {folder} here ({Path.cwd()}): {right}")
+    found = []
+    for file in sorted(folder.glob("*.py")):
+        try:
+            tree = ast.parse(file.read_bytes())
+        except SyntaxError:
+            continue
+        if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in tree.body):
+            title = (ast.get_docstring(tree) or "").strip().split("\n")[0]
+            found.append(Study(file.stem, title, file))
+    if not found:
+        raise InputError(f"no file in {folder} has a function main, which makes a study: {right}")
+    return found
+
+
+def _named(name: str, studies: list[Study], folder: Path) -> Study:
+    from beamfem.cli.modelfile.table import nearest
+    from beamfem.errors import InputError
+
+    for item in studies:
+        if item.name == name.removesuffix(".py"):
+            return item
+    raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, [item.name for item in studies])}")
+
+
+def _main_of(item: Study) -> Any:
+    """Import a study with its folder on the path, for studies share code, and return its main."""
+    folder = str(item.file.parent.resolve())
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    return _imported(item).main
+
+
+def _imported(item: Study) -> ModuleType:
+    known = sys.modules.get(item.name)
+    if known is not None and Path(getattr(known, "__file__", None) or "").resolve() == item.file.resolve():
+        return known
+    spec = importlib.util.spec_from_file_location(item.name, item.file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    # under its own name, so that its functions can be sent to other processes
+    sys.modules[item.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _run(name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool) -> None:
+    from beamfem.cli.options import command_of
+
+    def call(values: dict[str, Any]) -> None:
+        json_too, quiet_too = values.pop("_json", False) or as_json, values.pop("_quiet", False) or quiet
+        with reported(json_too, quiet_too):
+            _show(_called(main, values, json_too or quiet_too), json_too, quiet_too)
+
+    extra = {
+        word: inspect.Parameter(f"_{word}", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
+        for word, kind in (("json", AsJson), ("quiet", Quiet))
+    }
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command(context_settings={"help_option_names": ["-h", "--help"]})(command_of(main, call, extra))
+    app(arguments, prog_name=f"beamfem study {name}")
+
+
+def _called(main: Any, values: dict[str, Any], silent: bool) -> Any:
+    """Return what a study returns; silent: what it prints does not go to stdout but to stderr."""
+    from contextlib import redirect_stdout
+
+    if not silent:
+        return main(**values)
+    with redirect_stdout(sys.stderr):
+        return main(**values)
+
+
+def _show(result: Any, as_json: bool, quiet: bool) -> None:
+    """Print what a study returned."""
+    from dataclasses import is_dataclass
+
+    from beamfem.cli.plain import plain
+
+    if as_json:
+        print_json({"result": result})
+    elif result is None or quiet:
+        return
+    elif isinstance(result, str) or (
+        type(result).__str__ is not object.__str__ and not isinstance(result, dict | list)
+    ):
+        print(result)
+    elif is_dataclass(result) or isinstance(result, dict):
+        for key, value in plain(result).items():
+            print(f"{key}: {_line(value)}")
+    else:
+        for value in plain(result):
+            print(_line(value))
+
+
+def _line(value: Any) -> str:
+    """Return a value in one line."""
+    if isinstance(value, float):
+        return f"{value:.8g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_line(item)}" for key, item in value.items())
+    return " ".join(_line(item) for item in value) if isinstance(value, list) else str(value)

@@ -1,0 +1,41 @@
+"""Files that a command is asked to write, refused before the work rather than after."""
+
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from beamfem.errors import InputError
+
+_NEEDED = {"out": ("h5py", "store"), "plot": ("matplotlib", "plot"), "vtk": ("vtkmodules", "")}
+_SUFFIXES = {"out": (".h5", ".hdf5"), "plot": (".png", ".svg", ".pdf"), "vtk": (".pvd", ".vtkhdf")}
+
+
+def require_target(option: str, path: Path | None) -> None:
+    """Raise InputError where a file of this kind cannot be written: suffix, a folder in its place, a missing package.
+
+    option: "out", "plot" or "vtk".
+    """
+    if path is None:
+        return
+    suffixes = _SUFFIXES[option]
+    if path.suffix.lower() not in suffixes:
+        right = f"{path.with_suffix(suffixes[0])} would be right" if path.name else ""
+        raise InputError(f"{path} must end in {' or '.join(suffixes)}; {right}")
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; give the name of a file")
+    if not writable(path.parent):
+        raise InputError(f"{path} cannot be written: {path.parent} takes no files")
+    package, extra = _NEEDED[option]
+    if find_spec(package) is None:
+        raise InputError(f'writing {path} needs {package}: pip install "beamfem[{extra}]"')
+
+
+def writable(folder: Path) -> bool:
+    """Tell whether a file can be made in a folder, or in the nearest one above that exists."""
+    while not folder.exists():
+        folder = folder.parent
+    try:
+        with tempfile.NamedTemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False

@@ -1,0 +1,302 @@
+"""The command `beamfem`: what it prints, the files it writes, its exit codes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import beamfem as bf
+from beamfem.cli import doctor, options
+from beamfem.cli.app import app
+from beamfem.cli.plain import plain
+
+ROOT = Path(__file__).parent.parent
+CANTILEVER = ROOT / "examples" / "cantilever.toml"
+TIP = 0.71385896416  # Reissner beam, P L^2 / (E I) = 5, k_s = 5/6, L / h = 100
+
+STUDY = '''"""A study of nothing.
+
+Second paragraph.
+"""
+from helper import twice
+import beamfem as bf
+
+def main(elements: int, length: float = 1.5, name: str = "beam", fine: bool = False, meshes: tuple[int, ...] = (1, 2),
+         element: bf.Element = bf.ANCF(), section: bf.Section | None = None, json: int = 3):
+    """Return what was given.
+
+    elements: how many; length [m]: of the beam; meshes: numbers of elements.
+    """
+    print("working")
+    if length < 0:
+        raise bf.InputError("length must be positive")
+    if length > 100:
+        raise bf.ConvergenceError("no equilibrium")
+    return {"elements": twice(elements), "length": length, "name": name, "fine": fine, "meshes": meshes,
+            "element": element.name, "section": section, "json": json}
+'''
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    path = tmp_path_factory.mktemp("run") / "new" / "results.h5"
+    done = invoke(
+        "run", CANTILEVER, "--out", path, "--plot", path.with_suffix(".png"), "--vtk", path.with_suffix(".pvd")
+    )
+    assert done.exit_code == 0, done.output
+    return path, done.stdout
+
+
+@pytest.fixture
+def studies(tmp_path, monkeypatch):
+    folder = tmp_path / "studies"
+    folder.mkdir()
+    (folder / "nothing.py").write_text(STUDY)
+    (folder / "helper.py").write_text('"""No study."""\ndef twice(x):\n    return 2 * x\n')
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    yield folder
+    for name in ("nothing", "helper"):
+        sys.modules.pop(name, None)
+
+
+def test_run_prints_what_is_asked_for_and_writes_the_files(results):
+    path, printed = results
+    assert "Cantilever, P L^2 / (E I) = 5" in printed
+    row = printed.split("\ntip\n")[1].splitlines()[1].split()
+    assert float(row[2]) == pytest.approx(TIP, abs=5e-7)
+    assert f"wrote {path}" in printed
+    solution = bf.load(path)
+    tip = solution.displacement(solution.model.beams[0].end)[-1]
+    assert tip[1] == pytest.approx(TIP, abs=5e-7)
+    assert path.with_suffix(".png").stat().st_size > 5000
+    assert path.with_suffix(".pvd").read_text().count("<DataSet") == len(solution)
+
+
+def test_run_as_json_and_quiet(tmp_path):
+    done = invoke("run", CANTILEVER, "--json")
+    found = json.loads(done.stdout)
+    assert (done.exit_code, found["analysis"], found["load_factor"]) == (0, "static", [0.0, 1.0])
+    assert found["coordinates"] == 51
+    tip, clamp = found["outputs"]
+    assert tip["rows"] == [{"load_factor": 1.0, "ux": pytest.approx(-0.38764432833, abs=5e-7),
+                            "uy": pytest.approx(TIP, abs=5e-7), "rotation": tip["rows"][0]["rotation"]}]  # fmt: skip
+    force = 2e11 * 0.01**4 / 12 * 5
+    lever = 1.0 + tip["rows"][0]["ux"]
+    assert clamp["rows"][0]["fy"] == pytest.approx(-force, rel=1e-9)
+    assert clamp["rows"][0]["m"] == pytest.approx(-force * lever, rel=1e-7)
+    quiet = invoke("run", CANTILEVER, "--quiet", "--out", tmp_path / "a.h5")
+    assert (quiet.exit_code, quiet.output) == (0, "")
+    assert (tmp_path / "a.h5").exists()
+
+
+def test_bad_input_ends_with_2_and_names_the_line(tmp_path):
+    file = tmp_path / "model.toml"
+    file.write_text(CANTILEVER.read_text().replace("height = 0.01", "height = -0.01"))
+    done = invoke("run", file)
+    assert (done.exit_code, done.stdout) == (2, "")
+    message = f"{file}:13: sections.square.height: height must be greater than zero, got -0.01"
+    assert done.stderr.strip() == f"error: {message}"
+    found = json.loads(invoke("run", file, "--json").stdout)
+    assert found["exit_code"] == 2
+    assert found["error"] == {
+        "type": "ModelFileError",
+        "message": "height must be greater than zero, got -0.01",
+        "file": str(file),
+        "line": 13,
+        "key": "sections.square.height",
+    }
+    assert invoke("run", tmp_path / "none.toml").exit_code == 2
+    assert invoke("run").exit_code == 2
+    assert invoke("walk").exit_code == 2
+
+
+def test_a_free_model_is_bad_input_of_its_file(tmp_path):
+    file = tmp_path / "model.toml"
+    file.write_text(CANTILEVER.read_text().replace('kind = "clamp"', 'kind = "pin"').replace('"fx", "fy", "m"', '"fx"'))
+    done = invoke("run", file)
+    assert done.exit_code == 2
+    assert done.stderr.startswith(f"error: {file}: beam 0 can move freely: it turns")
+
+
+@pytest.mark.parametrize(
+    ("option", "path", "words"),
+    [
+        ("--out", "a.txt", "must end in .h5"),
+        ("--vtk", "a.vtu", "a.pvd would be right"),
+        ("--plot", "a.xyz", "a.png would be right"),
+        ("--plot", "folder.png", "is a folder"),
+        ("--out", "file.txt/a.h5", "takes no files"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_the_solve(option, path, words, tmp_path, monkeypatch):
+    monkeypatch.setattr("beamfem.cli.modelfile.analyses.solve_static", lambda *_: pytest.fail("solved"))
+    (tmp_path / "folder.png").mkdir()
+    (tmp_path / "file.txt").touch()
+    done = invoke("run", CANTILEVER, option, tmp_path / path)
+    assert done.exit_code == 2
+    assert words in done.stderr
+
+
+def test_a_missing_package_is_named_with_the_pip_command(tmp_path, monkeypatch):
+    monkeypatch.setattr("beamfem.cli.targets.find_spec", lambda name: None)
+    done = invoke("run", CANTILEVER, "--out", tmp_path / "a.h5")
+    assert done.exit_code == 2
+    assert 'pip install "beamfem[store]"' in done.stderr
+
+
+def test_a_failed_solve_ends_with_1_and_keeps_the_states_found(tmp_path):
+    """A bar of St. Venant-Kirchhoff material carries at most E A / (3 sqrt 3) in compression, at a third of its square.
+
+    N = E A (s^2 - 1) s / 2 with nu = 0 and the stretch s; dN/ds = 0 at s^2 = 1/3.
+    """
+    text = CANTILEVER.read_text().replace("poisson_ratio = 0.3", "poisson_ratio = 0.0")
+    text = text.replace('{ kind = "CRBF", order = 4 }', '"ANCF"').replace("[0, 833.3333333333334]", "[-5e6, 0]")
+    file, out = tmp_path / "bar.toml", tmp_path / "bar.h5"
+    file.write_text(text)
+    done = invoke("run", file, "--out", out, "--json")
+    found = json.loads(done.stdout)
+    assert done.exit_code == found["exit_code"] == 1
+    assert "no equilibrium found beyond load factor 0.7698" in found["error"]["message"]
+    solution = bf.load(out)
+    reached = solution.load_factor[-1]
+    assert reached * 5e6 == pytest.approx(2e11 * 1e-4 / (3.0 * np.sqrt(3.0)), rel=1e-5)
+    note = f"The states found before, up to load factor {reached:g}, are saved in {out}."
+    assert found["error"]["notes"] == [note]
+    assert solution.position(solution.model.beams[0].end)[-1, 0] == pytest.approx(1.0 / np.sqrt(3.0), abs=3e-3)
+    assert invoke("run", file).stderr.startswith("error: no equilibrium")
+
+
+def test_info_export_and_plot_of_a_results_file(results, tmp_path):
+    path, _ = results
+    found = json.loads(invoke("info", path, "--json").stdout)
+    assert (found["kind"], found["states"], found["load_factor"]) == ("static", 2, [0.0, 1.0])
+    assert found["statistics"]["iterations"] > 1
+    assert found["model"]["supports"] == ["Clamp: point beam 0 at 0 (0, 0)"]
+    assert "4 x CRBF-4 (structural)" in found["model"]["beams"][0]
+    text = invoke("info", path).stdout
+    assert "load factor  0 to 1\n" in text
+    assert "PointForce: point beam 0 at 1 (1, 0), vector (0.0, 833.333" in text
+    assert "joints: none" in text
+    exported = invoke("export", path, tmp_path / "x" / "a.pvd")
+    assert (exported.exit_code, exported.stdout) == (0, f"wrote {tmp_path / 'x' / 'a.pvd'}\n")
+    assert (tmp_path / "x" / "a.pvd").read_text().count("<DataSet") == 2
+    assert json.loads(invoke("plot", path, tmp_path / "a.svg", "--json").stdout) == {
+        "written": [str(tmp_path / "a.svg")]
+    }
+    assert "<svg" in (tmp_path / "a.svg").read_text()
+    assert invoke("export", path, tmp_path / "a.vtk").exit_code == 2
+    for command in ("info", "export", "plot"):
+        more = [] if command == "info" else [tmp_path / ("b.pvd" if command == "export" else "b.png")]
+        done = invoke(command, tmp_path / "none.h5", *more)
+        assert done.exit_code == 2
+        assert "there is no file" in done.stderr
+        assert invoke(command, CANTILEVER, *more).exit_code == 2
+
+
+def test_studies_are_listed_and_run_with_their_parameters(studies):
+    listed = invoke("study")
+    assert listed.stdout.splitlines()[-1].split(maxsplit=1) == ["nothing", "A study of nothing."]
+    assert [item["name"] for item in json.loads(invoke("study", "--json").stdout)] == ["nothing"]
+    done = invoke("study", "nothing", "--elements", 3, "--fine", "--meshes", "4,8", "--element", "CRBF(3)")
+    assert done.exit_code == 0, done.output
+    for line in ("working", "elements: 6", "length: 1.5", "fine: True", "meshes: 4 8", "element: CRBF-3", "json: 3"):
+        assert line in done.stdout.splitlines()
+    found = json.loads(invoke("study", "--json", "nothing", "--elements", 3, "--json", 7).stdout)["result"]
+    assert (found["meshes"], found["element"], found["section"], found["json"]) == ([1, 2], "ANCF", None, 7)
+    assert invoke("study", "nothing", "--elements", 3, "--quiet").stdout == ""
+
+
+def test_help_of_a_study_comes_from_its_docstring(studies):
+    text = " ".join(invoke("study", "nothing", "--help").stdout.replace("│", " ").split())
+    for words in ("Return what was given.", "--elements", "how many", "of the beam (m)", "numbers of elements", "1,2"):
+        assert words in text
+    assert "--section" not in text
+
+
+def test_mistakes_with_studies(studies, tmp_path):
+    for arguments, words in (
+        (("nothin", "--elements", 1), "did you mean nothing"),
+        (("nothing",), "--elements"),
+        (("nothing", "--elements", "x"), "--elements"),
+        (("nothing", "--elements", 1, "--lenght", 2), "--length"),
+        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is no int"),
+        (("nothing", "--elements", 1, "--element", "CRFB(2)"), "did you mean CRBF"),
+        (("nothing", "--elements", 1, "--element", "CRBF"), "needs its order"),
+        (("nothing", "--elements", 1, "--length", "-1"), "length must be positive"),
+    ):
+        done = invoke("study", *arguments)
+        assert done.exit_code == 2, arguments
+        assert words in " ".join(done.stderr.replace("│", " ").split()), arguments
+    assert invoke("study", "nothing", "--elements", 1, "--length", 200).exit_code == 1
+    assert "--folder" in invoke("study", "--folder", tmp_path / "none").stderr
+    (tmp_path / "empty").mkdir()
+    done = invoke("study", "--folder", tmp_path / "empty")
+    assert done.exit_code == 2
+    assert "function main" in done.stderr
+
+
+def test_the_studies_of_the_repository_have_options(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    assert "cantilever_small" in invoke("study").stdout
+    done = invoke("study", "--json", "cantilever_small", "--meshes", "3,48")
+    found = json.loads(done.stdout)["result"]
+    assert found["ANCF-CRBF, True"][1] == pytest.approx(0.01819510330389, rel=2e-4)
+
+
+def test_a_parameter_that_no_text_can_describe_needs_a_default():
+    def main(section: bf.Section) -> None: ...
+
+    with pytest.raises(bf.InputError, match="section of main"):
+        options.command_of(main, print, {})
+
+
+def test_doctor(monkeypatch):
+    done = invoke("doctor", "--json")
+    found = json.loads(done.stdout)
+    assert done.exit_code == 0
+    assert found["versions"]["numpy"] == np.__version__
+    assert found["cache"]["writable"]
+    assert found["cache"]["compiled_kernels"] > 0
+    assert found["first_solve"]["deflection"] == pytest.approx(TIP, abs=5e-7)
+    assert found["first_solve"]["right"]
+    assert isinstance(found["rendering"]["possible"], bool)
+    assert {"extra": "store", "packages": ["h5py"], "missing": [], "install": 'pip install "beamfem[store]"'} in found[
+        "extras"
+    ]
+    monkeypatch.setattr(doctor, "_RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    monkeypatch.setattr(doctor, "_installed", lambda name: name != "h5py")
+    monkeypatch.setattr("beamfem.cli.targets.writable", lambda folder: False)
+    text = invoke("doctor").stdout
+    assert "VTK died of signal 11" in text
+    assert 'missing h5py: pip install "beamfem[store]"' in text
+    assert "cannot be written to" in text
+
+
+def test_plain_values():
+    assert plain({("a", 1): np.array([1.0, np.nan]), "b": (np.int64(2), 1 + 2j, Path("x"))}) == {
+        "a, 1": [1.0, None],
+        "b": [2, [1.0, 2.0], "x"],
+    }
+
+
+def test_a_real_process(tmp_path):
+    code = "import sys, beamfem.cli.app; print({name.split('.')[0] for name in sys.modules} & set(sys.argv[1:]))"
+    slow = ("matplotlib", "pyvista", "vtkmodules", "h5py", "meshio", "tomllib")
+    done = subprocess.run([sys.executable, "-c", code, *slow], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
+    command = [sys.executable, "-m", "beamfem", "run", "none.toml"]
+    wrong = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert wrong.stderr == "error: none.toml: there is no such file\n"
+    assert invoke("--version").stdout.startswith("beamfem 0.")
+    assert "Exit codes: 0 all well" in invoke("--help").stdout

@@ -1,9 +1,11 @@
 """A solution: states of a model over load factor or time, and what users ask of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import index
 from os import PathLike
+from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
@@ -228,16 +230,70 @@ class Solution:
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
     def to_vtk(self, path: str | PathLike[str]) -> None:
-        """Write the deformed body and the centreline for ParaView: `path` ends in .pvd."""
-        from beamfem.io.vtk import write_pvd
+        """Write deformed body and centreline for ParaView; `path` ends in .pvd or .vtkhdf. See `io.vtk.write_vtk`."""
+        from beamfem.io.vtk import write_vtk
 
-        write_pvd(self, path)
+        write_vtk(self, path)
+
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return what varies along a beam over the steps as an xarray.Dataset. See `io.table.to_xarray`."""
+        from beamfem.io.table import to_xarray
+
+        return to_xarray(self, beam)
+
+    def to_html(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write a page with a slider over the steps, one file that works offline. See `view.player.write_player`."""
+        from beamfem.view.player import write_player
+
+        return write_player(self, path, **options)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
-        """Draw deformed shapes with matplotlib, into a file where `path` is given; return the figure."""
-        from beamfem.view.plots import plot_shapes
+        """Draw deformed shapes, into a file where `path` is given; return the figure. See `view.drawing`."""
+        from beamfem.view.drawing import plot_shapes
 
         return plot_shapes(self, path, **options)
+
+    def plot_history(
+        self,
+        point: Point | Sequence[Point] | None = None,
+        quantity: str = "displacement",
+        path: str | PathLike[str] | None = None,
+    ) -> Any:
+        """Draw a quantity of points over the steps, or "energy"; return the figure. See `view.history.plot_history`."""
+        from beamfem.view.history import plot_history
+
+        return plot_history(self, point, quantity, path)
+
+    def plot_load_displacement(
+        self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+    ) -> Any:
+        """Draw the load factor over a displacement; return the figure. See `view.history.plot_load_displacement`."""
+        from beamfem.view.history import plot_load_displacement
+
+        return plot_load_displacement(self, point, quantity, path)
+
+    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write the moving body as GIF or MP4 by the suffix of `path`. See `view.animation.animate`."""
+        from beamfem.view.animation import animate
+
+        return animate(self, path, **options)
+
+    def show(self, **options: Any) -> Any:
+        """Open a window with the body and a slider over the steps. See `view.body.show`."""
+        from beamfem.view.body import show
+
+        return show(self, **options)
+
+    def picture(self, path: str | PathLike[str], **options: Any) -> Path:
+        """Write a picture of the solid body without a window. See `view.body.picture`."""
+        from beamfem.view.body import picture
+
+        return picture(self, path, **options)
+
+    def _repr_html_(self) -> str:
+        from beamfem.view.summary import solution_table
+
+        return solution_table(self)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write model and states into one HDF5 file."""

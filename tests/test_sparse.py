@@ -133,8 +133,8 @@ def test_modes_buckling_and_paths_agree(force_sparse):
     def run():
         frequencies = bf.solve_modes(model, 5).frequencies
         factors = bf.solve_buckling(model, 2).load_factors
-        path = bf.trace_equilibrium(model, 1.2 * factors[0])
-        return frequencies, factors, path.displacement(tip)[-1], [point.load_factor for point in path.bifurcations]
+        path = bf.trace_equilibrium(model, 0.95 * factors[0])
+        return frequencies, factors, path.displacement(tip)[-1]
 
     band = run()
     force_sparse()

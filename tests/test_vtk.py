@@ -1,17 +1,22 @@
 """ParaView files: read back what was written."""
 
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from drawn import EI, arch, cantilever
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 import beamfem as bf
 from beamfem import postprocess
+from beamfem.io import samples as cells
 from beamfem.io import vtk
 
 HEIGHT = 0.02
@@ -120,7 +125,7 @@ def test_strain_belongs_to_the_height_of_its_point():
         bf.Line((0, 0), (1, 0)), 2, bf.BilinearCRBF(), bf.Rectangle(0.02, HEIGHT), bf.Material(2e6, 0.0, 1.0)
     )
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e-3)]))
-    samples = vtk._body(solution.model.meshes[0])
+    samples = cells.body(solution.model.meshes[0])
     data = samples.arrays(solution.p, solution.v)
     strain = data["green_strain_xx"][-1]
     assert (strain[[0, 1, 4, 5]] > 0.0).all()
@@ -130,7 +135,7 @@ def test_strain_belongs_to_the_height_of_its_point():
 
 def test_velocity_is_the_rate_of_the_points():
     solution = swing(bf.ANCFCRBF(), duration=0.02, step=1e-4)
-    samples = vtk._body(solution.model.meshes[0])
+    samples = cells.body(solution.model.meshes[0])
     data = samples.arrays(solution.p, solution.v)
     rate = (data["points"][101] - data["points"][99]) / 2e-4
     # the integrator's velocity and the central difference both are of second order in the step
@@ -156,7 +161,7 @@ def test_rotation_counts_full_turns_over_chunks(element, tmp_path, monkeypatch):
     beam = bf.Beam(bf.Line((0, 0), (0.1, 0)), 1, element, bf.Rectangle(0.02, HEIGHT), material)
     model, velocity = bf.Model([beam], [bf.Pin(beam.start)]), bf.RigidVelocity(angular=spin)
     solution = bf.simulate(model, 0.25, 0.0005, velocity=velocity, save_every=10)
-    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 1)
     solution.to_vtk(tmp_path / "spin.pvd")
     rotation = point_data(read(tmp_path / "spin" / "0050.vtu"))["rotation"]
     expected = solution.rotation(beam.end)[-1]
@@ -174,7 +179,129 @@ def test_other_suffixes_are_refused(solution, tmp_path):
 
 def test_what_was_written_before_a_failure_can_be_read(solution, tmp_path, monkeypatch):
     (tmp_path / "swing" / "0003.vtu").mkdir(parents=True)
-    monkeypatch.setattr(vtk, "_VALUES_IN_MEMORY", 1)
+    monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 1)
     with pytest.raises(OSError, match=r"0003\.vtu"):
         solution.to_vtk(tmp_path / "swing.pvd")
     assert len(collection(tmp_path / "swing.pvd")[0]) == 3
+
+
+def test_section_forces_on_the_centreline(tmp_path):
+    """A dead tip force P: at every point of the centreline M is P times the lever arm to the tip where it is now."""
+    solution = cantilever(load=2.0, elements=12)
+    solution.to_vtk(tmp_path / "bent.pvd")
+    grid = read(collection(tmp_path / "bent_centreline.pvd")[1][-1])
+    data, points = point_data(grid), vtk_to_numpy(grid.GetPoints().GetData())
+    force = 2.0 * EI
+    lever = solution.position(solution.model.beams[0].end)[-1, 0] - points[:, 0]
+    # twelve elements of order 3 know the moment to 2e-5 of the largest
+    np.testing.assert_allclose(data["bending_moment"], force * lever, atol=2e-5 * force)
+    # normal and shear force are the two components of P in the section's frame
+    np.testing.assert_allclose(np.hypot(data["normal_force"], data["shear_force"]), force, rtol=1e-4)
+    np.testing.assert_allclose(data["normal_force"], force * np.sin(data["rotation"]), atol=1e-4 * force)
+    body = point_data(read(collection(tmp_path / "bent.pvd")[1][-1]))
+    assert not {"bending_moment", "normal_force", "shear_force"} & set(body)
+
+
+def test_beams_are_numbered_and_rows_carry_their_time(solution, written):
+    grid = read(collection(written)[1][4])
+    np.testing.assert_array_equal(vtk_to_numpy(grid.GetCellData().GetArray("beam")), [0, 0, 0, 1, 1, 1])
+    assert grid.GetFieldData().GetArray("time").GetValue(0) == solution.at[4]
+
+
+def test_time_of_a_path_is_its_row(tmp_path):
+    """Its load factor falls between the limit points, and ParaView wants times that rise."""
+    path = arch()
+    assert np.any(np.diff(path.at) < 0.0)
+    path.to_vtk(tmp_path / "arch.pvd")
+    times, files = collection(tmp_path / "arch.pvd")
+    np.testing.assert_array_equal(times, np.arange(len(path)))
+    found = [read(file).GetFieldData().GetArray("load_factor").GetValue(0) for file in files]
+    np.testing.assert_array_equal(found, path.at)
+
+
+def test_modes_can_be_exported(tmp_path):
+    model = cantilever().model
+    modes = bf.solve_modes(bf.Model(model.beams, model.supports), 2)
+    modes.solution(1, frames=5).to_vtk(tmp_path / "mode.pvd")
+    assert len(collection(tmp_path / "mode.pvd")[0]) == 5
+    beam = model.beams[0]
+    column = bf.Model([beam], model.supports, [bf.PointForce(beam.end, (-1.0, 0.0))])
+    bf.solve_buckling(column, 1).solution(0).to_vtk(tmp_path / "buckling.pvd")
+    np.testing.assert_array_equal(collection(tmp_path / "buckling.pvd")[0], [0.0, 1.0])
+
+
+def test_steps_of_an_earlier_export_are_removed(solution, tmp_path):
+    path = tmp_path / "swing.pvd"
+    solution.to_vtk(path)
+    other = tmp_path / "swing" / "notes.vtu"
+    other.write_text("mine")
+    cantilever().to_vtk(path)
+    for name in ("swing", "swing_centreline"):
+        assert sorted(file.name for file in (tmp_path / name).glob("0*.vtu")) == ["0000.vtu", "0001.vtu"]
+    assert other.read_text() == "mine"
+
+
+def test_sections_without_a_material_have_no_stress(tmp_path):
+    """nan in a field would make ParaView's colours useless."""
+    section = bf.Section.from_stiffness(1e4, 1e4, 100.0, 1.0, 1.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), section)
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))]))
+    solution.to_vtk(tmp_path / "bent.pvd")
+    for name in ("bent", "bent_centreline"):
+        data = point_data(read(tmp_path / name / "0001.vtu"))
+        assert "green_strain_xx" in data
+        assert not [key for key in data if key.startswith("stress")]
+        assert all(np.isfinite(values).all() for values in data.values())
+
+
+MOTION_STATICS_PATH = (lambda: swing(bf.ANCFCRBF(), bf.CRBF(4)), cantilever, arch)
+
+
+@pytest.mark.parametrize("make", MOTION_STATICS_PATH, ids=["motion", "static", "path"])
+def test_vtkhdf_holds_what_the_vtu_files_hold(make, tmp_path, monkeypatch):
+    solution = make()
+    monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 200)  # several chunks of rows
+    solution.to_vtk(tmp_path / "a.pvd")
+    solution.to_vtk(tmp_path / "b.vtkhdf")
+    for name in ("", "_centreline"):
+        times, files = collection(tmp_path / f"a{name}.pvd")
+        reader = vtkHDFReader()
+        reader.SetFileName(str(tmp_path / f"b{name}.vtkhdf"))
+        reader.UpdateInformation()
+        information = reader.GetOutputInformation(0)
+        key = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+        np.testing.assert_array_equal([information.Get(key, i) for i in range(information.Length(key))], times)
+        for row in {0, len(files) // 2, len(files) - 1}:
+            reader.SetStep(row)
+            reader.Update()
+            found, expected = reader.GetOutput(), read(files[row])
+            both = (found, expected)
+            np.testing.assert_array_equal(*(vtk_to_numpy(g.GetPoints().GetData()) for g in both))
+            np.testing.assert_array_equal(*(vtk_to_numpy(g.GetCells().GetConnectivityArray()) for g in both))
+            assert found.GetNumberOfCells() == expected.GetNumberOfCells()
+            assert found.GetCellType(0) == expected.GetCellType(0)
+            data, right = point_data(found), point_data(expected)
+            assert set(data) == set(right)
+            for field, values in right.items():
+                np.testing.assert_array_equal(data[field], values, err_msg=field)
+            degrees = [g.GetCellData().GetHigherOrderDegrees() for g in (found, expected)]
+            assert all(degree is None for degree in degrees) if name else True
+            if not name:
+                np.testing.assert_array_equal(*(vtk_to_numpy(degree) for degree in degrees))
+            at = "load_factor" if solution.static else "time"
+            assert found.GetFieldData().GetArray(at).GetNumberOfTuples() == 1
+            assert found.GetFieldData().GetArray(at).GetValue(0) == solution.at[row]
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_vtkhdf_without_h5py_names_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(bf.BeamfemError, match=r"beamfem\[store\]"):
+        cantilever().to_vtk(tmp_path / "bent.vtkhdf")
+
+
+def test_documented_fields_are_those_that_are_written(solution, written):
+    text = (Path(__file__).parent.parent / "docs" / "paraview.md").read_text()
+    for path in (written, written.with_name("swing_centreline.pvd")):
+        for name in point_data(read(collection(path)[1][0])):
+            assert f"`{name}`" in text or f"`{name.rsplit('_', 1)[0]}_xx`" in text

@@ -1,6 +1,8 @@
 """Buckling: load factors at which the tangent of a loaded structure becomes singular."""
 
 from dataclasses import dataclass
+from os import PathLike
+from typing import Any
 
 import numpy as np
 
@@ -54,6 +56,12 @@ class Buckling:
         at = np.full(2, self.load_factors[mode])
         statistics = Statistics(0, 1, 0, "a critical state and its mode")
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
+
+    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """Draw the modes, each with its load factor; return the figure. See `view.mode_shapes.plot_buckling`."""
+        from beamfem.view.mode_shapes import plot_buckling
+
+        return plot_buckling(self, path, **options)
 
 
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:

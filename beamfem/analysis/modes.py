@@ -1,6 +1,8 @@
 """Free vibration about a state."""
 
 from dataclasses import dataclass
+from os import PathLike
+from typing import Any
 
 import numpy as np
 
@@ -72,6 +74,12 @@ class Modes:
             p, v, a = (np.real(rate**order * moved) for order in range(3))
         statistics = Statistics(0, frames - 1, 0, "a mode of small vibration")
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics)
+
+    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """Draw the modes, each with its frequency; return the figure. See `view.mode_shapes.plot_modes`."""
+        from beamfem.view.mode_shapes import plot_modes
+
+        return plot_modes(self, path, **options)
 
 
 def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:

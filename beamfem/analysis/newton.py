@@ -8,6 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
 from beamfem.errors import InputError
+from beamfem.kernels.block import ELASTIC_LINE, Block
 from beamfem.model.reference import stations
 from beamfem.model.system import System
 from beamfem.postprocess import axis, nodal_vectors
@@ -145,13 +146,18 @@ def round_off_floor(system: System, p: np.ndarray) -> float:
     """
     worst = 0.0
     for block in system.blocks:
-        stiffest = float(block.stiffness[:, :, 0, 0].max())
-        slopes = np.abs(block.r_xi)
-        share = (block.weight[0] / block.weight[0].sum()) @ slopes
-        slope = float(slopes.sum(axis=1).max() * share.max())
-        worst = max(worst, slope * stiffest / float(block.jacobian.min()))
+        worst = max(worst, float(block.stiffness[:, :, 0, 0].max()) * _gain(block, block.r_xi, 1))
+        if block.measures == ELASTIC_LINE:
+            worst = max(worst, float(block.stiffness[:, :, 1, 1].max()) * _gain(block, block.r_xixi, 2))
     reach = max(float(np.max(np.abs(p))), system.extent)
     return 4.0 * np.finfo(float).eps * worst * reach
+
+
+def _gain(block: Block, table: np.ndarray, derivative: int) -> float:
+    """Force on a node for a unit of displacement through a derivative of r0, per section stiffness."""
+    slopes = np.abs(table)
+    share = (block.weight[0] / block.weight[0].sum()) @ slopes
+    return float(slopes.sum(axis=1).max() * share.max()) / float(block.jacobian.min()) ** (2 * derivative - 1)
 
 
 def _load_size(system: System, load_factor: float) -> float:

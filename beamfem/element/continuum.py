@@ -36,6 +36,11 @@ class _Body:
     def shear_measures(self) -> tuple[bool, ...]:
         return (False, False, False, False, True, True)
 
+    @property
+    def thickness_measures(self) -> tuple[bool, ...]:
+        """None: eyy is coupled with the strain along the beam."""
+        return (False,) * 6
+
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
         return np.stack(

@@ -24,6 +24,7 @@ class ElasticLine:
     turns_with: str = "r_x"
     fills_body: bool = False
     shear_measures: tuple[bool, ...] = (False, False, True, False)
+    thickness_measures: tuple[bool, ...] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, curvature [1/m], shear, thickness strain."""

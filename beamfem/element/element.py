@@ -48,13 +48,6 @@ class Element:
                 f"the elastic line takes its curvature from r_xx, which the {self.field.name} field does not have "
                 "across elements; use the cubic field, or Structural forces"
             )
-        points = len(self.quadrature()[0])
-        sees_direction = isinstance(self.coordinates, Gradients) and isinstance(self.forces, Structural)
-        if sees_direction and points <= self.field.director_degree:
-            raise InputError(
-                f"structural forces with gradients on the {self.field.name} field need full integration: they see the "
-                "unit vector of d only, so that with reduced integration the thickness can change without resistance"
-            )
 
     @property
     def name(self) -> str:
@@ -75,11 +68,15 @@ class Element:
         """Points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one rule where all agree.
 
         With 2 points alone a stretch coordinate could change without resistance: r_x + c at every node leaves r0' as it
-        is at both of them. So all but shear takes 3 there.
+        is at both of them. So all but shear takes 3 there. What resists a change of |d| alone is taken at the nodes of
+        d: between them |d| is below 1 wherever the beam bends, which would lock a thin one.
         """
-        shear = np.array(self.forces.shear_measures)
+        forces = self.forces
+        shear, thickness = np.array(forces.shear_measures), np.array(forces.thickness_measures)
         if self.integration == "reduced" and self.coordinates == ShearFree(stretchable=True):
             return (*_gauss(2), shear), (*_gauss(3), ~shear)
+        if isinstance(self.coordinates, Gradients) and thickness.any():
+            return (*self.quadrature(), ~thickness), (*self.field.director_rule(), thickness)
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
@@ -126,8 +123,8 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
 def ShearRigid(stretchable: bool = True, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Cubic field without shear at its nodes, 4 coordinates a node, or 3; paper, sections 1.5 and 3.5.
 
-    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in stretch
-    and shear.
+    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in shear, and
+    in stretch where the length is none.
     """
     label = "shear-rigid-stretchable" if stretchable else "shear-rigid"
     return Element(Cubic(), ShearFree(stretchable), forces or Structural(), integration, label)

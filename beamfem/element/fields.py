@@ -1,7 +1,7 @@
 """Field bases r(x, y) = r0(x) + y d(x) on the unit interval."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from itertools import combinations
 from math import factorial
 from typing import Protocol, runtime_checkable
@@ -25,6 +25,7 @@ class Field(Protocol):
     def director_degree(self) -> int: ...  # polynomial degree of d
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nr)
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray: ...  # (nq, nd)
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]: ...  # nodes of d (nd,) and weights (nd,) on [0, 1]
 
 
 def r_slots(field: Field) -> np.ndarray:
@@ -65,6 +66,35 @@ class Cubic:
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return Lagrange(1).director(xi, derivative)
 
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        return Lagrange(1).director_rule()
+
+
+@lru_cache
+def _lobatto(order: int) -> np.ndarray:
+    """Gauss-Lobatto nodes (order + 1,) on [0, 1]."""
+    # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
+    inner = np.polynomial.legendre.Legendre.basis(order).deriv().roots()
+    return np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
+
+
+# frames of many members ask for the same points again and again
+@lru_cache(maxsize=128)
+def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -> np.ndarray:
+    """Derivatives (*shape, order + 1) of the polynomials at points in [0, 1], given by their bytes."""
+    nodes = _lobatto(order)
+    factors = np.subtract.outer(np.frombuffer(points).reshape(shape), nodes)
+    columns = []
+    for i, own in enumerate(nodes):
+        others = np.delete(np.arange(len(nodes)), i)
+        # a derivative of a product is the sum over the factors that are left out, in every order
+        parts = [
+            factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
+            for left_out in combinations(others, derivative)
+        ]
+        columns.append(factorial(derivative) * sum(parts) / np.prod(own - nodes[others]))
+    return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
+
 
 @dataclass(frozen=True)
 class Lagrange:
@@ -87,31 +117,16 @@ class Lagrange:
 
     @property
     def nodes(self) -> np.ndarray:
-        return _lobatto_nodes(self.order)
+        return _lobatto(self.order)
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        nodes = self.nodes
-        factors = np.subtract.outer(np.asarray(xi, dtype=float), nodes)
-        columns = []
-        for i, own in enumerate(nodes):
-            others = np.delete(np.arange(len(nodes)), i)
-            # a derivative of a product is the sum over the factors that are left out, in every order
-            parts = [
-                factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
-                for left_out in combinations(others, derivative)
-            ]
-            columns.append(factorial(derivative) * sum(parts) / np.prod(own - nodes[others]))
-        return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
+        points = np.asarray(xi, dtype=float)
+        # a copy: kernels are compiled anew for arrays that cannot be written to
+        return _table(self.order, points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         return self.centreline(xi, derivative)
 
-
-@cache
-def _lobatto_nodes(order: int) -> np.ndarray:
-    """Gauss-Lobatto nodes (order + 1,) on [0, 1]; read only, since all fields of an order share them."""
-    # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
-    inner = np.polynomial.legendre.Legendre.basis(order).deriv().roots()
-    nodes = np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
-    nodes.flags.writeable = False
-    return nodes
+    def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        xi, weights = np.polynomial.legendre.leggauss(self.order + 1)
+        return self.nodes, 0.5 * weights @ self.director(0.5 * (xi + 1.0))

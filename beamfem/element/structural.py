@@ -23,6 +23,7 @@ class Structural:
     turns_with: str = "r_y"
     fills_body: bool = False
     shear_measures: tuple[bool, ...] = (False, True, False, False)
+    thickness_measures: tuple[bool, ...] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, shear, curvature [1/m], thickness stretch."""

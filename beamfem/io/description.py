@@ -68,7 +68,7 @@ _CLASSES = {
 }
 _DRAWN = 4  # intervals of an element at whose ends a section that varies is saved besides
 # numbers of kernels belong to this version of the code, not to the model
-_NOT_SAVED = ("code", "turns_with", "fills_body", "shear_measures")
+_NOT_SAVED = ("code", "turns_with", "fills_body", "shear_measures", "thickness_measures")
 
 
 def describe(model: Model, at: np.ndarray) -> dict[str, Any]:

@@ -158,6 +158,11 @@ class Model:
     def foundations(self) -> tuple[Foundation, ...]:
         return tuple(support for support in self.supports if isinstance(support, Foundation))
 
+    def _repr_html_(self) -> str:
+        from beamfem.view.summary import model_table
+
+        return model_table(self)
+
 
 def _turns(support: PointSupport) -> bool:
     """Tell whether a support has to do with the rotation."""

@@ -1,0 +1,101 @@
+"""All steps in one VTKHDF file, for ParaView 5.12 or newer.
+
+Source: Kitware, VTKHDF File Format 2.6 (temporal UnstructuredGrid), docs.vtk.org.
+"""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamfem.errors import BeamfemError
+from beamfem.io.samples import Cells, times
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
+
+# numbers of cell types, from vtkCellType.h
+_LAGRANGE_QUADRILATERAL, _POLY_LINE = 70, 4
+_CHUNK_BYTES = 2**16
+
+
+def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> None:
+    """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
+
+    Cells are stored once, points and point data for every step. Raises BeamfemError without h5py.
+    """
+    try:
+        import h5py
+    except ImportError:
+        raise BeamfemError("writing .vtkhdf files needs h5py: pip install beamfem[store]") from None
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(path.name + ".tmp")
+    try:
+        with h5py.File(temporary, "w") as file:
+            _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
+    root.attrs["Version"] = np.array([2, 6])
+    # a string of fixed length, as the format demands
+    root.attrs.create("Type", np.bytes_("UnstructuredGrid"))
+    steps, number = len(solution), len(cells.beam)
+    root["NumberOfPoints"] = np.array([cells.points])
+    root["NumberOfCells"] = np.array([number])
+    root["NumberOfConnectivityIds"] = np.array([cells.points])
+    root["Connectivity"] = np.arange(cells.points)
+    root["Offsets"] = cells.offsets
+    root["Types"] = np.full(number, _LAGRANGE_QUADRILATERAL if cells.whole else _POLY_LINE, dtype=np.uint8)
+    cell_data = root.create_group("CellData")
+    cell_data["beam"] = cells.beam.astype(np.int32)
+    if cells.whole:
+        cell_data["HigherOrderDegrees"] = cells.degrees
+        cell_data["HigherOrderDegrees"].attrs.create("Attribute", np.bytes_("HigherOrderDegrees"))
+    name = "load_factor" if solution.static else "time"
+    root.create_group("FieldData")[name] = solution.at
+    point_data = root.create_group("PointData")
+    for first in range(0, steps, chunk):
+        rows = slice(first, min(first + chunk, steps))
+        for array, values in cells.arrays(solution.p[rows], solution.v[rows]).items():
+            place = root if array == "points" else point_data
+            key = "Points" if array == "points" else array
+            if key not in place:
+                tail = values.shape[2:]
+                size = max(1, min(_CHUNK_BYTES // (8 * int(np.prod(tail, dtype=int))), steps * cells.points))
+                place.create_dataset(
+                    key,
+                    (steps * cells.points, *tail),
+                    np.float64,
+                    chunks=(size, *tail),
+                    compression="gzip",
+                    shuffle=True,
+                )
+            flat = values.reshape(-1, *values.shape[2:])
+            place[key][first * cells.points : first * cells.points + len(flat)] = flat
+    _write_steps(root.create_group("Steps"), solution, cells, list(point_data), list(cell_data), name)
+
+
+def _write_steps(
+    group: Any, solution: "Solution", cells: Cells, point_data: list[str], cell_data: list[str], name: str
+) -> None:
+    """Say where in the arrays each step begins; one part and one set of cells for all."""
+    steps = len(solution)
+    begin = np.arange(steps) * cells.points
+    same = np.zeros(steps, dtype=np.int64)
+    group.attrs["NSteps"] = steps
+    group["Values"] = times(solution.at)
+    group["PartOffsets"] = same
+    group["NumberOfParts"] = same + 1
+    group["PointOffsets"] = begin
+    group["CellOffsets"] = same[:, None]
+    group["ConnectivityIdOffsets"] = same[:, None]
+    for array in point_data:
+        group[f"PointDataOffsets/{array}"] = begin
+    for array in cell_data:
+        group[f"CellDataOffsets/{array}"] = same
+    group[f"FieldDataOffsets/{name}"] = np.arange(steps)
+    group[f"FieldDataSizes/{name}"] = np.tile([1, 1], (steps, 1))

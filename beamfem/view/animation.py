@@ -1,0 +1,137 @@
+"""Moving pictures: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg; no window, small files."""
+
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import BeamfemError, InputError
+from beamfem.solution import Solution
+from beamfem.validation import count, positive
+from beamfem.view.acting import FORCE, draw_loads
+from beamfem.view.drawing import bar, equal_axes
+from beamfem.view.frames import moment_of, spread_rows
+from beamfem.view.held import PRESCRIBED, draw_joints, draw_supports
+from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+
+_POINTS = 600  # of all beams; what moves in a small picture needs no more
+_LONGEST_FRAME = 0.5  # [s], for a solution of few rows
+
+
+def animate(
+    solution: Solution,
+    path: str | PathLike[str],
+    fps: float = 15.0,
+    seconds: float = 4.0,
+    colour: str | None = None,
+    undeformed: bool = True,
+    supports: bool = True,
+    loads: bool = True,
+    dpi: int = 100,
+) -> Path:
+    """Write the moving body to a .gif or .mp4 file and return its path; folders are made.
+
+    fps, seconds: about fps * seconds rows are shown, spread evenly over time (in statics over the rows); a solution of
+    fewer rows shows each for longer; colour: a field as in `plot`; loads come and go with their amplitude; dpi: pixels
+    an inch of a picture 4 to 8 inches wide.
+    Raises InputError for another suffix; BeamfemError without matplotlib, for .mp4 without imageio-ffmpeg.
+    """
+    target = Path(path)
+    if target.suffix not in (".gif", ".mp4"):
+        right = target.with_suffix(".gif") if target.name else target / "motion.gif"
+        raise InputError(f'an animation is a .gif or a .mp4 file, got "{target}"; "{right}" would be right')
+    if len(solution) == 0:
+        raise InputError("the solution has no rows, so there is nothing to animate")
+    most = max(2, round(positive("fps", fps) * positive("seconds", seconds)))
+    rows = spread_rows(solution, most)
+    duration = min(seconds / len(rows), _LONGEST_FRAME)
+    write = _write_gif if target.suffix == ".gif" else _mp4_writer()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shapes = Shapes(solution, rows, colour, _POINTS)
+    write(target, _frames(shapes, undeformed, supports, loads, count("dpi", dpi)), duration)
+    return target
+
+
+def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: int) -> Iterator[np.ndarray]:
+    """Yield pictures (height, width, 3) of bytes; height and width are even, as video wants them.
+
+    What stands still is drawn once.
+    """
+    solution = shapes.solution
+    figure, axes = equal_axes(shapes.box, shapes.quantity is not None)
+    figure.set_dpi(dpi)
+    size = np.ceil(figure.get_size_inches() * dpi / 2.0) * 2.0
+    figure.set_size_inches(size / dpi)
+    if undeformed:
+        draw_undeformed(axes, shapes.points)
+    if shapes.quantity is not None:
+        bar(figure, axes, shapes)
+    title = axes.set_title(" ", fontsize=10)
+    canvas = figure.canvas
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for order, row in enumerate(shapes.rows):
+        canvas.restore_region(still)
+        moving = shapes.draw(axes, order)
+        if supports:
+            moving += draw_supports(axes, solution, int(row), shapes.centre)
+        moving += draw_joints(axes, solution, int(row))
+        if loads:
+            moving += draw_loads(axes, solution, np.array([row]))
+        title.set_text(moment_of(solution, int(row)))
+        for artist in sorted(moving, key=lambda artist: artist.get_zorder()):
+            axes.draw_artist(artist)
+            artist.remove()
+        axes.draw_artist(title)
+        yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _write_gif(path: Path, frames: Iterator[np.ndarray], duration: float) -> None:
+    """Write with one palette for all frames, so that only what moves is stored."""
+    from PIL import Image
+
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_palette().ravel().tolist())
+    flat = [Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    # GIF counts in hundredths of a second, and browsers slow down what is below two
+    milliseconds = max(20, round(100 * duration) * 10)
+    flat[0].save(path, save_all=True, append_images=flat[1:], duration=milliseconds, loop=0, optimize=False)
+
+
+def _palette() -> np.ndarray:
+    """Return the colours of drawings (n, 3) as bytes: greys, field colours, and the others as they fade into white."""
+    from matplotlib import colormaps
+    from matplotlib.colors import to_rgb
+
+    greys = np.linspace(0.0, 1.0, 18)[:, None].repeat(3, axis=1)
+    fields = colormaps[FIELD_COLOURS](np.linspace(0.0, 1.0, 72))[:, :3]
+    fade = np.linspace(1.0, 0.0, 9)[:-1, None]
+    faded = [fade * to_rgb(colour) + 1.0 - fade for colour in (FORCE, PRESCRIBED, shade(1.0), *fields[::12])]
+    return np.round(255.0 * np.concatenate([greys, fields, *faded])).astype(np.uint8)
+
+
+def _mp4_writer() -> Any:
+    try:
+        import imageio_ffmpeg
+    except ImportError:
+        raise BeamfemError(
+            "MP4 needs imageio-ffmpeg: pip install beamfem[video]; a .gif file needs nothing else"
+        ) from None
+
+    def write(path: Path, frames: Iterator[np.ndarray], duration: float) -> None:
+        first = next(frames)
+        size = first.shape[1], first.shape[0]
+        stream = imageio_ffmpeg.write_frames(
+            str(path), size, pix_fmt_in="rgb24", fps=1.0 / duration, codec="libx264", quality=6, macro_block_size=2
+        )
+        stream.send(None)  # starts it
+        try:
+            stream.send(np.ascontiguousarray(first))
+            for frame in frames:
+                stream.send(np.ascontiguousarray(frame))
+        finally:
+            stream.close()
+
+    return write

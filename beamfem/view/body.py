@@ -1,0 +1,179 @@
+"""The solid body with PyVista: a picture without a window, or a window with a slider over the steps."""
+
+import warnings
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.solution import Solution
+from beamfem.view.drawing import plot_shapes
+from beamfem.view.frames import moment_of, one_row, spread_rows
+from beamfem.view.rendering import ADVICE, can_render, has_display
+from beamfem.view.shapes import FIELD_COLOURS, Shapes
+
+_POINTS = 6000  # of all beams
+_ROWS = 400  # that the slider knows
+_PLAIN = "#6699BB"
+
+
+def picture(
+    solution: Solution,
+    path: str | PathLike[str],
+    row: int = -1,
+    colour: str | None = None,
+    size: tuple[int, int] = (1400, 900),
+) -> Path:
+    """Write a picture (.png) of the solid body in a row, without a window; return its path. Folders are made.
+
+    colour: a field as in `plot`; size: width and height in pixels. Where VTK cannot render, which is tried in a child
+    process first, matplotlib draws the same row flat, with a warning. Raises InputError.
+    """
+    target = Path(path)
+    if target.suffix != ".png":
+        right = target.with_suffix(".png") if target.name else target / "body.png"
+        raise InputError(f'a picture of the body is a .png file, got "{target}"; "{right}" would be right')
+    number = _row(solution, row)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if not can_render():
+        warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=3)
+        plot_shapes(one_row(solution, number), target, colour)
+        return target
+    scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
+    scene.show_row(0)
+    scene.look()
+    scene.plotter.screenshot(str(target))
+    scene.plotter.close()
+    return target
+
+
+def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
+    """Open a window with the solid body and a slider over the steps, and wait until it is closed.
+
+    colour: a field as in `plot`. Where there is no display, or VTK cannot render, a warning says so and a figure of
+    matplotlib is returned instead. Raises InputError.
+    """
+    _row(solution, -1)
+    reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
+    if reason:
+        message = f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider"
+        warnings.warn(message, stacklevel=3)
+        return plot_shapes(solution, colour=colour)
+    plotter = slider_scene(solution, colour, size, off_screen=False)
+    plotter.show()
+    return plotter
+
+
+def slider_scene(solution: Solution, colour: str | None, size: tuple[int, int], off_screen: bool) -> Any:
+    """Return a plotter of PyVista with the body and a slider over the steps."""
+    rows = spread_rows(solution, _ROWS)
+    scene = _Scene(Shapes(solution, rows, colour, _POINTS), off_screen, size)
+    scene.show_row(len(rows) - 1)
+    scene.look()
+    if len(rows) > 1:
+        scene.plotter.add_slider_widget(
+            lambda value: scene.show_row(round(value)),
+            (0, len(rows) - 1),
+            value=len(rows) - 1,
+            title="step",
+            fmt="%.0f",
+            pointa=(0.25, 0.08),
+            pointb=(0.75, 0.08),
+            style="modern",
+            interaction_event="always",
+        )
+    return scene.plotter
+
+
+class _Scene:
+    """A plotter with one surface whose points follow the row that is shown."""
+
+    def __init__(self, shapes: Shapes, off_screen: bool, size: tuple[int, int]) -> None:
+        import pyvista
+
+        self.shapes = shapes
+        self.surface = pyvista.PolyData(self._points(0), _faces(shapes))
+        self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
+        self.plotter.set_background("white")
+        self.plotter.enable_anti_aliasing("ssaa")
+        options: dict[str, Any] = {"color": _PLAIN}
+        if shapes.quantity is not None:
+            self.surface["field"] = self._values(0)
+            title = f"{shapes.quantity.label} [{shapes.quantity.unit}]"
+            bar = {"title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.25,
+                   "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.3g", "title_font_size": 18,
+                   "label_font_size": 16}  # fmt: skip
+            options = {"scalars": "field", "cmap": FIELD_COLOURS, "clim": shapes.limits, "scalar_bar_args": bar}
+        self.plotter.add_mesh(self.surface, smooth_shading=False, specular=0.2, ambient=0.25, **options)
+
+    def show_row(self, order: int) -> None:
+        """Move the surface to a row and name it in the corner."""
+        self.surface.points = self._points(order)
+        if self.shapes.quantity is not None:
+            self.surface["field"] = self._values(order)
+        text = moment_of(self.shapes.solution, int(self.shapes.rows[order]))
+        self.plotter.add_text(text, name="row", color="black", font_size=11)
+
+    def look(self) -> None:
+        """Look at the plane of the beams from slightly above and beside, at every row in full."""
+        low, high = self.shapes.box
+        width = max(float(_widths(self.shapes).max()), 1e-6 * float(np.max(high - low)))
+        bounds = (low[0], high[0], low[1], high[1], -width, width)
+        self.plotter.enable_parallel_projection()
+        self.plotter.view_vector((0.25, 0.35, 1.0), viewup=(0.0, 1.0, 0.0))
+        self.plotter.reset_camera(bounds=bounds)
+        self.plotter.camera.zoom(1.3)
+        self.plotter.add_axes(color="black", zlabel="")
+
+    def _points(self, order: int) -> np.ndarray:
+        """Four corners of the section at each point: below and above, behind and before (points * 4, 3)."""
+        flat = np.concatenate([body[order] for body in self.shapes.body])
+        z = 0.5 * _widths(self.shapes)[:, None, None] * np.array([-1.0, 1.0])
+        corners = np.concatenate(
+            [np.repeat(flat[:, :, None], 2, axis=2), np.broadcast_to(z, (len(flat), 2, 2))[..., None]], axis=-1
+        )
+        return corners.reshape(-1, 3)
+
+    def _values(self, order: int) -> np.ndarray:
+        return np.repeat(np.concatenate([values[order] for values in self.shapes.values]), 4)
+
+
+def _widths(shapes: Shapes) -> np.ndarray:
+    """Width out of the plane at each point [m]: area over height, and the height where a section tells no area."""
+    result = []
+    for points in shapes.points:
+        height = points.faces[:, 1] - points.faces[:, 0]
+        sections = [points.mesh.beam.section_at(arc) for arc in (points.arc_length[0], points.arc_length[-1])]
+        ends = [getattr(section, "area", 0.0) / size for section, size in zip(sections, height[[0, -1]], strict=True)]
+        share = points.arc_length / points.arc_length[-1]
+        width = (1.0 - share) * ends[0] + share * ends[1]
+        result.append(np.where(width > 0.0, width, height))
+    return np.concatenate(result)
+
+
+def _faces(shapes: Shapes) -> np.ndarray:
+    """Quadrilaterals of the surface as PyVista counts them: four sides of each piece and the caps of the beams."""
+    faces = []
+    first = 0
+    # corners of a section: 0 below behind, 1 below before, 2 above behind, 3 above before
+    sides = np.array([(0, 1, 5, 4), (2, 6, 7, 3), (1, 3, 7, 5), (0, 4, 6, 2)])
+    for points in shapes.points:
+        number = len(points.xi)
+        within = np.arange(number - 1)
+        # two points stand at the common end of two elements
+        start = within[(within + 1) % (points.pieces + 1) != 0]
+        faces.append((4 * (first + start)[:, None, None] + sides).reshape(-1, 4))
+        last = 4 * (first + number - 1)
+        faces.append(np.array([(4 * first, 4 * first + 2, 4 * first + 3, 4 * first + 1),
+                               (last, last + 1, last + 3, last + 2)]))  # fmt: skip
+        first += number
+    table = np.concatenate(faces)
+    return np.column_stack([np.full(len(table), 4), table]).ravel()
+
+
+def _row(solution: Solution, row: int) -> int:
+    if not -len(solution) <= row < len(solution):
+        raise InputError(f"the solution has {len(solution)} rows, so there is no row {row}")
+    return row % len(solution)

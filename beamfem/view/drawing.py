@@ -1,0 +1,146 @@
+"""Drawings of a solution: shapes, supports, loads and joints in axes of equal scale."""
+
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.solution import Solution
+from beamfem.validation import count
+from beamfem.view.acting import draw_loads
+from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.held import draw_joints, draw_supports
+from beamfem.view.plots import empty_figure, quiet, save_figure
+from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+
+_ROOM = 0.45  # [inch] around the shapes for symbols and arrows
+_LONGER_SIDE = 5.6  # [inch]
+_LEAST = np.array([3.2, 1.3])  # of the axes [inch]
+_LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
+_NAMED = 3  # shapes that are named each; above, a bar tells them apart
+
+
+def plot_shapes(
+    solution: Solution,
+    path: str | PathLike[str] | None = None,
+    colour: str | None = None,
+    shapes: int = 9,
+    undeformed: bool = True,
+    supports: bool = True,
+    loads: bool = True,
+) -> Any:
+    """Draw the deformed body at some steps, later ones stronger; return the figure of matplotlib.
+
+    path: where to write it (PNG, SVG, PDF; folders are made); colour: None for the time or load factor, or a field
+    along the beams: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s],
+    "axial_strain" [-], "shear_angle" [rad]; shapes: how many steps; undeformed: dashed axes of the reference; supports
+    and loads: as engineers draw them, each load on the shape where it is largest.
+    Raises InputError; BeamfemError without matplotlib.
+    """
+    if len(solution) == 0:
+        raise InputError("the solution has no rows, so there is nothing to draw")
+    rows = spread_rows(solution, count("shapes", shapes))
+    drawn = Shapes(solution, rows, colour)
+    figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED)
+    if undeformed:
+        draw_undeformed(axes, drawn.points)
+    for order in range(len(rows)):
+        drawn.draw(axes, order, (order + 1) / len(rows))
+    if supports:
+        draw_supports(axes, solution, int(rows[-1]), drawn.centre)
+    draw_joints(axes, solution, int(rows[-1]))
+    if loads:
+        draw_loads(axes, solution, rows)
+    if drawn.quantity is not None:
+        bar(figure, axes, drawn)
+    elif len(rows) > _NAMED:
+        _bar_of_rows(figure, axes, solution, rows)
+    elif len(rows) > 1:
+        _names_of_rows(figure, solution, rows)
+    if len(rows) == 1 or drawn.quantity is not None:
+        axes.set_title(_span(solution, rows), fontsize=10)
+    if path is not None:
+        save_figure(figure, path)
+    return figure
+
+
+def equal_axes(box: np.ndarray, with_bar: bool) -> tuple[Any, Any]:
+    """Return a figure and axes [m] of equal scale around a box (2, 2) [m], with room for symbols around it."""
+    scale = _LONGER_SIDE / _extent(box)
+    inches = np.maximum((box[1] - box[0]) * scale + 2.0 * _ROOM, _LEAST)
+    right = _BAR if with_bar else _RIGHT
+    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP, layout=None)
+    width, height = figure.get_size_inches()
+    axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
+    frame(axes, box.mean(axis=0), inches / scale, inches)
+    return figure, axes
+
+
+def _extent(box: np.ndarray) -> float:
+    """Longer side of a box [m]; of a point 1."""
+    return float(np.max(box[1] - box[0])) or 1.0
+
+
+def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray) -> None:
+    """Set limits of equal scale around a middle (2,) [m] and label the axes; size (2,) [m] takes inches (2,)."""
+    quiet(axes)
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlim(middle[0] - 0.5 * size[0], middle[0] + 0.5 * size[0])
+    axes.set_ylim(middle[1] - 0.5 * size[1], middle[1] + 0.5 * size[1])
+    for name, length, apart in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
+        axes.locator_params(axis=name, nbins=int(np.clip(length / apart, 2, 9)))
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+
+
+def bar(figure: Any, axes: Any, shapes: Shapes) -> None:
+    """Draw the colour bar of a field."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    assert shapes.quantity is not None
+    colours = ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS)
+    label = f"{shapes.quantity.label} [{shapes.quantity.unit}]"
+    _add_bar(figure, axes, colours, label)
+
+
+def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    values = solution.at[rows]
+    name, unit = axis_of_rows(solution)
+    colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
+    norm = BoundaryNorm(np.arange(len(rows) + 1) - 0.5, len(rows))
+    shown = _add_bar(figure, axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]")
+    shown.set_ticks(np.arange(len(rows)), labels=[f"{value:.3g}" for value in values])
+    shown.ax.tick_params(length=0)
+
+
+def _names_of_rows(figure: Any, solution: Solution, rows: np.ndarray) -> None:
+    from matplotlib.lines import Line2D
+
+    colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
+    handles = [
+        Line2D([], [], color=colour, linewidth=3, label=moment_of(solution, int(row)))
+        for row, colour in zip(rows, colours, strict=True)
+    ]
+    figure.legend(handles=handles, loc="upper center", ncols=len(rows), frameon=False)
+
+
+def _add_bar(figure: Any, axes: Any, colours: Any, label: str) -> Any:
+    width = figure.get_size_inches()[0]
+    left, bottom, across, height = axes.get_position().bounds
+    place = figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))
+    shown = figure.colorbar(colours, cax=place, label=label)
+    shown.outline.set_visible(False)
+    return shown
+
+
+def _span(solution: Solution, rows: np.ndarray) -> str:
+    if len(rows) == 1:
+        return moment_of(solution, int(rows[0]))
+    name, unit = axis_of_rows(solution)
+    first, last = (f"{solution.at[row]:.3g}" for row in (rows[0], rows[-1]))
+    return f"{name} {first} to {last}" + (f" {unit}" if unit != "-" else "")

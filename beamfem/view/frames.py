@@ -1,0 +1,48 @@
+"""Which rows of a solution are drawn, and how many points of each beam."""
+
+import numpy as np
+
+from beamfem.along import AxisPoints
+from beamfem.path import Path
+from beamfem.solution import Solution
+
+_POINTS = 4000  # of all beams in a shape
+_SMOOTH = 12  # straight pieces that make an element look curved
+
+
+def spread_rows(solution: Solution, most: int) -> np.ndarray:
+    """Return up to `most` different rows, first and last among them: evenly over time, in statics over the rows."""
+    if len(solution) <= most:
+        return np.arange(len(solution))
+    if solution.static:
+        return np.unique(np.linspace(0, len(solution) - 1, most).round().astype(int))
+    wanted = np.linspace(solution.at[0], solution.at[-1], most)
+    return np.unique(np.abs(solution.at[:, None] - wanted).argmin(axis=0))
+
+
+def one_row(solution: Solution, row: int) -> Solution:
+    """Return a solution of one row only."""
+    rows = slice(row, row + 1)
+    states = (solution.at[rows], solution.p[rows], solution.v[rows], solution.a[rows])
+    return Solution(solution.model, solution.static, *states, solution.statistics)
+
+
+def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
+    """Return the points of each beam that are drawn, about `total` where elements are so few."""
+    elements = sum(mesh.elements for mesh in solution.model.meshes)
+    pieces = int(np.clip(total // elements, 1, _SMOOTH))
+    straight = [mesh.beam.element.field.degree == 1 for mesh in solution.model.meshes]
+    return [AxisPoints(mesh, 1 if flat else pieces) for mesh, flat in zip(solution.model.meshes, straight, strict=True)]
+
+
+def axis_of_rows(solution: Solution) -> tuple[str, str]:
+    """Return name and unit of what runs from row to row."""
+    return ("load factor", "-") if solution.static else ("time", "s")
+
+
+def moment_of(solution: Solution, row: int) -> str:
+    """Return in words where a row is."""
+    value = float(solution.at[row])
+    if isinstance(solution, Path):
+        return f"load factor {value:.4g}, row {row}"
+    return f"load factor {value:.3g}" if solution.static else f"t = {value:.3g} s"

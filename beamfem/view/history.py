@@ -1,0 +1,134 @@
+"""Curves of a point: over time or load factor, and the load over its displacement."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Point
+from beamfem.path import Path
+from beamfem.solution import Solution, State
+from beamfem.view.frames import axis_of_rows
+from beamfem.view.plots import COLOURS, new_figure, save_figure
+
+_STYLES = ("-", "--", ":")
+
+
+def _components(values: np.ndarray, *names: str) -> dict[str, np.ndarray]:
+    return {name: values[:, column] for column, name in enumerate(names)}
+
+
+# what is drawn of a point: label, unit and the curves by name
+_OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]] = {
+    "displacement": ("displacement", "m", lambda s, at: _components(s.displacement(at), "ux", "uy")),
+    "ux": ("displacement ux", "m", lambda s, at: {"ux": s.displacement(at)[:, 0]}),
+    "uy": ("displacement uy", "m", lambda s, at: {"uy": s.displacement(at)[:, 1]}),
+    "position": ("position", "m", lambda s, at: _components(s.position(at), "x", "y")),
+    "velocity": ("velocity", "m/s", lambda s, at: _components(s.velocity(at), "vx", "vy")),
+    "rotation": ("rotation", "rad", lambda s, at: {"rotation": s.rotation(at)}),
+    "force": ("reaction force", "N", lambda s, at: _components(s.reaction(at), "fx", "fy")),
+    "reaction_moment": ("reaction moment", "N m", lambda s, at: {"m": s.reaction(at)[:, 2]}),
+}
+
+
+def plot_history(
+    solution: Solution,
+    point: Point | Sequence[Point] | None = None,
+    quantity: str = "displacement",
+    path: str | PathLike[str] | None = None,
+) -> Any:
+    """Draw a quantity of one or several points over time [s] or load factor; return the figure of matplotlib.
+
+    quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad], of a support "force" [N]
+    and "reaction_moment" [N m]; or, without a point, "energy" [J].
+    Raises InputError; BeamfemError without matplotlib.
+    """
+    if quantity == "energy":
+        found = solution.energy()
+        curves = {name: getattr(found, name) for name in ("kinetic", "strain", "potential", "total")}
+        label, unit, parts = "energy", "J", [curves]
+    else:
+        label, unit, values = _quantity(quantity)
+        points = [point] if isinstance(point, Point) else list(point or ())
+        if not points or not all(isinstance(own, Point) for own in points):
+            raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {point!r}")
+        parts = [values(solution, own) for own in points]
+        if len(parts) > 1:
+            parts = [
+                {f"{name} at ({own.reference[0]:.3g}, {own.reference[1]:.3g})": curve for name, curve in part.items()}
+                for own, part in zip(points, parts, strict=True)
+            ]
+    figure, axes = new_figure()
+    several = sum(len(part) for part in parts) > 1
+    for number, part in enumerate(parts):
+        for order, (name, curve) in enumerate(part.items()):
+            colour = COLOURS[(order if len(parts) == 1 else number) % (len(COLOURS) - 1)]
+            style = _STYLES[(order if len(parts) > 1 else 0) % len(_STYLES)]
+            marker = "o" if len(solution) <= 30 else None
+            axes.plot(solution.at, curve, style, color=colour, marker=marker, markersize=4, linewidth=1.5, label=name)
+    name, axis_unit = axis_of_rows(solution)
+    axes.set_xlabel(f"{name} [{axis_unit}]")
+    axes.set_ylabel(f"{label} [{unit}]")
+    axes.margins(x=0.02)
+    if several:
+        figure.legend(loc="outside upper center", ncols=4 if len(parts) == 1 else 2, frameon=False)
+    if path is not None:
+        save_figure(figure, path)
+    return figure
+
+
+def plot_load_displacement(
+    solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
+) -> Any:
+    """Draw the load factor over a displacement or rotation of a point; return the figure of matplotlib.
+
+    On a `Path` its limit points (circles) and bifurcations (diamonds) are marked, each with its load factor.
+    quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; BeamfemError without matplotlib.
+    """
+    if quantity not in ("ux", "uy", "rotation"):
+        raise InputError(f'the load is drawn over "ux", "uy" or "rotation", got {quantity!r}')
+    load = solution.load_factor
+    label, unit, values = _quantity(quantity)
+    (curve,) = values(solution, point).values()
+    figure, axes = new_figure()
+    axes.axhline(0.0, color="0.6", linewidth=0.8)
+    marker = "." if len(solution) <= 200 else None
+    axes.plot(curve, load, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4, zorder=2)
+    if isinstance(solution, Path):
+        kinds = (("limit point", solution.limit_points, "o", 1), ("bifurcation", solution.bifurcations, "D", 2))
+        for name, states, shape, colour in kinds:
+            if not states:
+                continue
+            alone = _together(solution, states)
+            (x,) = values(alone, point).values()
+            axes.plot(
+                x, alone.at, shape, color=COLOURS[colour], markersize=8, markeredgecolor="white", label=name, zorder=3
+            )
+            for place in zip(x, alone.at, strict=True):
+                axes.annotate(
+                    f"{place[1]:.5g}", place, (0, 8), textcoords="offset points", ha="center", fontsize=8, zorder=4
+                )
+        if solution.limit_points or solution.bifurcations:
+            figure.legend(loc="outside upper center", ncols=2, frameon=False)
+    axes.set_xlabel(f"{label} at ({point.reference[0]:.4g}, {point.reference[1]:.4g}) [{unit}]")
+    axes.set_ylabel("load factor [-]")
+    axes.margins(0.06)
+    if path is not None:
+        save_figure(figure, path)
+    return figure
+
+
+def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]:
+    if name not in _OF_POINT:
+        known = ", ".join([*_OF_POINT, "energy"])
+        raise InputError(f"there is no history of {name!r}; those that are: {known}")
+    return _OF_POINT[name]
+
+
+def _together(path: Solution, states: Sequence[State]) -> Solution:
+    """Return states of a path as the rows of a solution."""
+    at = np.array([state.at for state in states])
+    p, v, a = (np.array([getattr(state, name) for state in states]) for name in "pva")
+    return Solution(path.model, True, at, p, v, a, path.statistics)

@@ -1,0 +1,93 @@
+"""Pictures of modes: of vibration with their frequencies, of buckling with their load factors."""
+
+from collections.abc import Callable
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.solution import Solution
+from beamfem.validation import count
+from beamfem.view.drawing import frame
+from beamfem.view.held import draw_joints, draw_supports
+from beamfem.view.plots import empty_figure, save_figure
+from beamfem.view.shapes import Shapes, draw_undeformed
+
+if TYPE_CHECKING:
+    from beamfem.analysis.buckling import Buckling
+    from beamfem.analysis.modes import Modes
+
+_MOST = 6
+_WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]
+
+
+def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
+    """Draw the first `most` modes of vibration, each with its frequency [Hz]; return the figure of matplotlib.
+
+    Dark the mode at its largest, pale half a period later, dashed the reference. Raises InputError; BeamfemError
+    without matplotlib.
+    """
+
+    def title(mode: int) -> str:
+        if mode < len(modes.rigid):
+            return f"{mode + 1}: {modes.rigid[mode]}"
+        growth = modes.growth[mode]
+        return f"{mode + 1}: {modes.frequencies[mode]:.4g} Hz" + (f", grows {growth:.3g}/s" if growth > 0.0 else "")
+
+    def rows(mode: int, solution: Solution) -> np.ndarray:
+        return np.array([len(solution) - 1] if mode < len(modes.rigid) else [len(solution) // 2, 0])
+
+    return _plot(modes, title, rows, path, most)
+
+
+def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
+    """Draw the first `most` modes of buckling, each with its critical load factor; return the figure of matplotlib.
+
+    Pale the critical state, dark the same with its mode added, dashed the reference. Raises InputError; BeamfemError
+    without matplotlib.
+    """
+
+    def title(mode: int) -> str:
+        return f"{mode + 1}: load factor {buckling.load_factors[mode]:.5g}"
+
+    def rows(mode: int, solution: Solution) -> np.ndarray:
+        return np.array([0, 1])
+
+    return _plot(buckling, title, rows, path, most)
+
+
+def _plot(
+    modes: "Modes | Buckling",
+    title: Callable[[int], str],
+    rows: Callable[[int, Solution], np.ndarray],
+    path: str | PathLike[str] | None,
+    most: int,
+) -> Any:
+    number = min(len(modes), count("most", most))
+    if number == 0:
+        raise InputError("there are no modes to draw")
+    solutions = [modes.solution(mode) for mode in range(number)]
+    shapes = [Shapes(own, rows(mode, own), total=1000) for mode, own in enumerate(solutions)]
+    box = np.stack([np.min([own.box[0] for own in shapes], axis=0), np.max([own.box[1] for own in shapes], axis=0)])
+    size = box[1] - box[0]
+    columns = min(number, 2 if size[0] > 1.5 * size[1] else 3)
+    lines = -(-number // columns)
+    height = np.clip(_WIDTH * size[1] / size[0] if size[0] > 0.0 else np.inf, _LEAST_HEIGHT, 1.4 * _WIDTH) + 0.7
+    width = np.clip((height - 0.7) * size[0] / max(size[1], 1e-12), 2.2, _WIDTH)
+    figure = empty_figure(columns * width + 0.6, lines * height + 0.4)
+    grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
+    for mode, (axes, own) in enumerate(zip(grid.flat, shapes, strict=False)):
+        draw_undeformed(axes, own.points)
+        for order in range(len(own.rows)):
+            own.draw(axes, order, (order + 1) / len(own.rows))
+        draw_supports(axes, own.solution, int(own.rows[-1]), own.centre)
+        draw_joints(axes, own.solution, int(own.rows[-1]))
+        frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]))
+        axes.set_title(title(mode), fontsize=10)
+        axes.label_outer()
+    for axes in grid.flat[number:]:
+        axes.set_visible(False)
+    if path is not None:
+        save_figure(figure, path)
+    return figure

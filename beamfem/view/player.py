@@ -1,0 +1,152 @@
+"""A page with a slider over the steps of a solution: one file, drawn by the browser, works offline."""
+
+import base64
+import json
+from html import escape
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamfem.along import QUANTITIES, section_forces
+from beamfem.errors import InputError
+from beamfem.solution import Solution
+from beamfem.validation import count
+from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.held import joints_of, supports_of
+from beamfem.view.shapes import Shapes, limits
+from beamfem.view.summary import model_rows, solution_rows
+
+_BYTES = 560_000  # of numbers in a page; as text they grow by a third
+_FORCES = ("moment", "normal", "shear")
+_LEVELS = 65534  # into which the box of all shapes is cut
+
+
+def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
+    """Write a self-contained page with a slider over up to `frames` steps and return its path; folders are made.
+
+    The body moves with its supports, coloured by a section force [N, N m], rotation [rad], displacement [m] or speed
+    [m/s] on demand; beside it a curve of the largest displacement and the statistics. Under 1 MB: of a large model the
+    axes are drawn without bodies, and fewer steps. Raises InputError for another suffix than .html.
+    """
+    target = Path(path)
+    if target.suffix != ".html":
+        right = target.with_suffix(".html") if target.name else target / "steps.html"
+        raise InputError(f'a page is a .html file, got "{target}"; "{right}" would be right')
+    if len(solution) == 0:
+        raise InputError("the solution has no rows, so there is nothing to show")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    heading = title or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
+    statistics = [*solution_rows(solution), *model_rows(solution.model)]
+    table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in statistics)
+    template = files("beamfem.view").joinpath("player.html").read_text(encoding="utf-8")
+    # "</" would end the script in which the numbers stand
+    data = json.dumps(_data(solution, count("frames", frames)), separators=(",", ":")).replace("</", "<\\/")
+    page = template.replace("@TITLE@", escape(heading)).replace("@TABLE@", table).replace("@DATA@", data)
+    target.write_text(page, encoding="utf-8")
+    return target
+
+
+def _data(solution: Solution, frames: int) -> dict[str, Any]:
+    shapes, body = _sized(solution, frames, len(_names(solution)))
+    sides = shapes.body if body else [axis[:, :, None] for axis in shapes.axis]
+    low, high = shapes.box
+    size = float(np.max(high - low)) or 1.0
+    # (rows, points, sides, 2)
+    numbers = np.round((np.concatenate(sides, axis=1) - low) / size * _LEVELS - 0.5 * _LEVELS).astype("<i2")
+    moved = [
+        np.linalg.norm(axis - own.reference, axis=-1) for axis, own in zip(shapes.axis, shapes.points, strict=True)
+    ]
+    rows = [int(row) for row in shapes.rows]
+    name, unit = axis_of_rows(solution)
+    outlines, places = _supports(shapes)
+    return {
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "size": size,
+        "levels": _LEVELS,
+        "sides": 2 if body else 1,
+        "beams": [len(own.xi) for own in shapes.points],
+        "pieces": [own.pieces for own in shapes.points],
+        "labels": [moment_of(solution, row) for row in rows],
+        "at": [float(f"{solution.at[row]:.7g}") for row in rows],
+        "axis": f"{name} [{unit}]",
+        "moved": [float(f"{value:.5g}") for value in np.concatenate(moved, axis=1).max(axis=1)],
+        "points": _text(numbers),
+        "reference": _text(
+            np.round(
+                (np.concatenate([own.reference for own in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
+            ).astype("<i2")
+        ),
+        "outlines": outlines,
+        "places": places,
+        "fields": _fields(shapes),
+    }
+
+
+def _sized(solution: Solution, frames: int, fields: int) -> tuple[Shapes, bool]:
+    """Return the shapes that a page has room for, and whether with their bodies."""
+    rows = spread_rows(solution, frames)
+    elements = sum(mesh.elements for mesh in solution.model.meshes)
+    room = _BYTES // (len(rows) * (8 + fields))
+    if room >= 2 * elements:
+        # an element of n pieces has n + 1 points
+        return Shapes(solution, rows, total=max(1, room - elements)), True
+    most = max(2, _BYTES // (2 * elements * (4 + fields)))
+    return Shapes(solution, spread_rows(solution, min(frames, most)), total=1), False
+
+
+def _fields(shapes: Shapes) -> list[dict[str, Any]]:
+    """Return fields in 255 levels between their limits."""
+    solution, rows = shapes.solution, shapes.rows
+    forces = [section_forces(points, solution.p[rows]) for points in shapes.points]
+    found = []
+    for name in _names(solution):
+        quantity = QUANTITIES[name]
+        if name in _FORCES:
+            parts = [own[name] for own in forces]
+        else:
+            parts = [quantity.values(points, solution.p, solution.v, rows) for points in shapes.points]
+        low, high = limits(parts)
+        levels = np.round((np.concatenate(parts, axis=1) - low) / (high - low) * 255.0).astype(np.uint8)
+        label = f"{quantity.label} [{quantity.unit}]"
+        found.append({"name": name, "label": label, "low": low, "high": high, "values": _text(levels)})
+    return found
+
+
+def _names(solution: Solution) -> tuple[str, ...]:
+    return _FORCES + (("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed"))
+
+
+def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
+    """Return outlines [symbols] and for each row the places [m] of each outline, one row only where all stand still."""
+    found = []
+    for row in shapes.rows:
+        stamps = supports_of(shapes.solution, int(row), shapes.centre)
+        stamps.add_all(joints_of(shapes.solution, int(row)))
+        found.append(stamps)
+    outlines = [
+        {
+            "line": np.round(found[0].outlines[key], 3).tolist(),
+            "colour": _css(colour),
+            "fill": {"none": None, "white": "#fff"}.get(fill, fill),
+        }
+        for key, colour, _, fill in found[0].places
+    ]
+    places = [[[_rounded(place) for place in group] for group in stamps.places.values()] for stamps in found]
+    return outlines, places[:1] if all(own == places[0] for own in places) else places
+
+
+def _rounded(place: np.ndarray) -> list[float]:
+    return [float(f"{value:.6g}") for value in place]
+
+
+def _css(colour: str) -> str:
+    """Return a colour of matplotlib, a name or a grey between 0 and 1, as CSS."""
+    return colour if colour.startswith("#") else f"rgb({','.join([str(round(255 * float(colour)))] * 3)})"
+
+
+def _text(numbers: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(numbers).tobytes()).decode()

@@ -1,0 +1,35 @@
+"""Whether VTK can render here, found out in a child process: where it cannot it kills the process, without an error."""
+
+import os
+import subprocess
+import sys
+from functools import lru_cache
+
+_SECONDS = 60
+_PROBE = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(16, 16))
+plotter.add_mesh(pyvista.Triangle())
+plotter.screenshot(None, return_img=True)
+print("rendered")
+os._exit(0)
+"""
+ADVICE = "on Debian and Ubuntu `apt-get install --no-install-recommends libegl1 libgl1-mesa-dri` helps"
+
+
+@lru_cache(maxsize=1)
+def can_render() -> bool:
+    """Return whether VTK renders a triangle without a window; asked once a process."""
+    command = [sys.executable, "-c", f"import os{_PROBE}"]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=_SECONDS, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return done.returncode == 0 and b"rendered" in done.stdout
+
+
+def has_display() -> bool:
+    """Return whether a window can be opened."""
+    if sys.platform in ("win32", "darwin"):
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

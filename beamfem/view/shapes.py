@@ -1,0 +1,155 @@
+"""Deformed shapes: the body of each beam and its axis, in one colour or by a field."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beamfem.along import AxisPoints, Quantity, quantity
+from beamfem.solution import Solution
+from beamfem.view.frames import axis_points
+
+FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print
+_LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
+_SLABS = 40_000  # of bodies in a picture; above, axes alone are drawn
+
+
+def shade(share: float) -> np.ndarray:
+    """Return blue, light for 0 and dark for 1."""
+    return _LIGHT + share * (_DARK - _LIGHT)
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """The shapes of some rows of a solution, and a field along them where `colour` names one.
+
+    r, d: for each beam (rows, points, 2).
+    """
+
+    solution: Solution
+    rows: np.ndarray
+    colour: str | None = None
+    total: int | None = None
+
+    @cached_property
+    def points(self) -> list[AxisPoints]:
+        return axis_points(self.solution) if self.total is None else axis_points(self.solution, self.total)
+
+    @cached_property
+    def _moved(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        p = self.solution.p[self.rows]
+        return [points.positions(p) for points in self.points]
+
+    @cached_property
+    def body(self) -> list[np.ndarray]:
+        """Lower and upper face of each beam (rows, points, 2 faces, 2) [m]."""
+        return [
+            r[:, :, None] + points.faces[None, :, :, None] * d[:, :, None]
+            for points, (r, d) in zip(self.points, self._moved, strict=True)
+        ]
+
+    @cached_property
+    def axis(self) -> list[np.ndarray]:
+        """Axis of each beam (rows, points, 2) [m]."""
+        return [r for r, _ in self._moved]
+
+    @cached_property
+    def quantity(self) -> Quantity | None:
+        return None if self.colour is None else quantity(self.colour)
+
+    @cached_property
+    def values(self) -> list[np.ndarray]:
+        """The field along each beam (rows, points)."""
+        assert self.quantity is not None
+        states = self.solution.p, self.solution.v
+        return [self.quantity.values(points, *states, self.rows) for points in self.points]
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """Smallest and largest value of the field in these rows."""
+        return limits(self.values)
+
+    @cached_property
+    def box(self) -> np.ndarray:
+        """Lower left and upper right corner of all shapes and the undeformed axes (2, 2) [m]."""
+        found = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
+        return np.stack(
+            [np.min([f.min(axis=0) for f in found], axis=0), np.max([f.max(axis=0) for f in found], axis=0)]
+        )
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        """Mean of all points of the axes (2,) [m]."""
+        return np.concatenate([axis.reshape(-1, 2) for axis in self.axis]).mean(axis=0)
+
+    @property
+    def _bodies_drawn(self) -> bool:
+        return len(self.rows) * sum(len(points.xi) for points in self.points) <= _SLABS
+
+    def draw(self, axes: Any, order: int, share: float = 1.0) -> list[Any]:
+        """Draw the shape of the row number `order`; share: 0 for a pale one, 1 for a strong one. Return the artists."""
+        return self._by_field(axes, order, share) if self.colour else self._plain(axes, order, share)
+
+    def _plain(self, axes: Any, order: int, share: float) -> list[Any]:
+        from matplotlib.collections import LineCollection, PolyCollection
+
+        colour = shade(share)
+        lines = LineCollection([axis[order] for axis in self.axis], colors=[colour], linewidths=1.3, zorder=2 + share)
+        drawn: list[Any] = [lines]
+        if self._bodies_drawn:
+            outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
+            fill = PolyCollection(outlines, facecolors=[(*colour, 0.45)], edgecolors="none", zorder=2 + share)
+            drawn.insert(0, fill)
+        for artist in drawn:
+            axes.add_collection(artist, autolim=False)
+        return drawn
+
+    def _by_field(self, axes: Any, order: int, share: float) -> list[Any]:
+        from matplotlib import colormaps
+        from matplotlib.collections import LineCollection, PolyCollection
+
+        pieces, slabs, means = [], [], []
+        for points, axis, body, values in zip(self.points, self.axis, self.body, self.values, strict=True):
+            shape = (points.mesh.elements, points.pieces + 1)
+            r, faces = axis[order].reshape(*shape, 2), body[order].reshape(*shape, 2, 2)
+            value = values[order].reshape(shape)
+            pieces.append(np.stack([r[:, :-1], r[:, 1:]], axis=2).reshape(-1, 2, 2))
+            slab = np.stack([faces[:, :-1, 0], faces[:, 1:, 0], faces[:, 1:, 1], faces[:, :-1, 1]], axis=2)
+            slabs.append(slab.reshape(-1, 4, 2))
+            means.append(0.5 * (value[:, :-1] + value[:, 1:]).ravel())
+        low, high = self.limits
+        colours = colormaps[FIELD_COLOURS]((np.concatenate(means) - low) / (high - low))[:, :3]
+        # paler by white, not by transparency, which would show where slabs overlap
+        strength = 0.35 + 0.65 * share
+        colours = 1.0 - strength * (1.0 - colours)
+        layer = 2 + share
+        drawn: list[Any] = []
+        if self._bodies_drawn:
+            fill = PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
+            outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
+            edges = str(1.0 - 0.75 * strength)
+            drawn += [fill, PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4)]
+        drawn.append(LineCollection(list(np.concatenate(pieces)), colors=colours, linewidths=2.0, capstyle="round"))
+        for artist in drawn:
+            artist.set_zorder(layer)
+            axes.add_collection(artist, autolim=False)
+        return drawn
+
+
+def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Return the smallest and the largest value, further apart where the values are constant up to round-off."""
+    low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+    size = max(abs(low), abs(high))
+    return (low, high) if high - low > 1e-9 * size else (low - (size or 1.0), high + (size or 1.0))
+
+
+def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:
+    """Draw the axes in the reference as dashed lines."""
+    from matplotlib.collections import LineCollection
+
+    lines = LineCollection(
+        [own.reference for own in points], colors="0.55", linestyles=(0, (5, 3)), linewidths=0.9, zorder=1.5
+    )
+    return axes.add_collection(lines, autolim=False)

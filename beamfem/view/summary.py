@@ -1,0 +1,109 @@
+"""Models and solutions as small tables for notebooks."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.model import Model
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
+
+_BEAMS = 12  # listed each
+
+
+def model_rows(model: Model) -> list[tuple[str, str]]:
+    """Return what a model consists of, as name and text."""
+    elements = sum(mesh.elements for mesh in model.meshes)
+    names = ", ".join(dict.fromkeys(mesh.beam.element.name for mesh in model.meshes))
+    rows = [
+        ("beams", f"{len(model.beams)}, {sum(beam.curve.length for beam in model.beams):.4g} m long in all"),
+        ("elements", f"{elements} ({names})"),
+        ("coordinates", str(model.size)),
+        ("supports", _kinds(model.supports)),
+        ("loads", _kinds(model.loads)),
+    ]
+    return rows + ([("joints", _kinds(model.joints))] if model.joints else [])
+
+
+def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
+    """Return how a solution was found and where it ends, as name and text."""
+    statistics = solution.statistics
+    name, unit = ("load factor", "") if solution.static else ("time", " s")
+    rows = [("rows", str(len(solution)))]
+    if len(solution):
+        rows.append((name, f"{solution.at[0]:.6g} to {solution.at[-1]:.6g}{unit}"))
+    rows += [
+        ("Newton iterations", f"{statistics.iterations} in {statistics.steps} steps, {statistics.cuts} cut"),
+        ("ended", statistics.ended),
+    ]
+    if len(solution):
+        name, value = largest_displacement(solution)
+        rows.append((name, value))
+    return rows
+
+
+def largest_displacement(solution: "Solution") -> tuple[str, str]:
+    """Return the largest displacement of a node in the last row, and where it is."""
+    from beamfem.along import AxisPoints
+
+    found = []
+    for mesh in solution.model.meshes:
+        points = AxisPoints(mesh, 1)
+        moved = points.positions(solution.p[-1:])[0][0] - points.reference
+        best = int(np.linalg.norm(moved, axis=1).argmax())
+        found.append((float(np.linalg.norm(moved[best])), moved[best], points.reference[best]))
+    size, (ux, uy), (x, y) = max(found, key=lambda item: item[0])
+    return "largest displacement", f"{size:.4g} m: ({ux:.4g}, {uy:.4g}) m at {_place(x, y)}, in the last row"
+
+
+def model_table(model: Model) -> str:
+    """Return a model as an HTML table."""
+    return f"<b>Model</b>{_table(model_rows(model))}{_beams(model)}"
+
+
+def solution_table(solution: "Solution") -> str:
+    """Return a solution and its model as an HTML table."""
+    kind = type(solution).__name__ + (" of statics" if solution.static else " of a motion")
+    return f"<b>{kind}</b>{_table(solution_rows(solution) + model_rows(solution.model))}"
+
+
+def _beams(model: Model) -> str:
+    head = ("beam", "from [m]", "to [m]", "length [m]", "element", "elements", "forces")
+    lines = []
+    for number, (beam, mesh) in enumerate(zip(model.beams, model.meshes, strict=True)):
+        if number == _BEAMS:
+            lines.append(("…", f"{len(model.beams) - _BEAMS} more", *[""] * 5))
+            break
+        ends = [_place(x, y) for x, y in (mesh.position[0], mesh.position[-1])]
+        kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
+        lines.append((str(number), *ends, f"{beam.curve.length:.4g}", *kind))
+    return _table(lines, head)
+
+
+def _table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
+    style = "text-align: left; vertical-align: top"
+    top = "<tr>" + "".join(f"<th style='{style}'>{escape(name)}</th>" for name in head) + "</tr>" if head else ""
+    body = "".join(
+        "<tr>" + "".join(f"<td style='{style}'>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table>{top}{body}</table>"
+
+
+def _place(x: float, y: float) -> str:
+    """Return a point as text, without the round-off of a zero."""
+    noise = 1e-12 * max(abs(x), abs(y))
+    x, y = (0.0 if abs(value) <= noise else value for value in (x, y))
+    return f"({x:.4g}, {y:.4g})"
+
+
+def _kinds(items: Sequence[object]) -> str:
+    return _counted(type(item).__name__ for item in items) or "none"
+
+
+def _counted(names: Iterable[str]) -> str:
+    counted = Counter(names)
+    return ", ".join(name if number == 1 else f"{number} {name}" for name, number in counted.items())

@@ -1,0 +1,107 @@
+"""The page with a slider: complete, offline, small, and right."""
+
+import base64
+import json
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from drawn import arch, cantilever, frame, pendulum
+
+import beamfem as bf
+
+
+def data_of(path):
+    return json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', path.read_text(), re.S).group(1))
+
+
+def positions(data):
+    """Corners of the bodies (rows, points, sides, 2) [m]."""
+    numbers = np.frombuffer(base64.b64decode(data["points"]), "<i2").reshape(len(data["labels"]), -1, data["sides"], 2)
+    return (numbers + 0.5 * data["levels"]) / data["levels"] * data["size"] + data["low"]
+
+
+@pytest.fixture(scope="module")
+def falling():
+    return pendulum()
+
+
+def test_steps_and_positions_are_those_of_the_solution(falling, tmp_path):
+    data = data_of(falling.to_html(tmp_path / "new" / "fall.html", frames=10))
+    assert len(data["labels"]) == 10
+    assert data["axis"] == "time [s]"
+    assert data["at"][-1] == pytest.approx(falling.time[-1])
+    # both faces at the end of the beam, to one of 65534 levels
+    tip = positions(data)[-1, -1].mean(axis=0)
+    end = falling.model.beams[0].end
+    np.testing.assert_allclose(tip, falling.position(end)[-1], atol=data["size"] / data["levels"])
+    assert data["moved"][-1] == pytest.approx(np.linalg.norm(falling.displacement(end)[-1]), rel=1e-4)
+
+
+def test_fields_have_their_limits_and_units(tmp_path):
+    solution = cantilever()
+    data = data_of(solution.to_html(tmp_path / "bent.html"))
+    fields = {field["name"]: field for field in data["fields"]}
+    assert fields["moment"]["label"] == "bending moment [N m]"
+    clamp = abs(solution.reaction(solution.model.beams[0].start)[-1, 2])
+    assert fields["moment"]["high"] == pytest.approx(clamp, rel=1e-4)
+    values = np.frombuffer(base64.b64decode(fields["moment"]["values"]), np.uint8).reshape(2, -1)
+    assert values[-1, 0] == 255
+    assert "speed" not in fields
+    assert "speed" in {field["name"] for field in data_of(pendulum().to_html(tmp_path / "fall.html"))["fields"]}
+
+
+def test_page_is_complete_in_itself(falling, tmp_path):
+    path = falling.to_html(tmp_path / "fall.html", title="Fall & <rise>")
+    text = path.read_text()
+    assert not re.search(r"https?://|<link|src=|@import|url\(", text)
+    assert "<h1>Fall &amp; &lt;rise&gt;</h1>" in text
+    assert f"<td>{len(falling)}</td>" in text
+    assert f"{falling.statistics.iterations} in {falling.statistics.steps} steps" in text
+    assert not re.search(r"@[A-Z]+@", text)
+
+
+def test_sixty_frames_of_a_large_model_stay_below_a_megabyte(tmp_path):
+    """As many rows as there are frames, of a solution that was not computed."""
+    small = cantilever(elements=700, element=bf.CRBF(2), load=1e-3)
+    rows = np.linspace(0.0, 1.0, 60)
+    p = small.p[0] + rows[:, None] * (small.p[-1] - small.p[0])
+    rest = np.zeros_like(p)
+    solution = bf.Solution(small.model, True, rows, p, rest, rest, small.statistics)
+    path = solution.to_html(tmp_path / "large.html")
+    assert path.stat().st_size < 1_000_000
+    data = data_of(path)
+    assert data["sides"] == 1
+    assert len(data["labels"]) >= 40
+
+
+def test_supports_move_only_where_they_roll(tmp_path):
+    data = data_of(cantilever().to_html(tmp_path / "bent.html"))
+    assert len(data["places"]) == 1
+    data = data_of(frame().to_html(tmp_path / "frame.html"))
+    assert len(data["places"]) == 2
+    assert len(data["places"][0]) == len(data["outlines"])
+
+
+def test_a_path_names_its_rows(tmp_path):
+    path = arch()
+    data = data_of(path.to_html(tmp_path / "arch.html"))
+    assert data["labels"][3] == f"load factor {path.at[3]:.4g}, row 3"
+
+
+def test_other_suffixes_are_refused(falling, tmp_path):
+    with pytest.raises(bf.InputError, match=r'fall\.html" would be right'):
+        falling.to_html(tmp_path / "fall.pdf")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser")
+def test_browser_draws_the_step_of_the_address(falling, tmp_path):
+    path = falling.to_html(tmp_path / "fall.html", frames=10)
+    command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'browser'}"]
+    done = subprocess.run(
+        [*command, "--dump-dom", f"file://{path}#4:moment"], capture_output=True, text=True, timeout=60
+    )
+    assert f'<output id="now">{data_of(path)["labels"][4]}</output>' in done.stdout

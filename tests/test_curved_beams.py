@@ -337,3 +337,16 @@ def test_what_is_said_of_the_reference_holds_between_the_nodes_of_a_coarse_curve
         columns = {label: dofs for label, _, dofs in coordinate_columns(system.model.meshes[0])}
         found = [-force[columns[f"r^{name}"]].sum() for name in "xy"]
         assert found == pytest.approx([1.0, 2.0], abs=1e-10)
+
+
+@pytest.mark.parametrize("forces", [bf.Structural(), bf.ContinuumMechanics(True)], ids=lambda forces: forces.name)
+def test_a_free_thin_ring_vibrates_as_it_should(forces):
+    """Hoppe 1871, in the plane: omega^2 = n^2 (n^2 - 1)^2 / (n^2 + 1) EI / (rho A R^4), in pairs."""
+    section = bf.Rectangle(0.01, 0.002)
+    ring = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, 2 * np.pi), 12, bf.CRBF(5, forces), section, STEEL)
+    modes = bf.solve_modes(bf.Model([ring], joints=[bf.Rigid(ring.start, ring.end)]), 7)
+    factor = 1.0 / (1.0 - 0.3**2) if forces.name == "continuum" else 1.0
+    speed = np.sqrt(factor * 2e11 * section.second_moment / (7800.0 * section.area)) / (2 * np.pi)
+    expected = [n * (n**2 - 1) / np.sqrt(n**2 + 1) * speed for n in (2, 2, 3, 3)]
+    assert modes.frequencies[:3] == pytest.approx(0.0, abs=1e-3 * speed)
+    assert modes.frequencies[3:] == pytest.approx(expected, rel=2e-5)

@@ -211,3 +211,68 @@ def test_a_saved_prescribed_motion_cannot_be_run_on(tmp_path):
     bf.simulate(bf.Model([beam], supports), 0.01, 1e-3).save(tmp_path / "moved.h5")
     with pytest.raises(bf.InputError, match="saved as values"):
         bf.simulate(bf.load(tmp_path / "moved.h5").model, 0.01, 1e-3)
+
+
+STEEL, RUBBER = bf.Material(2e11, 0.3, 7800.0), bf.Material(1e7, 0.4, 1200.0)
+
+
+def layers(thickness: float) -> bf.Layered:
+    return bf.Layered([bf.Layer(STEEL, 0.02), bf.Layer(RUBBER, thickness)], 0.05, axis=0.03)
+
+
+CURVES = {
+    "arc": bf.Arc((0, 0), 1.0, 0.0, 1.5),
+    "polyline": bf.Polyline(((0, 0), (1, 0), (1, 1))),
+    "spline": bf.BSpline(2, (0, 0, 0, 1, 1, 1), ((0, 0), (1, 0.5), (1, 1)), (1, 2, 1)),
+    "parametric": bf.Parametric(lambda u: (u, 0.3 * np.sin(2 * u)), 0.0, 1.5),
+    "chain": bf.Chain((bf.Line((0, 0), (1, 0)), bf.Arc((1, 1), 1.0, -0.5 * np.pi, 0.0))),
+}
+SECTIONS = {
+    "tube": bf.Tube(0.1, 0.01),
+    "layers": layers(0.04),
+    "stiffness": bf.Section.from_stiffness(1e7, 1e6, 1e4, 1.0, 1.0, coupling=10.0),
+    "tapered": lambda s: bf.Rectangle(0.1, 0.1 - 0.02 * s),
+    "tapered layers": lambda s: layers(0.04 - 0.01 * s),
+}
+MADE = [bf.CRBF(3), bf.ANCFCRBF(bf.ElasticLine()), bf.ShearRigid(), bf.CRBF(2, bf.SplitContinuum()), bf.ANCF()]
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+@pytest.mark.parametrize("curve", CURVES)
+def test_every_curve_section_and_element_comes_back(tmp_path, curve, section):
+    material = STEEL if section in ("tube", "tapered") else None
+    chosen = [element for element in MADE if section != "stiffness" or not element.forces.fills_body]
+    beams = [bf.Beam(CURVES[curve], [0.0, 0.1, 0.4, 1.0], own, SECTIONS[section], material) for own in chosen]
+    supports = [bf.Clamp(beam.start) for beam in beams]
+    supports += [bf.Foundation(beams[0], (1.0, 1.0)), bf.Spring(beams[0].end, (1.0, 2.0), 3.0)]
+    loads = [bf.PointForce(beams[0].at(0.9), (1.0, 10.0), follower=True), bf.Gravity((0.0, -9.81))]
+    loads += [bf.DistributedLoad(beam, (0.0, 1.0), follower=True) for beam in beams]
+    solution = bf.solve_static(bf.Model(beams, supports, loads))
+    solution.save(tmp_path / "first.h5")
+    load(tmp_path / "first.h5").save(tmp_path / "second.h5")
+    again = load(tmp_path / "second.h5")
+    assert np.array_equal(again.p, solution.p)
+    np.testing.assert_allclose(again.energy().strain, solution.energy().strain, rtol=1e-10, atol=1e-18)
+    for beam, other in zip(beams, again.model.beams, strict=True):
+        assert other.element == beam.element
+        np.testing.assert_allclose(again.position(other.at(0.37)), solution.position(beam.at(0.37)), atol=1e-13)
+        before, after = solution.section_forces(beam), again.section_forces(other)
+        np.testing.assert_allclose(after.moment, before.moment, rtol=1e-10, atol=1e-8 * np.abs(before.moment).max())
+    again.to_vtk(tmp_path / "body.pvd")
+    # what was saved is what a solve on the same mesh needs
+    np.testing.assert_allclose(bf.solve_static(again.model).p[-1], solution.p[-1], rtol=1e-9, atol=1e-9)
+
+
+def test_a_saved_section_is_linear_between_its_values_and_refuses_what_it_cannot_know(tmp_path):
+    def jumping(s: float) -> object:
+        return bf.Circle(0.1) if s < 0.5 else layers(0.04)
+
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), lambda s: bf.Rectangle(0.1, 0.1 + s), STEEL)
+    two = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(1), jumping, STEEL)
+    model = bf.Model([one, two], [bf.Clamp(one.start), bf.Clamp(two.start)])
+    bf.solve_static(model).save(tmp_path / "solution.h5")
+    linear, jump = load(tmp_path / "solution.h5").model.beams
+    assert linear.section_at(0.6).area == pytest.approx(0.07, rel=1e-12)
+    assert jump.section_at(1.0) == layers(0.04)
+    with pytest.raises(bf.InputError, match="different kinds"):
+        jump.section_at(0.48)

@@ -1,7 +1,7 @@
 """A model as plain numbers, lists and names for JSON, and back."""
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,13 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.sampled import Sampled
+from beamfem.model.reference import energy_points, length_points, stations
+from beamfem.model.sampled import Sampled, SampledSection
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.section import Layer, Layered, Section, StiffnessSection
+from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
 
 _CLASSES = {
@@ -34,6 +37,7 @@ _CLASSES = {
         Layer,
         Layered,
         StiffnessSection,
+        SampledSection,
         Material,
         Element,
         Cubic,
@@ -62,6 +66,7 @@ _CLASSES = {
         Model,
     )
 }
+_DRAWN = 4  # intervals of an element at whose ends a section that varies is saved besides
 # numbers of kernels belong to this version of the code, not to the model
 _NOT_SAVED = ("code", "turns_with", "fills_body", "shear_measures", "thickness_measures")
 
@@ -72,7 +77,7 @@ def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
     Raises InputError for a part that cannot be saved.
     """
     writer = _Writer(model, [float(value) for value in np.unique(at)])
-    beams = [writer.members(beam) for beam in model.beams]
+    beams = [writer.members(_with_values(beam, mesh)) for beam, mesh in zip(model.beams, model.meshes, strict=True)]
     described = writer.members(model)
     return {"beams": beams, "model": described, "at": writer.at, "functions": writer.values}
 
@@ -87,6 +92,20 @@ def rebuild(description: dict[str, Any]) -> Model:
     model = _read(description["model"], beams, functions)
     assert isinstance(model, Model)
     return model
+
+
+def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
+    """Return the beam with its section as values where it is a function: those that were used, and some to draw."""
+    if isinstance(beam.section, CrossSection | SampledSection):
+        return beam
+    points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2])
+    drawn = np.linspace(0.0, 1.0, _DRAWN + 1)
+    parts = [mesh.arc_length(element, xi) for element, xi in points]
+    parts.append((mesh.vertices[:-1, None] + np.diff(mesh.vertices)[:, None] * drawn).ravel())
+    at = np.unique(np.concatenate([*parts, [0.0, 0.5 * beam.curve.length, beam.curve.length]]))
+    at = at[np.append(True, np.diff(at) > 1e-9 * beam.curve.length)]
+    values = tuple(beam.section_at(float(arc)) for arc in at)
+    return replace(beam, section=SampledSection(tuple(at.tolist()), values))
 
 
 class _Writer:

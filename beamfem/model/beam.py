@@ -60,7 +60,10 @@ class Beam:
         """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
         if isinstance(self.section, CrossSection):
             return self.section
-        section = self.section(arc_length)
+        try:
+            section = self.section(arc_length)
+        except InputError as error:
+            raise InputError(f"the section at arc length {arc_length:g} m cannot be made: {error}") from error
         if not isinstance(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
         return section

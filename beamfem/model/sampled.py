@@ -1,9 +1,13 @@
-"""A function that was saved as the values it had."""
+"""Functions that were saved as the values they had."""
 
 from bisect import bisect_left
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
 
 from beamfem.errors import InputError
+from beamfem.section.protocol import CrossSection
+
+_SAME = 1e-9  # share of the length within which an arc length is one that was saved
 
 
 @dataclass(frozen=True)
@@ -25,3 +29,44 @@ class Sampled:
             return self.values[after]
         share = (at - self.at[after - 1]) / (self.at[after] - self.at[after - 1])
         return (1.0 - share) * self.values[after - 1] + share * self.values[after]
+
+
+@dataclass(frozen=True)
+class SampledSection:
+    """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them."""
+
+    at: tuple[float, ...]
+    values: tuple[CrossSection, ...]
+
+    def __call__(self, arc_length: float) -> CrossSection:
+        """Return the section at an arc length [m]. Raises InputError between two of different kinds."""
+        after = min(max(bisect_left(self.at, arc_length), 1), len(self.at) - 1)
+        low, high = self.at[after - 1], self.at[after]
+        near = _SAME * (self.at[-1] - self.at[0])
+        if arc_length - low <= near:
+            return self.values[after - 1]
+        if high - arc_length <= near:
+            return self.values[after]
+        try:
+            section = _between(self.values[after - 1], self.values[after], (arc_length - low) / (high - low))
+        except ValueError:
+            raise InputError(
+                f"the section was saved as its values, which are of different kinds at the arc lengths {low:g} m and "
+                f"{high:g} m; to evaluate it at {arc_length:g} m, give the function itself again"
+            ) from None
+        assert isinstance(section, CrossSection)
+        return section
+
+
+def _between(low: Any, high: Any, share: float) -> Any:
+    """Return the same object with numbers at a share of the way from one to the other; ValueError if they differ."""
+    if is_dataclass(low) and not isinstance(low, type) and type(low) is type(high):
+        names = [field.name for field in fields(low)]
+        return replace(low, **{name: _between(getattr(low, name), getattr(high, name), share) for name in names})
+    if isinstance(low, tuple) and isinstance(high, tuple):
+        return tuple(_between(one, other, share) for one, other in zip(low, high, strict=True))
+    if isinstance(low, int | float) and isinstance(high, int | float):
+        return (1.0 - share) * low + share * high
+    if low == high:
+        return low
+    raise ValueError

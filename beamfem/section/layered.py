@@ -41,9 +41,10 @@ class Layered:
     shear_factor: float = 5 / 6
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "layers", tuple(self.layers))
-        if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
+        layers = tuple(self.layers) if isinstance(self.layers, Sequence) else ()
+        if not layers or not all(isinstance(layer, Layer) for layer in layers):
             raise InputError(f"layers of a Layered section must be a list of Layer, got {self.layers!r}")
+        object.__setattr__(self, "layers", layers)
         positive("width", self.width)
         positive("shear_factor", self.shear_factor)
         if self.axis is None:

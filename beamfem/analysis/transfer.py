@@ -24,10 +24,9 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         return np.array(state.p), np.array(state.v)
     _require_alike(source, target, name)
     p, v = system.reference.copy(), np.zeros(target.size)
-    # backwards, so that shared coordinates are those of the first of the joined nodes
-    for old, new in zip(reversed(source.meshes), reversed(target.meshes), strict=True):
+    for old, new in zip(source.meshes, target.meshes, strict=True):
         values, rates = _by_label(old, state)
-        for label, nodes, dofs in coordinate_columns(new, reverse=True):
+        for label, nodes, dofs in coordinate_columns(new):
             p[dofs], v[dofs] = values[label][nodes], rates[label][nodes]
     return p, v
 

@@ -243,7 +243,7 @@ def test_the_hinged_arch_sways_before_its_limit_point(flexibility):
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_sidesway_of_the_hinged_arch_is_followed(direction):
-    """The branch drops from the bifurcation; a point of it obeys the arch by shooting with a load of its own."""
+    """The branch rises slowly to the side of its mode; its last point obeys the arch by shooting."""
     flexibility = 1e-6
     beam, model = arch(bf.Pin, bf.Pin, flexibility)
     crossing = bf.trace_equilibrium(model, lowered(beam, 0.2)).bifurcations[0]

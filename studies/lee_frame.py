@@ -52,6 +52,7 @@ def draw(paths: dict[int, bf.Path], folder: Path = OUT) -> None:
     for load, u, w in LIMITS:
         axes.plot([u, w], [load / 1000] * 2, "o", color="black", markersize=4)
     axes.set_xlabel("displacement of the load point [cm]")
+    axes.set_ylim(-15.0, 40.0)
     axes.set_ylabel("load [kN]")
     axes.legend(frameon=False)
     save_figure(figure, folder / "path.svg")

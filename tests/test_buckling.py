@@ -15,14 +15,14 @@ SUPPORTS = {
 }
 
 
-def reissner(condition, low, high, slenderness):
+def reissner(condition, low, high, slenderness, shear_factor=5.0 / 6.0):
     """Return P L^2/EI of a column of length L = slenderness h that is compressed by P and then bends.
 
     With the axial stretch 1 - P/EA and V the transverse force, linearised: EI t'' + P eta t = -V eta,
     y' = eta t + V/GA, eta = 1 - P/EA + P/GA; condition(u, q) = 0 with u = L sqrt(P eta/EI), q = P/(eta GA).
     """
     axial = 12.0 * slenderness**2
-    shear = axial * 5.0 / 6.0 / 2.6
+    shear = axial * shear_factor / 2.6
 
     def value(load):
         eta = 1.0 - load / axial + load / shear
@@ -31,10 +31,10 @@ def reissner(condition, low, high, slenderness):
     return brentq(value, low, high, xtol=1e-13, rtol=1e-14)
 
 
-def column(supports, slenderness, elements, element=None, direction=(1.0, 0.0), load=-1.0):
+def column(supports, slenderness, elements, element=None, direction=(1.0, 0.0), load=-1.0, shear_factor=5.0 / 6.0):
     """A column of length 1 and its critical load in units of EI/L^2."""
     end = np.array(direction) / np.hypot(*direction)
-    section = bf.Rectangle(0.1, 1.0 / slenderness)
+    section = bf.Rectangle(0.1, 1.0 / slenderness, shear_factor)
     beam = bf.Beam(bf.Line((0, 0), tuple(end)), elements, element or bf.CRBF(4), section, STEEL)
     force = load * STEEL.youngs_modulus * section.second_moment
     return bf.Model([beam], supports(beam), [bf.PointForce(beam.end, tuple(force * end))])
@@ -55,6 +55,7 @@ def test_columns_buckle_at_the_reference_load(name, slenderness, exact):
     assert abs(found.linearised[0] / exact - 1.0) > 1e-4
 
 
+@pytest.mark.parametrize(("slenderness", "shear_factor"), [(10, 5 / 6), (10, 0.3), (60, 5 / 6), (5000, 1.0)])
 @pytest.mark.parametrize(
     ("name", "conditions"),
     [
@@ -65,16 +66,17 @@ def test_columns_buckle_at_the_reference_load(name, slenderness, exact):
             "clamped-clamped",
             [
                 (lambda u, q: u - 2.0 * np.pi, 20.0, 60.0),
-                (lambda u, q: np.sin(u / 2) - u / 2 * (1.0 - q) * np.cos(u / 2), 60.0, 90.0),
+                (lambda u, q: np.sin(u / 2) - u / 2 * (1.0 - q) * np.cos(u / 2), 45.0, 90.0),
             ],
         ),
     ],
 )
-def test_columns_of_every_end_buckle_at_the_root_of_their_equation(name, conditions):
-    exact = [reissner(*condition, 10) for condition in conditions]
-    found = bf.solve_buckling(column(SUPPORTS[name], 10, 24), len(exact))
-    # the error of order 8 of a third mode over 24 elements
-    assert found.load_factors == pytest.approx(exact, rel=2e-9)
+def test_columns_of_every_end_buckle_at_the_root_of_their_equation(name, conditions, slenderness, shear_factor):
+    exact = [reissner(*condition, slenderness, shear_factor) for condition in conditions]
+    model = column(SUPPORTS[name], slenderness, 24, shear_factor=shear_factor)
+    found = bf.solve_buckling(model, len(exact))
+    # the error of order 8 of a third mode over 24 elements, and round-off that grows with the slenderness squared
+    assert found.load_factors == pytest.approx(exact, rel=4e-9 if slenderness < 5000 else 3e-7)
 
 
 def test_an_inclined_column_buckles_at_the_same_load():

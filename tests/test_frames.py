@@ -1,9 +1,8 @@
-"""Frames, arches and columns followed through limit points and bifurcations; references without finite elements."""
+"""Frames and arches followed through limit points and bifurcations; references without finite elements."""
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from scipy.special import ellipk
 from shooting import Member, solved
 
 import beamfem as bf
@@ -225,12 +224,9 @@ def sidesway(load, guess, flexibility):
     return np.linalg.det(np.array(columns).T)
 
 
-@pytest.mark.parametrize(("flexibility", "within"), [(1e-6, 3e-7), (1 / 2.2e7, 2e-6)])
-def test_the_hinged_arch_sways_before_its_limit_point(flexibility, within):
-    """Sidesway and limit load against shooting; 3.2762821 and 9.4631089 where it is inextensible.
-
-    within: round-off of a tangent whose stiffnesses E A / l and P differ by 1e9.
-    """
+@pytest.mark.parametrize("flexibility", [1e-6, 1 / 2.2e7, 1e-9])
+def test_the_hinged_arch_sways_before_its_limit_point(flexibility):
+    """Sidesway and limit load against shooting; 3.2762821 and 9.4631089 where it is inextensible."""
     beam, model = arch(bf.Pin, bf.Pin, flexibility)
     path = bf.trace_equilibrium(model, lowered(beam, 1.3))
     (crossing,), (limit,) = path.bifurcations, path.limit_points
@@ -240,14 +236,14 @@ def test_the_hinged_arch_sways_before_its_limit_point(flexibility, within):
         guess = symmetric_half(load, guess, flexibility)
     exact = brentq(lambda load: sidesway(load, guess, flexibility), 3.2, 3.35, xtol=1e-10)
     assert exact == pytest.approx(3.2762821409, rel=1e-5)
-    assert crossing.load_factor == pytest.approx(exact, rel=within)
+    assert crossing.load_factor == pytest.approx(exact, rel=3e-8 if flexibility > 1e-9 else 3e-6)
     assert limit.load_factor == pytest.approx(9.463108888550, rel=1e-5)
     assert np.abs(path.displacement(beam.at(0.5))[:, 0]).max() < 1e-5
 
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_sidesway_of_the_hinged_arch_is_followed(direction):
-    """The branch drops from the bifurcation; a point of it obeys the arch by shooting with a load of its own."""
+    """The branch rises slowly to the side of its mode; its last point obeys the arch by shooting."""
     flexibility = 1e-6
     beam, model = arch(bf.Pin, bf.Pin, flexibility)
     crossing = bf.trace_equilibrium(model, lowered(beam, 0.2)).bifurcations[0]
@@ -292,63 +288,3 @@ def test_the_clamped_arch_is_symmetric_up_to_its_limit_point():
     (limit,) = path.limit_points
     assert limit.load_factor == pytest.approx(exact, rel=1e-6)
     assert path.bifurcations == ()
-
-
-# Columns -----------------------------------------------------------------------------------------------------------
-
-
-def test_a_hinged_column_buckles_along_the_elastica_and_shortens():
-    """P L^2 / EI = 4 K(k)^2, k = sin(end angle / 2); the ends approach by 2 (1 - E(k) / K(k)) L, here by the load."""
-    section = bf.Section.from_stiffness(1e8, 1e8, 1.0, 1.0, 1.0)
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 12, bf.CRBF(4), section)
-    model = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (-1.0, 0.0))])
-    path = bf.trace_equilibrium(model, 11.0)
-    assert path.bifurcations[0].load_factor == pytest.approx(np.pi**2, rel=1e-6)
-    branch = bf.trace_equilibrium(
-        model, lambda state: abs(state.rotation(beam.start)) > 2.2, start=path.bifurcations[0]
-    )
-    angle = branch.rotation(beam.start)[1:]
-    assert branch.load_factor[1:] == pytest.approx(4 * ellipk(np.sin(angle / 2) ** 2) ** 2, rel=2e-6)
-    assert branch.displacement(beam.end)[-1, 0] < -1.0
-
-
-def beck(load, slenderness):
-    section = bf.Rectangle(1.0, 1.0 / slenderness)
-    stiffness = 1.0 / section.second_moment
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(4), section, bf.Material(stiffness, 0.3, slenderness))
-    force = bf.PointForce(beam.end, (-load, 0.0), follower=True)
-    model = bf.Model([beam], [bf.Clamp(beam.start)], [force])
-    return bf.solve_modes(model, 3, about=bf.solve_static(model))
-
-
-def beck_exactly():
-    """Load and frequency at which the lowest two frequencies of Beck's column meet; Euler and Bernoulli's beam.
-
-    P^2 + 2 w^2 + P w sinh a sin b + 2 w^2 cosh a cos b = 0 with a^2, b^2 = sqrt(P^2 / 4 + w^2) -+ P / 2.
-    """
-
-    def equation(p, w):
-        root = np.sqrt(p**2 / 4 + w**2)
-        a, b = np.sqrt(root - p / 2), np.sqrt(root + p / 2)
-        return p**2 + 2 * w**2 + p * w * np.sinh(a) * np.sin(b) + 2 * w**2 * np.cosh(a) * np.cos(b)
-
-    def meet(p):
-        """Frequency between the two, where the equation is level."""
-        return brentq(lambda w: equation(p, w + 1e-4) - equation(p, w - 1e-4), 9.0, 13.0, xtol=1e-12)
-
-    load = brentq(lambda p: equation(p, meet(p)), 19.0, 21.0, xtol=1e-12)
-    return load, meet(load)
-
-
-def test_becks_column_flutters_at_the_load_where_its_frequencies_meet():
-    """20.0509 EI / L^2 (Beck 1952); a slender beam, so that shear and rotary inertia change some 1e-6 of it."""
-    exact, frequency = beck_exactly()
-    assert exact == pytest.approx(20.0509, abs=1e-4)
-    before, after = beck(0.9999 * exact, 2000), beck(1.0001 * exact, 2000)
-    assert np.all(before.growth == 0.0)
-    assert after.growth[:2] == pytest.approx([after.growth[0], -after.growth[0]])
-    assert after.growth[0] > 0.05
-    assert 2 * np.pi * after.frequencies[:2] == pytest.approx(frequency, rel=1e-3)
-    # growth^2 rises in proportion to the load above the critical one
-    squares = [beck(share * exact, 2000).growth[0] ** 2 for share in (1.001, 1.002)]
-    assert (2 * squares[0] - squares[1]) / squares[0] == pytest.approx(0.0, abs=5e-3)

@@ -305,3 +305,17 @@ def test_a_flying_frame_keeps_energy_and_momenta(element):
     assert np.abs(angular / angular[0] - 1).max() < 1e-4
     assert np.abs(total / total[0] - 1).max() < 1e-4
     assert solution.energy().strain.max() > 1e-4 * total[0]
+
+
+def test_a_bent_corner_of_gradients_keeps_its_state_when_its_support_goes():
+    """The vector that both sides of a corner share is that of the first, in the reference as in a state handed on."""
+    corner = bf.Beam(bf.Polyline([(0, 0), (1, 0), (1, 1)]), 4, bf.ANCF(STRUCTURAL), SECTION, STEEL)
+    held = bf.Model([corner], [bf.Clamp(corner.start)], [bf.PointForce(corner.end, (-EI, 0.0))])
+    state = bf.solve_static(held)
+    free = bf.Model([corner], [bf.Pin(corner.start)])
+    motion = bf.simulate(free, 1e-4, 1e-4, start=state[-1])
+    for share in (0.25, 0.499, 0.501, 0.75, 1.0):
+        assert motion.position(corner.at(share))[0] == pytest.approx(state.position(corner.at(share))[-1], abs=1e-12)
+    turning = bf.simulate(free, 1e-4, 1e-4, velocity=bf.RigidVelocity((0.0, 0.0), 3.0))
+    assert turning.velocity(corner.end)[0] == pytest.approx((-3.0, 3.0), abs=1e-12)
+    assert turning.velocity(corner.at(0.75))[0] == pytest.approx((-1.5, 3.0), abs=1e-12)

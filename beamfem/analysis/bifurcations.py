@@ -12,6 +12,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.continuation import PathPoint
 from beamfem.analysis.critical_points import Segment, SegmentLostError
+from beamfem.analysis.mode_stiffness import mode_stiffness
 
 _BESIDE = 1e-3  # of a segment: how far from a limit point signs of pivots and positions are trusted
 _JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
@@ -125,34 +126,45 @@ def _require_crossing(segment: Segment, shares: np.ndarray, aside: list[float]) 
 
 
 def _crossings(segment: Segment, x: float, near: np.ndarray, distance: float, count: int) -> list[Crossing]:
-    """Return the bifurcation at a share x with each of `count` modes, interpolated between shares near to it.
+    """Return the bifurcation about a share x with each of `count` modes, interpolated between shares near to it.
 
     Raises SegmentLostError.
     """
     line = segment.line
     points = [segment.at(at) for at in near]
-    weights = np.array([np.prod((x - np.delete(near, i)) / (at - np.delete(near, i))) for i, at in enumerate(near)])
-    # round-off of tangents so near to a singular one is all along the mode, and of opposite sign on the two sides
-    y, tangent = (
-        weights @ np.array(rows) for rows in zip(*((point.y, point.tangent) for point in points), strict=True)
-    )
-    found: list[list[np.ndarray]] = [[] for _ in points]
+    rows, tangents = np.array([point.y for point in points]), np.array([point.tangent for point in points])
+    known: list[list[np.ndarray]] = [[] for _ in points]
     result = []
     for _ in range(count):
-        for point, modes in zip(points, found, strict=True):
-            modes.append(line.softest(point.factors, modes))
-        modes_here = np.array([modes[-1] for modes in found])
-        modes_here *= np.sign([line.dot(mode, modes_here[0]) for mode in modes_here])[:, None]
-        mode = weights @ modes_here
+        for point, softer in zip(points, known, strict=True):
+            softer.append(line.softest(point.factors, softer))
+        modes = np.array([softer[-1] for softer in known])
+        modes *= np.sign([line.dot(mode, modes[0]) for mode in modes])[:, None]
+        place = _refined(segment, points, modes, near) if _symmetric(segment, points[0]) else x
+        # round-off of tangents so near to a singular one is all along the mode, and of opposite sign on the two sides
+        weights = [np.prod((place - others) / (at - others)) for at, others in ((at, near[near != at]) for at in near)]
+        mode = weights @ modes
         mode /= np.copysign(line.length(mode), mode[np.argmax(np.abs(mode) / line.scale)])
-        _require_crossing(segment, (near - x) / distance, [line.dot(mode, point.y) for point in points])
-        result.append(Crossing(x, y, tangent, mode))
-    return result
+        _require_crossing(segment, (near - place) / distance, [line.dot(mode, y) for y in rows])
+        result.append(Crossing(place, weights @ rows, weights @ tangents, mode))
+    return sorted(result, key=lambda found: found.share)
+
+
+def _refined(segment: Segment, points: list[PathPoint], modes: np.ndarray, near: np.ndarray) -> float:
+    """Return the share at which the stiffness of the modes is zero, without the round-off of assembled tangents."""
+    system = segment.line.system
+    stiffness = [
+        mode_stiffness(system, point.y[:-1], point.load_factor, mode[:-1])
+        for point, mode in zip(points, modes, strict=True)
+    ]
+    return float(krogh_interpolate(stiffness, near, 0.0))
 
 
 def _symmetric(segment: Segment, point: PathPoint) -> bool:
     """Tell whether a tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
     line = segment.line
+    if line.system.symmetric:
+        return True
     weights = line.weights[line.system.free_dofs]
     a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
     one, other = a @ point.factors.solve(b), b @ point.factors.solve(a)

@@ -34,7 +34,7 @@ def critical_load(path: PrimaryPath, start: Start, number: int, guess: float, co
     else:
         raise PathEndsError
     samples = [trial + offset * _NEAR * (trial - begin) for offset in _LAST]
-    return _interpolated(samples, [_share(path, start, at, number, count) for at in samples])
+    return _interpolated(samples, [start.lost_by_mode(path.reach(at).p, at, number) for at in samples])
 
 
 def _share(path: PrimaryPath, start: Start, load_factor: float, number: int, count: int) -> float:

@@ -5,6 +5,7 @@ from scipy.sparse import csc_array
 
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.assemble import assemble
+from beamfem.kernels.block import Block
 from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.stress import predict_stress
@@ -48,10 +49,12 @@ def linearise(
     time: float,
     coefficients: tuple[float, float, float],
     stresses: tuple[np.ndarray, ...] | None = None,
+    blocks: tuple[Block, ...] | None = None,
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
 
-    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns).
+    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); blocks: to take instead of
+    those of the system.
     """
     unknowns = system.unknowns
     unknown, pattern = len(unknowns.dofs), unknowns.pattern
@@ -59,7 +62,7 @@ def linearise(
     matrix = np.zeros(unknown * width) if pattern is None else np.zeros(len(pattern.data))
     result = np.zeros(len(p))
     body, values, weights = system.body(time), system.point_values(time), np.array(coefficients)
-    for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
+    for i, (block, loads) in enumerate(zip(blocks or system.blocks, system.point_loads, strict=True)):
         layout = system.layouts[i]
         geometric = _NO_STRESS if stresses is None else stresses[i]
         assemble(block, layout, p, v, a, body, weights, geometric, result, matrix)

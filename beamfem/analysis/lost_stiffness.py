@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from beamfem.analysis.eigenpairs import Pairs, largest_pairs
 from beamfem.analysis.equations import STATICS, linearise
+from beamfem.analysis.mode_stiffness import mode_stiffness
 from beamfem.analysis.pencil import UNTURNED, is_symmetric
 from beamfem.analysis.primary_path import Equilibrium
 from beamfem.analysis.tangent import Factorised, Tangent
@@ -59,8 +60,12 @@ class Start:
                 return known[0]
         raise ConvergenceError(f"{missing} unstable mode(s) at load factor {load_factor:.6g} were not found")
 
+    def lost_by_mode(self, p: np.ndarray, load_factor: float, number: int) -> float:
+        """Return the share mu counted from 0 by `number`, without the round-off of assembled tangents."""
+        return 1.0 - mode_stiffness(self.system, p, load_factor, self.critical_shape(p, load_factor, number))
+
     def critical_shape(self, p: np.ndarray, load_factor: float, number: int) -> np.ndarray:
-        """Return the shape (n,) of the share counted from 0 by `number`, where it is 1: the tangent is singular."""
+        """Return the shape (n,) of the share counted from 0 by `number`, phi K0 phi = 1, close to where it is 1."""
         change = csr_array(self.stiffness - _tangent(self.system, p, load_factor).sparse(UNTURNED))
         result = np.zeros_like(p)
         result[self.system.free_dofs] = largest_pairs(change, self.stiffness, self.factors, number + 1)[1][:, number]

@@ -35,9 +35,7 @@ class System:
                     p[dofs] = mesh.speed[nodes]
                 elif label != "theta":
                     name, axis = label.split("^")
-                    # a turned vector is that of the first of the joined nodes
-                    own = mesh.carried.carrier[nodes] != TURNED_GRADIENTS if name == "r_y" else slice(None)
-                    p[dofs[own]] = values[name][nodes[own], "xy".index(axis)]
+                    p[dofs] = values[name][nodes, "xy".index(axis)]
         return p
 
     @cached_property
@@ -169,9 +167,13 @@ class System:
 
 
 def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers."""
+    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
+
+    A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
+    """
     result = []
     for carrier, nodes in mesh.carriers:
         for column, label in enumerate(labels(carrier, mesh.vectors)):
-            result.append((label, nodes, mesh.carried.dof[nodes, column]))
+            if carrier != TURNED_GRADIENTS or not label.startswith("r_y"):
+                result.append((label, nodes, mesh.carried.dof[nodes, column]))
     return result

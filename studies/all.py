@@ -6,6 +6,7 @@ from pathlib import Path
 import cantilever_small
 import curved
 import elements
+import frames_page
 import locking
 import pendulum
 import rollup
@@ -20,6 +21,7 @@ STUDIES = {
     "locking": locking,
     "curved": curved,
     "rollup": rollup,
+    "frames": frames_page,
 }
 CASES = {
     "printed": (

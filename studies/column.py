@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, new_figure, plot_shapes, save_figure
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 SHEAR_FACTOR, POISSON = 5 / 6, 0.3
 OUT = Path("out/column")
@@ -92,7 +92,7 @@ def draw(branch: bf.Path, folder: Path = OUT) -> None:
     axes.set_ylabel("P L$^2$ / EI")
     axes.legend(frameon=False)
     save_figure(figure, folder / "post-buckling.svg")
-    plot_shapes(branch, folder / "shapes.svg")
+    branch.plot(folder / "shapes.svg")
 
 
 if __name__ == "__main__":

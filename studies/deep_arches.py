@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, new_figure, plot_shapes, save_figure
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 HALF = np.deg2rad(107.5)
 LIMITS = {"clamped-hinged": 8.97308996972, "hinged-hinged": 9.463108888550, "clamped-clamped": 9.26073844}
@@ -70,8 +70,8 @@ def draw(runs: dict[str, Run], folder: Path = OUT) -> None:
             axes.plot(crown(found)[1], found.load_factor, marker, color=COLOURS[i])
         for branch in run.branches[:1]:
             axes.plot(crown(branch)[:, 1], branch.load_factor, "--", color=COLOURS[i], label=f"{ends}, swaying")
-            plot_shapes(branch, folder / f"shapes-{ends}-sway.svg", shapes=6)
-        plot_shapes(run.path, folder / f"shapes-{ends}.svg", shapes=6)
+            branch.plot(folder / f"shapes-{ends}-sway.svg", shapes=6)
+        run.path.plot(folder / f"shapes-{ends}.svg", shapes=6)
     axes.set_xlabel("deflection of the crown / R")
     axes.set_ylabel("P R$^2$ / EI")
     axes.legend(frameon=False)

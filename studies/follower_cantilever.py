@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, new_figure, plot_shapes, save_figure
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 PRINTED = (0.1722778753991, 0.7806901427781, 2.0981572399410)  # x, y, angle of the tip at P L^2 / EI = 5; collocation
 OUT = Path("out/follower_cantilever")
@@ -57,7 +57,7 @@ def draw(path: bf.Path, folder: Path = OUT) -> None:
     axes.set_xlabel("P L$^2$ / EI")
     axes.legend(frameon=False)
     save_figure(figure, folder / "tip.svg")
-    plot_shapes(path, folder / "shapes.svg")
+    path.plot(folder / "shapes.svg")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, new_figure, plot_shapes, save_figure
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 LIMITS = ((18544.52709, 26.8783276616, 48.7542403782), (-9392.48964, 90.1770006077, 58.2249580457))  # N, u, w [cm]
 OUT = Path("out/lee_frame")
@@ -56,7 +56,7 @@ def draw(paths: dict[int, bf.Path], folder: Path = OUT) -> None:
     axes.set_ylabel("load [kN]")
     axes.legend(frameon=False)
     save_figure(figure, folder / "path.svg")
-    plot_shapes(list(paths.values())[-1], folder / "shapes.svg")
+    list(paths.values())[-1].plot(folder / "shapes.svg")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import beamfem as bf
-from beamfem.view.plots import COLOURS, new_figure, plot_shapes, save_figure
+from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 LIMITS = ((33.8491411685, 0.231963322934, 631.491699114), (31.2444502955, 0.39174738873, 630.387539125))  # lb, in, lb
 CURVE = (  # w [in], P [lb], thrust [lb]
@@ -65,7 +65,7 @@ def draw(path: bf.Path, folder: Path = OUT) -> None:
         axes.set_ylabel(label)
         axes.legend(frameon=False)
         save_figure(figure, folder / f"{name}.svg")
-    plot_shapes(path, folder / "shapes.svg")
+    path.plot(folder / "shapes.svg")
 
 
 if __name__ == "__main__":

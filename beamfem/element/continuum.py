@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -76,7 +77,7 @@ class ContinuumMechanics(_Body):
     """
 
     plane_stress: bool = False
-    name: str = "continuum"
+    name: ClassVar[str] = "continuum"
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
@@ -103,7 +104,7 @@ class SplitContinuum(_Body):
     Bends with E I. Where rotations hold the thickness the centreline has nothing to couple with and stretches with E A.
     """
 
-    name: str = "split"
+    name: ClassVar[str] = "split"
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis

@@ -1,6 +1,7 @@
 """Nodal coordinates: which numbers p carry the nodal vectors e of a field."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,16 +12,16 @@ from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TUR
 class Gradients:
     """p = e: position vector gradients, constant mass; Omar and Shabana 2001."""
 
-    name: str = "gradients"
-    code: int = GRADIENTS
+    name: ClassVar[str] = "gradients"
+    code: ClassVar[int] = GRADIENTS
 
 
 @dataclass(frozen=True)
 class Rotation:
     """r_y = (-sin t, cos t), t relative to the reference; paper, eqs. (5) to (7), (11), (12)."""
 
-    name: str = "rotation"
-    code: int = ROTATION
+    name: ClassVar[str] = "rotation"
+    code: ClassVar[int] = ROTATION
 
 
 @dataclass(frozen=True)

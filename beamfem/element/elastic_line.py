@@ -1,6 +1,7 @@
 """Elastic forces of a line whose curvature comes from r_xx."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,12 +20,12 @@ class ElasticLine:
     reference, so that M = E I dtheta/ds; the section stands across r_x, and r_y only follows it.
     """
 
-    name: str = "elastic-line"
-    code: int = ELASTIC_LINE
-    turns_with: str = "r_x"
-    fills_body: bool = False
-    shear_measures: tuple[bool, ...] = (False, False, True, False)
-    thickness_measures: tuple[bool, ...] = (False, False, False, True)
+    name: ClassVar[str] = "elastic-line"
+    code: ClassVar[int] = ELASTIC_LINE
+    turns_with: ClassVar[str] = "r_x"
+    fills_body: ClassVar[bool] = False
+    shear_measures: ClassVar[tuple[bool, ...]] = (False, False, True, False)
+    thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, curvature [1/m], shear, thickness strain."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
 from math import factorial
-from typing import Protocol, runtime_checkable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -44,10 +44,10 @@ def d_slots(field: Field) -> np.ndarray:
 class Cubic:
     """Hermite cubics in r and r_x, linear in r_y; paper, eqs. (2) to (4); Omar and Shabana 2001."""
 
-    name: str = "cubic"
-    vectors: tuple[str, ...] = ("r", "r_x", "r_y")
-    degree: int = 3
-    director_degree: int = 1
+    name: ClassVar[str] = "cubic"
+    vectors: ClassVar[tuple[str, ...]] = ("r", "r_x", "r_y")
+    degree: ClassVar[int] = 3
+    director_degree: ClassVar[int] = 1
 
     @property
     def nodes(self) -> np.ndarray:
@@ -101,7 +101,7 @@ class Lagrange:
     """Polynomials of one order in r and in r_y through Gauss-Lobatto nodes; order 1: paper, eqs. (8) to (10)."""
 
     order: int = 1
-    vectors: tuple[str, ...] = ("r", "r_y")
+    vectors: ClassVar[tuple[str, ...]] = ("r", "r_y")
 
     @property
     def name(self) -> str:

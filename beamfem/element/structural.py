@@ -1,6 +1,7 @@
 """Elastic forces of the geometrically exact beam."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,12 +19,12 @@ class Structural:
     Resists stretch with E A, shear with k_s G A, curvature with E I; with gradients, thickness stretch with E A.
     """
 
-    name: str = "structural"
-    code: int = STRUCTURAL
-    turns_with: str = "r_y"
-    fills_body: bool = False
-    shear_measures: tuple[bool, ...] = (False, True, False, False)
-    thickness_measures: tuple[bool, ...] = (False, False, False, True)
+    name: ClassVar[str] = "structural"
+    code: ClassVar[int] = STRUCTURAL
+    turns_with: ClassVar[str] = "r_y"
+    fills_body: ClassVar[bool] = False
+    shear_measures: ClassVar[tuple[bool, ...]] = (False, True, False, False)
+    thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, shear, curvature [1/m], thickness stretch."""

@@ -67,8 +67,6 @@ _CLASSES = {
     )
 }
 _DRAWN = 4  # intervals of an element at whose ends a section that varies is saved besides
-# numbers of kernels belong to this version of the code, not to the model
-_NOT_SAVED = ("code", "turns_with", "fills_body", "shear_measures", "thickness_measures")
 
 
 def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
@@ -118,7 +116,7 @@ class _Writer:
         self.values: list[list[float]] = []
 
     def members(self, value: Any) -> dict[str, Any]:
-        names = [field.name for field in fields(value) if field.name not in _NOT_SAVED]
+        names = [field.name for field in fields(value)]
         return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
 
     def write(self, value: Any) -> Any:

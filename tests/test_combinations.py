@@ -154,6 +154,13 @@ def test_the_elastic_line_comes_to_the_extensible_elastica(element):
     assert np.abs(limit(values, 4) - elastica(force)).max() < 5e-9
 
 
+@pytest.mark.parametrize("elements", [96, 256])
+def test_elements_shorter_than_the_section_is_high_end_at_the_round_off_of_r_xx(elements):
+    """Found in review: the curvature carries eps |r| / l^2, and the force of it once more 1 / l."""
+    found = tip(bf.ANCFCRBF(bf.ElasticLine()), elements, (-BENDING, 5 * BENDING))
+    assert np.abs(found - elastica((-BENDING, 5 * BENDING))).max() < 2e-8
+
+
 @of_forces("elastic-line", lambda element: element.coordinates.name == "shear-rigid")
 def test_the_elastic_line_without_stretch_at_its_nodes_is_off_by_that_stretch(element):
     """s = 1 at the nodes: between them r_x is a parabola, whose direction a curvature from r_xx sees."""

@@ -267,7 +267,6 @@ BAD = {
     "an element of order 9": (lambda: bf.CRBF(9), "at most 8"),
     "an element of order 0": (lambda: bf.CRBF(0), "order"),
     "an element of order 2.5": (lambda: bf.CRBF(2.5), "order"),
-    "gradients that can swell": (lambda: bf.BilinearANCF(bf.Structural(), "reduced"), "full integration"),
     "forces as a class": (lambda: bf.ANCF(forces=bf.Structural), "forces of an element"),
     "a field as a name": (lambda: bf.Element("cubic", bf.ANCF().coordinates, bf.Structural()), "field of an element"),
 }

@@ -137,7 +137,8 @@ def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...)."""
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
-    strain = Components(strain.xx[..., 0], strain.yy[..., 0], strain.xy[..., 0])
+    at_axis = stress(mesh, strain, np.zeros(1))
+    strain, at_axis = (Components(part.xx[..., 0], part.yy[..., 0], part.xy[..., 0]) for part in (strain, at_axis))
     return Fields(
         now.r,
         now.r_s,
@@ -145,7 +146,7 @@ def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -
         turning(mesh, p, now, element, xi),
         np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)),
         strain,
-        stress(mesh, strain),
+        at_axis,
     )
 
 
@@ -168,13 +169,17 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
 
 
-def stress(mesh: BeamMesh, strain: Components) -> Components:
-    """Return the stress [Pa] that the elastic forces give to a strain (steps, points, ...); nan without a material."""
-    material = mesh.beam.material
-    if material is None:
-        none = np.full_like(strain.xx, np.nan)
-        return Components(none, none, none)
-    return Components(*mesh.beam.element.forces.stress(strain.xx, strain.yy, strain.xy, material))
+def stress(mesh: BeamMesh, strain: Components, y: np.ndarray) -> Components:
+    """Return the stress [Pa] that the elastic forces give to a strain (..., heights) at y (..., heights) [m].
+
+    nan where the section is known by its stiffness only.
+    """
+    result = np.full((3, *strain.xx.shape), np.nan)
+    heights = np.broadcast_to(y, strain.xx.shape)
+    for material, here in mesh.beam.section_at(0.0).materials_at(heights, mesh.beam.material):
+        found = mesh.beam.element.forces.stress(strain.xx[here], strain.yy[here], strain.xy[here], material)
+        result[:, here] = np.array(found)
+    return Components(*result)
 
 
 def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:

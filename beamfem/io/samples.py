@@ -47,7 +47,7 @@ class Samples:
             "rotation": np.repeat(self._rotation(p, now)[..., None], self.y.shape[-1], axis=-1),
         }
         strain = postprocess.green_strain(now, self.axis, self.y)
-        stress = postprocess.stress(self.mesh, strain)
+        stress = postprocess.stress(self.mesh, strain, self.y)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
             result[f"stress_{component}"] = getattr(stress, component)
@@ -56,6 +56,12 @@ class Samples:
             for name, values in section_forces(self.points, p).items():
                 result[names[name]] = values[..., None]
         return {name: self._by_cell(values) for name, values in result.items()}
+
+    @property
+    def has_material(self) -> bool:
+        """Whether the stress is known: a section that is known by its stiffness only has none."""
+        beam = self.mesh.beam
+        return bool(beam.section_at(0.0).materials_at(np.zeros(1), beam.material))
 
     def _rotation(self, p: np.ndarray, now: postprocess.Axis) -> np.ndarray:
         """Rotation (steps, points of the axis) [rad], continuous from one call to the next."""
@@ -119,7 +125,7 @@ class Cells:
 
     @property
     def _stressed(self) -> bool:
-        return all(beam.mesh.beam.material is not None for beam in self.beams)
+        return all(beam.has_material for beam in self.beams)
 
 
 def times(at: np.ndarray) -> np.ndarray:

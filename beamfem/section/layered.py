@@ -88,6 +88,11 @@ class Layered:
             for layer, low, high in zip(self.layers, edges[:-1], edges[1:], strict=True)
         ]
 
+    def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
+        """Return the material of each layer with the heights in it; on a face between two layers the upper one."""
+        place = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
+        return [(layer.material, place == number) for number, layer in enumerate(self.layers)]
+
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return the material of each layer with heights and weights."""
         result = []

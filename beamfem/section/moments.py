@@ -75,6 +75,10 @@ class Section:
         """Return the material with A, 0, I, 0, I4. Raises InputError without a material."""
         return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
 
+    def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Return the material at all heights."""
+        return [(required(material), np.ones_like(y, dtype=bool))]
+
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return the material with heights and weights over the equivalent rectangle."""
         half = 0.5 * self.height

@@ -42,6 +42,10 @@ class CrossSection(Protocol):
         """Return each material with the integrals of 1, y, y^2, y^3, y^4 [m^2 ... m^6] over its part."""
         ...
 
+    def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Return each material with the heights of y [m] where it is, as booleans of the shape of y."""
+        ...
+
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return each material with quadrature heights y [m] and weights [m^2] over its part."""
         ...

@@ -64,6 +64,10 @@ class StiffnessSection:
             "use Structural or ElasticLine forces, or a Section with a material"
         )
 
+    def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+        """Return none: a stiffness tells nothing of the body."""
+        return []
+
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Raise InputError: a stiffness tells nothing of the body."""
         return [(part, moments, moments) for part, moments in self.moments(material)]

@@ -32,9 +32,13 @@ def element_residual(
     system: System, block: int, element: int, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float
 ) -> np.ndarray:
     """Return inertia + elastic - body forces (n,) [N, N m] of one element of a block, without loads at points."""
-    own = slice(element, element + 1)
     whole = system.blocks[block]
-    part = whole._replace(**{name: getattr(whole, name)[own] for name in ("kind", "carrier", "frame", "dof", "beam")})
+    nodes = whole.node[element]
+    part = whole._replace(
+        node=np.arange(len(nodes))[None],
+        **{name: getattr(whole, name)[element : element + 1] for name in ("kind", "beam")},
+        **{name: getattr(whole, name)[nodes] for name in ("carrier", "frame", "dof", "home")},
+    )
     result = np.zeros(len(p))
     assemble(part, system.layouts[block], p, v, a, system.body(time), np.ones(3), _NO_STRESS, result, _EMPTY)
     return result
@@ -74,7 +78,7 @@ def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns)."""
     result = []
     for block in system.blocks:
-        stress = np.empty((block.frame.shape[0], block.jacobian.shape[1], block.stiffness.shape[2]))
+        stress = np.empty((block.node.shape[0], block.jacobian.shape[1], block.stiffness.shape[2]))
         predict_stress(block, p, step, stress)
         result.append(stress)
     return tuple(result)

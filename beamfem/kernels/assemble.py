@@ -8,9 +8,10 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.block import ELASTIC_LINE
-from beamfem.kernels.coordinates import node_map
 from beamfem.kernels.measures import measure, measure_hessian
-from beamfem.kernels.reduce import add_force, add_matrix
+from beamfem.kernels.reduce import add_forces, add_matrix, add_turnings, element_columns, place_nodes
+
+FAST = {"contract", "reassoc", "nsz"}
 
 
 @njit(cache=True, error_model="numpy")
@@ -22,133 +23,93 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
     geometric_stress: (ne, nq, ns) stress resultants for the geometric part of the tangent, or ne = 0 for the true ones.
     matrix: empty where only the residual is wanted.
     """
-    ne, nn = block.carrier.shape[0], block.carrier.shape[1]
-    nv = block.scale.shape[1]
-    nr, nd, nq = block.r_slots.shape[0], block.d_slots.shape[0], block.jacobian.shape[1]
-    ns = block.stiffness.shape[2]
-    npe = block.dof.shape[1]
-    npn = npe // nn
-    size = 2 * nv
-    per_node = size // nn
-    wanted = matrix.shape[0] > 0
-    predicted = geometric_stress.shape[0] > 0
-    ck, ca = coefficients[0], coefficients[2]
-    inertia = ca != 0.0
-    stiff = wanted and ck != 0.0
-    second = block.measures == ELASTIC_LINE
-    m = 8 if second else 6
+    shape = (block.dof.shape[0], 2 * block.scale.shape[1] // block.node.shape[1])
+    e, acceleration = np.empty(shape), np.empty(shape)
+    force = np.zeros(shape)
+    place_nodes(block, p, v, a, e, acceleration)
+    if matrix.shape[0] == 0:
+        add_element_forces(block, e, acceleration, body, coefficients[2] != 0.0, force)
+        add_forces(block, e, force, residual)
+        return
+    geometric = np.zeros(shape)
+    add_elements(block, layout, e, acceleration, v, a, body, coefficients, geometric_stress, force, geometric, matrix)
+    add_forces(block, e, force, residual)
+    add_turnings(block, layout, e, geometric, coefficients[0], matrix)
 
-    pe, ve, ae = np.zeros(npe), np.zeros(npe), np.zeros(npe)
-    e, acc = np.empty((nv, 2)), np.empty((nv, 2))
-    b, c = np.zeros((npe, per_node)), np.zeros((npe, per_node))
-    force, force_geo = np.empty((nv, 2)), np.empty((nv, 2))
-    k = np.empty((size, size))
-    kc = np.empty((size, npe))
-    q, eps, grad = np.empty(m), np.empty(ns), np.empty((ns, m))
-    sigma, sigma_geo = np.empty(ns), np.empty(ns)
-    cg, h = np.empty((ns, m)), np.empty((m, m))
-    f6, g6 = np.empty(m), np.empty(m)
-    phi_r, phi_rr, phi_d, phi_x = np.empty(nr), np.empty(nr), np.empty(nd), np.empty(nd)
-    flat_e, flat_acc = e.reshape(size), acc.reshape(size)
-    flat_force, flat_geo = force.reshape(size), force_geo.reshape(size)
 
-    for element in range(ne):
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def add_element_forces(block, e, acceleration, body, inertia, force):
+    """Add the forces of all elements to those of their nodes (N, per_node)."""
+    nn, nv = block.node.shape[1], block.scale.shape[1]
+    nq, ns, vpn = block.jacobian.shape[1], block.stiffness.shape[2], nv // nn
+    m = 8 if block.measures == ELASTIC_LINE else 6
+    local, mine = np.empty((nv, 2)), np.empty((nv, 2))
+    shape, second, director = np.empty(nv), np.empty(nv), np.empty(nn)
+    q, eps, grad, sigma, f = np.empty(m), np.empty(ns), np.empty((ns, m)), np.empty(ns), np.empty(m)
+    for element in range(block.node.shape[0]):
         kind = block.kind[element]
-        for i in range(npe):
-            dof = block.dof[element, i]
-            if dof >= 0:
-                pe[i], ve[i], ae[i] = p[dof], v[dof], a[dof]
-        for node in range(nn):
-            lo, hi = node * npn, (node + 1) * npn
-            elo, ehi = node * per_node, (node + 1) * per_node
-            node_map(
-                block.carrier[element, node],
-                pe[lo:hi],
-                ve[lo:hi],
-                ae[lo:hi],
-                block.frame[element, node],
-                coefficients,
-                flat_e[elo:ehi],
-                flat_acc[elo:ehi],
-                b[lo:hi],
-                c[lo:hi],
-            )
-
-        beam = block.beam[element]
-        for i in range(nv):
-            for x in range(2):
-                force[i, x] = -body[beam, x] * block.gravity[kind, i] - body[beam, 2 + x] * block.length[kind, i]
-            if inertia:
-                for j in range(nv):
-                    mass = block.mass[kind, i, j]
-                    force[i, 0] += mass * acc[j, 0]
-                    force[i, 1] += mass * acc[j, 1]
-            force_geo[i, 0], force_geo[i, 1] = force[i, 0], force[i, 1]
-        if stiff:
-            k[:, :] = 0.0
-
+        gather(block, element, e, local)
+        body_force(block, element, acceleration, body, inertia, mine)
         for point in range(nq):
-            inverse = 1.0 / block.jacobian[kind, point]
-            bend = block.jacobian_xi[kind, point] * inverse
-            w = block.weight[kind, point]
-            q[:] = 0.0
-            for i in range(nr):
-                slot = block.r_slots[i]
-                phi_r[i] = block.r_xi[point, i] * block.scale[kind, slot] * inverse
-                q[0] += phi_r[i] * e[slot, 0]
-                q[1] += phi_r[i] * e[slot, 1]
-            if second:
-                for i in range(nr):
-                    slot = block.r_slots[i]
-                    curved = block.r_xixi[point, i] - bend * block.r_xi[point, i]
-                    phi_rr[i] = curved * block.scale[kind, slot] * inverse * inverse
-                    q[6] += phi_rr[i] * e[slot, 0]
-                    q[7] += phi_rr[i] * e[slot, 1]
-            for i in range(nd):
-                slot = block.d_slots[i]
-                phi_d[i] = block.d[point, i]
-                phi_x[i] = block.d_xi[point, i] * inverse
-                q[2] += phi_d[i] * e[slot, 0]
-                q[3] += phi_d[i] * e[slot, 1]
-                q[4] += phi_x[i] * e[slot, 0]
-                q[5] += phi_x[i] * e[slot, 1]
+            interpolate(block, kind, point, local, shape, second, director, q)
             measure(block.measures, q, eps, grad)
-            stiffness = block.stiffness[kind, point]
-            for i in range(ns):
-                eps[i] -= block.reference[kind, point, i]
-            for i in range(ns):
+            stress(block, kind, point, eps, sigma)
+            for x in range(m):
                 total = 0.0
-                for j in range(ns):
-                    total += stiffness[i, j] * eps[j]
-                sigma[i] = w * total
-                sigma_geo[i] = w * geometric_stress[element, point, i] if predicted else sigma[i]
+                for i in range(ns):
+                    total += grad[i, x] * sigma[i]
+                f[x] = total
+            spread_force(vpn, shape, second, director, f, mine)
+        scatter(block, element, mine, force)
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def add_elements(block, layout, e, acceleration, v, a, body, coefficients, geometric_stress, force, geometric, matrix):
+    """Add the forces of all elements to those of their nodes (N, per_node), and their tangents to the matrix.
+
+    geometric (N, per_node): forces of the stresses that the geometric part of the tangent takes.
+    """
+    nn, nv, npn = block.node.shape[1], block.scale.shape[1], block.dof.shape[1]
+    nq, ns, vpn = block.jacobian.shape[1], block.stiffness.shape[2], nv // nn
+    m = 8 if block.measures == ELASTIC_LINE else 6
+    ck, ca = coefficients[0], coefficients[2]
+    predicted = geometric_stress.shape[0] > 0
+    local, mine, mine_geo = np.empty((nv, 2)), np.empty((nv, 2)), np.empty((nv, 2))
+    shape, second, director = np.empty(nv), np.empty(nv), np.empty(nn)
+    q, eps, grad, sigma, sigma_geo = np.empty(m), np.empty(ns), np.empty((ns, m)), np.empty(ns), np.empty(ns)
+    cg, h, f, g, ht = np.empty((ns, m)), np.empty((m, m)), np.empty(m), np.empty(m), np.empty((m, 2))
+    k, kc = np.empty((2 * nv, 2 * nv)), np.empty((2 * nv, nn * npn))
+    b, c = np.zeros((nn, npn, 2 * vpn)), np.zeros((nn, npn, 2 * vpn))
+    for element in range(block.node.shape[0]):
+        kind = block.kind[element]
+        gather(block, element, e, local)
+        body_force(block, element, acceleration, body, ca != 0.0, mine)
+        mine_geo[:, :] = mine
+        k[:, :] = 0.0
+        for point in range(nq):
+            interpolate(block, kind, point, local, shape, second, director, q)
+            measure(block.measures, q, eps, grad)
+            stress(block, kind, point, eps, sigma)
+            weight = block.weight[kind, point]
+            for i in range(ns):
+                sigma_geo[i] = weight * geometric_stress[element, point, i] if predicted else sigma[i]
             for x in range(m):
                 total, total_geo = 0.0, 0.0
                 for i in range(ns):
                     total += grad[i, x] * sigma[i]
                     total_geo += grad[i, x] * sigma_geo[i]
-                f6[x], g6[x] = total, total_geo
-            for i in range(nr):
-                slot = block.r_slots[i]
-                for x in range(2):
-                    force[slot, x] += phi_r[i] * f6[x]
-                    force_geo[slot, x] += phi_r[i] * g6[x]
-                    if second:
-                        force[slot, x] += phi_rr[i] * f6[6 + x]
-                        force_geo[slot, x] += phi_rr[i] * g6[6 + x]
-            for i in range(nd):
-                slot = block.d_slots[i]
-                for x in range(2):
-                    force[slot, x] += phi_d[i] * f6[2 + x] + phi_x[i] * f6[4 + x]
-                    force_geo[slot, x] += phi_d[i] * g6[2 + x] + phi_x[i] * g6[4 + x]
-            if not stiff:
+                f[x], g[x] = total, total_geo
+            spread_force(vpn, shape, second, director, f, mine)
+            spread_force(vpn, shape, second, director, g, mine_geo)
+            if ck == 0.0:
                 continue
+            stiffness = block.stiffness[kind, point]
             for i in range(ns):
                 for x in range(m):
                     total = 0.0
                     for j in range(ns):
                         total += stiffness[i, j] * grad[j, x]
-                    cg[i, x] = w * total
+                    cg[i, x] = weight * total
             for x in range(m):
                 for z in range(x, m):
                     total = 0.0
@@ -157,49 +118,147 @@ def assemble(block, layout, p, v, a, body, coefficients, geometric_stress, resid
                     h[x, z] = total
                     h[z, x] = total
             measure_hessian(block.measures, q, sigma_geo, h)
-            _spread(block, phi_r, phi_d, phi_x, h, k)
-            if second:
-                _spread_second(block, phi_r, phi_rr, h, k)
-
-        add_force(block, element, b, flat_force, residual)
-        if wanted:
-            add_matrix(block, layout, element, k, b, c, flat_e, flat_geo, ck, ca, kc, matrix)
-
-
-@njit(cache=True, inline="always", error_model="numpy")
-def _spread(block, phi_r, phi_d, phi_x, h, k):
-    """Add T^T h T to the element matrix k, T the tables of r0', d and d'."""
-    nr, nd = phi_r.shape[0], phi_d.shape[0]
-    for x in range(2):
-        for z in range(2):
-            hrr, hrd, hrx = h[x, z], h[x, 2 + z], h[x, 4 + z]
-            hdd, hdx, hxd, hxx = h[2 + x, 2 + z], h[2 + x, 4 + z], h[4 + x, 2 + z], h[4 + x, 4 + z]
-            for i in range(nr):
-                row = 2 * block.r_slots[i] + x
-                for j in range(nr):
-                    k[row, 2 * block.r_slots[j] + z] += phi_r[i] * hrr * phi_r[j]
-                for j in range(nd):
-                    value = phi_r[i] * (hrd * phi_d[j] + hrx * phi_x[j])
-                    column = 2 * block.d_slots[j] + z
-                    k[row, column] += value
-                    k[column, row] += value
-            for i in range(nd):
-                row = 2 * block.d_slots[i] + x
-                left, right = phi_d[i] * hdd + phi_x[i] * hxd, phi_d[i] * hdx + phi_x[i] * hxx
-                for j in range(nd):
-                    k[row, 2 * block.d_slots[j] + z] += left * phi_d[j] + right * phi_x[j]
+            spread_matrix(vpn, shape, second, director, block.measures == ELASTIC_LINE, h, ht, k)
+        for i in range(2 * nv):
+            for j in range(i):
+                k[i, j] = k[j, i]
+        scatter(block, element, mine, force)
+        scatter(block, element, mine_geo, geometric)
+        plain = element_columns(block, element, e, v, a, coefficients, b, c)
+        add_matrix(block, layout, element, plain, k, b, c, ck, ca, kc, matrix)
 
 
 @njit(cache=True, inline="always", error_model="numpy")
-def _spread_second(block, phi_r, phi_rr, h, k):
-    """Add what r0'' gives to the element matrix; nothing couples it with d or d'."""
-    nr = phi_r.shape[0]
-    for x in range(2):
-        for z in range(2):
-            mixed, both = h[x, 6 + z], h[6 + x, 6 + z]
-            for i in range(nr):
-                row = 2 * block.r_slots[i] + x
-                for j in range(nr):
-                    column = 2 * block.r_slots[j] + z
-                    k[row, column] += phi_rr[i] * both * phi_rr[j] + phi_r[i] * mixed * phi_rr[j]
-                    k[column, row] += phi_r[i] * mixed * phi_rr[j]
+def gather(block, element, e, local):
+    """Fill the nodal vectors (nv, 2) of an element."""
+    nn = block.node.shape[1]
+    vpn = local.shape[0] // nn
+    for n in range(nn):
+        node = block.node[element, n]
+        for s in range(vpn):
+            local[n * vpn + s, 0], local[n * vpn + s, 1] = e[node, 2 * s], e[node, 2 * s + 1]
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def scatter(block, element, mine, force):
+    """Add the forces (nv, 2) of an element to those of its nodes."""
+    nn = block.node.shape[1]
+    vpn = mine.shape[0] // nn
+    for n in range(nn):
+        node = block.node[element, n]
+        for s in range(vpn):
+            force[node, 2 * s] += mine[n * vpn + s, 0]
+            force[node, 2 * s + 1] += mine[n * vpn + s, 1]
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def body_force(block, element, acceleration, body, inertia, mine):
+    """Fill inertia less gravity and load per length (nv, 2) of an element."""
+    kind, beam = block.kind[element], block.beam[element]
+    nn, nv = block.node.shape[1], mine.shape[0]
+    vpn = nv // nn
+    gx, gy, lx, ly = body[beam, 0], body[beam, 1], body[beam, 2], body[beam, 3]
+    for i in range(nv):
+        x = -gx * block.gravity[kind, i] - lx * block.length[kind, i]
+        y = -gy * block.gravity[kind, i] - ly * block.length[kind, i]
+        if inertia:
+            for n in range(nn):
+                node = block.node[element, n]
+                for s in range(vpn):
+                    mass = block.mass[kind, i, n * vpn + s]
+                    x += mass * acceleration[node, 2 * s]
+                    y += mass * acceleration[node, 2 * s + 1]
+        mine[i, 0], mine[i, 1] = x, y
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def interpolate(block, kind, point, local, shape, second, director, q):
+    """Fill q = (r0', d, d'[, r0'']) at a quadrature point, and the tables that give it."""
+    nv, nn = local.shape[0], director.shape[0]
+    vpn = nv // nn
+    inverse = 1.0 / block.jacobian[kind, point]
+    rx, ry, dx, dy, ex, ey = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for n in range(nn):
+        for s in range(vpn - 1):
+            i = n * vpn + s
+            shape[i] = block.slope[point, i] * block.scale[kind, i] * inverse
+            rx += shape[i] * local[i, 0]
+            ry += shape[i] * local[i, 1]
+        i = n * vpn + vpn - 1
+        shape[i], director[n] = block.slope[point, i] * inverse, block.director[point, n]
+        dx += director[n] * local[i, 0]
+        dy += director[n] * local[i, 1]
+        ex += shape[i] * local[i, 0]
+        ey += shape[i] * local[i, 1]
+    q[0], q[1], q[2], q[3], q[4], q[5] = rx, ry, dx, dy, ex, ey
+    if block.measures == ELASTIC_LINE:
+        bend = block.jacobian_xi[kind, point] * inverse
+        rx, ry = 0.0, 0.0
+        for n in range(nn):
+            for s in range(vpn - 1):
+                i = n * vpn + s
+                curved = block.second[point, i] - bend * block.slope[point, i]
+                second[i] = curved * block.scale[kind, i] * inverse * inverse
+                rx += second[i] * local[i, 0]
+                ry += second[i] * local[i, 1]
+        q[6], q[7] = rx, ry
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def stress(block, kind, point, eps, sigma):
+    """Take the reference from eps (ns,) and fill the stress resultants (ns,) times the quadrature weight."""
+    ns = eps.shape[0]
+    weight = block.weight[kind, point]
+    for i in range(ns):
+        eps[i] -= block.reference[kind, point, i]
+    for i in range(ns):
+        total = 0.0
+        for j in range(ns):
+            total += block.stiffness[kind, point, i, j] * eps[j]
+        sigma[i] = weight * total
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def spread_force(vpn, shape, second, director, f, mine):
+    """Add the forces (nv, 2) that f (6 or 8,) on q gives."""
+    for n in range(director.shape[0]):
+        for s in range(vpn - 1):
+            i = n * vpn + s
+            mine[i, 0] += shape[i] * f[0]
+            mine[i, 1] += shape[i] * f[1]
+            if f.shape[0] == 8:
+                mine[i, 0] += second[i] * f[6]
+                mine[i, 1] += second[i] * f[7]
+        i = n * vpn + vpn - 1
+        mine[i, 0] += director[n] * f[2] + shape[i] * f[4]
+        mine[i, 1] += director[n] * f[3] + shape[i] * f[5]
+
+
+@njit(cache=True, inline="always", error_model="numpy")
+def spread_matrix(vpn, shape, second, director, bends, h, ht, k):
+    """Add the upper half of T^T h T to the element matrix k (2 nv, 2 nv), T the tables of r0', d, d' and r0''."""
+    nv, m = shape.shape[0], h.shape[0]
+    for j in range(nv):
+        other = j // vpn
+        if j % vpn == vpn - 1:
+            for x in range(m):
+                ht[x, 0] = director[other] * h[x, 2] + shape[j] * h[x, 4]
+                ht[x, 1] = director[other] * h[x, 3] + shape[j] * h[x, 5]
+        else:
+            for x in range(m):
+                ht[x, 0] = shape[j] * h[x, 0]
+                ht[x, 1] = shape[j] * h[x, 1]
+                if bends:
+                    ht[x, 0] += second[j] * h[x, 6]
+                    ht[x, 1] += second[j] * h[x, 7]
+        for i in range(j + 1):
+            own = i // vpn
+            for x in range(2):
+                for z in range(2):
+                    if i % vpn == vpn - 1:
+                        value = director[own] * ht[2 + x, z] + shape[i] * ht[4 + x, z]
+                    else:
+                        value = shape[i] * ht[x, z]
+                        if bends:
+                            value += second[i] * ht[6 + x, z]
+                    k[2 * i + x, 2 * j + z] += value

@@ -20,17 +20,15 @@ ELASTIC_LINE = 2
 class Block(NamedTuple):
     """Elements of one field and one kind of strain measures.
 
-    Sizes: ne elements, nc classes of identical elements, nq quadrature points, nn nodes an element, nv nodal vectors
-    an element (nr of them carry r0, nd carry d), npn coordinates a node at most, ns strain measures.
+    Sizes: ne elements, nc classes of identical elements, nq quadrature points, N nodes in all, nn of an element, vpn
+    nodal vectors a node (the last is r_y, which carries d; the others carry r0), nv = nn vpn, npn coordinates a node at
+    most, ns strain measures.
     """
 
     measures: int  # GREEN_LAGRANGE, STRUCTURAL or ELASTIC_LINE
-    r_slots: np.ndarray  # (nr,) which nodal vectors carry r0
-    d_slots: np.ndarray  # (nd,) which nodal vectors carry d
-    r_xi: np.ndarray  # (nq, nr) dN_r/dxi on the unit element
-    r_xixi: np.ndarray  # (nq, nr) d2N_r/dxi2
-    d: np.ndarray  # (nq, nd) N_d
-    d_xi: np.ndarray  # (nq, nd) dN_d/dxi
+    slope: np.ndarray  # (nq, nv) dN/dxi on the unit element
+    second: np.ndarray  # (nq, nv) d2N/dxi2 of those that carry r0
+    director: np.ndarray  # (nq, nn) N of those that carry d
     column_start: np.ndarray  # (carriers, npn) first component of a node's e that a coordinate moves
     column_stop: np.ndarray  # (carriers, npn) one past the last
     kind: np.ndarray  # (ne,) class of an element
@@ -43,10 +41,12 @@ class Block(NamedTuple):
     mass: np.ndarray  # (nc, nv, nv) scalar consistent mass, one entry a pair of nodal vectors [kg]
     gravity: np.ndarray  # (nc, nv) mass carried by a nodal vector under a uniform acceleration [kg]
     length: np.ndarray  # (nc, nv) integral of N_r over the reference length [m]
-    carrier: np.ndarray  # (ne, nn) what carries the nodal vectors of each node
-    frame: np.ndarray  # (ne, nn, 3) cosine and sine of the node's angle, |r_x| in the reference; see `node_map`
-    dof: np.ndarray  # (ne, nn * npn) coordinates of an element, -1 where a node has fewer
+    node: np.ndarray  # (ne, nn) nodes of an element
     beam: np.ndarray  # (ne,) beam that an element belongs to
+    carrier: np.ndarray  # (N,) what carries the nodal vectors of a node
+    frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `node_map`
+    dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
+    home: np.ndarray  # (N, 2) an element of the node, and its place there
 
 
 class PointLoads(NamedTuple):

@@ -3,8 +3,9 @@
 import numpy as np
 from numba import njit
 
-from beamfem.kernels.coordinates import element_map
-from beamfem.kernels.reduce import add_force, add_matrix
+from beamfem.kernels.block import GRADIENTS, TURNED_GRADIENTS
+from beamfem.kernels.coordinates import add_node_force, node_columns, node_vectors
+from beamfem.kernels.reduce import add_matrix, add_turning
 
 
 @njit(cache=True, error_model="numpy")
@@ -14,22 +15,31 @@ def assemble_point_loads(block, loads, layout, p, values, ck, residual, matrix):
     values (nl, 3): fx, fy [N], moment [N m]. The moment acts on the vector g that gives the section its direction:
     virtual work M (g x delta g) / |g|^2. A force that follows turns with g.
     """
-    nv, npe = block.scale.shape[1], block.dof.shape[1]
+    nv, nn, npn = block.scale.shape[1], block.node.shape[1], block.dof.shape[1]
     size = 2 * nv
-    e, force, k = np.zeros(size), np.empty(size), np.empty((size, size))
-    b = np.zeros((npe, size // block.carrier.shape[1]))
-    kc = np.empty((size, npe))
+    per_node = size // nn
+    e, force = np.zeros((nn, per_node)), np.empty((nn, per_node))
+    unused, coefficients = np.empty(per_node), np.array([1.0, 0.0, 0.0])
+    k, kc = np.empty((size, size)), np.empty((size, nn * npn))
+    b, c = np.zeros((nn, npn, per_node)), np.zeros((nn, npn, per_node))
+    vectors, forces = e.reshape(nv, 2), force.reshape(nv, 2)
     stiff = matrix.shape[0] > 0 and ck != 0.0
     for load in range(loads.element.shape[0]):
         element = loads.element[load]
-        element_map(block, element, p, e, b)
+        plain = True
+        for n in range(nn):
+            node = block.node[element, n]
+            carrier, dof, frame = block.carrier[node], block.dof[node], block.frame[node]
+            plain = plain and carrier == GRADIENTS
+            node_vectors(carrier, dof, frame, p, p, p, e[n], unused)
+            node_columns(carrier, dof, frame, e[n], p, p, coefficients, b[n], c[n])
         position, direction = loads.position[load], loads.direction[load]
         gx, gy, rx, ry = 0.0, 0.0, 0.0, 0.0
         for i in range(nv):
-            gx += direction[i] * e[2 * i]
-            gy += direction[i] * e[2 * i + 1]
-            rx += position[i] * e[2 * i]
-            ry += position[i] * e[2 * i + 1]
+            gx += direction[i] * vectors[i, 0]
+            gy += direction[i] * vectors[i, 1]
+            rx += position[i] * vectors[i, 0]
+            ry += position[i] * vectors[i, 1]
         square = gx * gx + gy * gy
         # gradient of the angle of g, and its derivatives
         ax, ay = -gy / square, gx / square
@@ -46,9 +56,11 @@ def assemble_point_loads(block, loads, layout, p, values, ck, residual, matrix):
         sx = fx - kx * (rx - loads.anchor[load, 0])
         sy = fy - ky * (ry - loads.anchor[load, 1])
         for i in range(nv):
-            force[2 * i] = -position[i] * sx - direction[i] * moment * ax
-            force[2 * i + 1] = -position[i] * sy - direction[i] * moment * ay
-        add_force(block, element, b, force, residual)
+            forces[i, 0] = -position[i] * sx - direction[i] * moment * ax
+            forces[i, 1] = -position[i] * sy - direction[i] * moment * ay
+        for n in range(nn):
+            node = block.node[element, n]
+            add_node_force(block.carrier[node], block.dof[node], block.frame[node], e[n], force[n], residual)
         if not stiff:
             continue
         for i in range(nv):
@@ -65,4 +77,8 @@ def assemble_point_loads(block, loads, layout, p, values, ck, residual, matrix):
                     k[2 * i, 2 * j + 1] += turned * fy * ay
                     k[2 * i + 1, 2 * j] -= turned * fx * ax
                     k[2 * i + 1, 2 * j + 1] -= turned * fx * ay
-        add_matrix(block, layout, element, k, b, b, e, force, ck, 0.0, kc, matrix)
+        add_matrix(block, layout, element, plain, k, b, c, ck, 0.0, kc, matrix)
+        for n in range(nn):
+            node = block.node[element, n]
+            if block.carrier[node] not in (GRADIENTS, TURNED_GRADIENTS):
+                add_turning(block, layout, node, e[n], force[n], ck, matrix)

@@ -13,6 +13,8 @@ from beamfem.model.mesh import BeamMesh
 
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
+_PER_ELEMENT = ("kind", "node", "beam", "carrier", "frame", "dof", "home")
+
 
 def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
     """Return the block of all beams (number, mesh) that share an element."""
@@ -20,28 +22,35 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
     xi = np.concatenate([rule[0] for rule in element.energy_rules()])
     width = max(mesh.carried.dof.shape[1] for _, mesh in meshes)
     start, stop = columns(field.vectors)
-    first_kind = 0
-    parts: dict[str, list[np.ndarray]] = {name: [] for name in (*_PER_CLASS, "kind", "carrier", "frame", "dof", "beam")}
+    first_kind, first_node, first_element = 0, 0, 0
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in (*_PER_CLASS, *_PER_ELEMENT)}
     for number, mesh in meshes:
         for name in _PER_CLASS:
             parts[name].append(getattr(mesh.classes, name))
         parts["kind"].append(first_kind + mesh.classes.kind)
-        parts["carrier"].append(mesh.carried.carrier[mesh.node])
-        parts["frame"].append(mesh.carried.frame[mesh.node])
-        own = mesh.carried.dof
-        dof = np.pad(own, ((0, 0), (0, width - own.shape[1])), constant_values=-1)
-        parts["dof"].append(dof[mesh.node].reshape(mesh.elements, -1))
+        parts["node"].append(first_node + mesh.node)
         parts["beam"].append(np.full(mesh.elements, number))
+        parts["carrier"].append(mesh.carried.carrier)
+        parts["frame"].append(mesh.carried.frame)
+        own = mesh.carried.dof
+        parts["dof"].append(np.pad(own, ((0, 0), (0, width - own.shape[1])), constant_values=-1))
+        home = np.empty((mesh.nodes, 2), dtype=np.int64)
+        for place, nodes in enumerate(mesh.node.T):
+            home[nodes, 0], home[nodes, 1] = first_element + np.arange(mesh.elements), place
+        parts["home"].append(home)
         first_kind += len(mesh.classes.scale)
+        first_node += mesh.nodes
+        first_element += mesh.elements
     joined = {name: np.ascontiguousarray(np.concatenate(values)) for name, values in parts.items()}
+    slope = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
+    second = np.zeros_like(slope)
+    slope[:, r_slots(field)], slope[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
+    second[:, r_slots(field)] = field.centreline(xi, 2)
     return Block(
         measures=element.forces.code,
-        r_slots=r_slots(field),
-        d_slots=d_slots(field),
-        r_xi=field.centreline(xi, 1),
-        r_xixi=field.centreline(xi, 2),
-        d=field.director(xi),
-        d_xi=field.director(xi, 1),
+        slope=slope,
+        second=second,
+        director=field.director(xi),
         column_start=start[:, :width].copy(),
         column_stop=stop[:, :width].copy(),
         **joined,

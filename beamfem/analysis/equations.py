@@ -8,6 +8,7 @@ from beamfem.kernels.assemble import assemble
 from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.stress import predict_stress
+from beamfem.model.blocks import workspace
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
@@ -20,10 +21,10 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
     result = np.zeros(len(p))
     body, values = system.body(time), system.point_values(time)
-    for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
+    for i, (block, loads, work) in enumerate(zip(system.blocks, system.point_loads, system.workspaces(), strict=True)):
         layout = system.layouts[i]
-        assemble(block, layout, p, v, a, body, np.ones(3), _NO_STRESS, result, _EMPTY)
-        assemble_point_loads(block, loads, layout, p, values[i], 1.0, result, _EMPTY)
+        assemble(system.forms[i], block, layout, work, p, v, a, body, np.ones(3), _NO_STRESS, result, _EMPTY)
+        assemble_point_loads(block, loads, layout, work, values[i], 1.0, result, _EMPTY)
     assemble_springs(system.springs, p, 1.0, result, _EMPTY)
     return result
 
@@ -40,7 +41,9 @@ def element_residual(
         **{name: getattr(whole, name)[nodes] for name in ("carrier", "frame", "dof", "home")},
     )
     result = np.zeros(len(p))
-    assemble(part, system.layouts[block], p, v, a, system.body(time), np.ones(3), _NO_STRESS, result, _EMPTY)
+    work = workspace(part)
+    form, layout, body = system.forms[block], system.layouts[block], system.body(time)
+    assemble(form, part, layout, work, p, v, a, body, np.ones(3), _NO_STRESS, result, _EMPTY)
     return result
 
 
@@ -63,11 +66,11 @@ def linearise(
     matrix = np.zeros(unknown * width) if pattern is None else np.zeros(len(pattern.data))
     result = np.zeros(len(p))
     body, values, weights = system.body(time), system.point_values(time), np.array(coefficients)
-    for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
+    for i, (block, loads, work) in enumerate(zip(system.blocks, system.point_loads, system.workspaces(), strict=True)):
         layout = system.layouts[i]
         geometric = _NO_STRESS if stresses is None else stresses[i]
-        assemble(block, layout, p, v, a, body, weights, geometric, result, matrix)
-        assemble_point_loads(block, loads, layout, p, values[i], coefficients[0], result, matrix)
+        assemble(system.forms[i], block, layout, work, p, v, a, body, weights, geometric, result, matrix)
+        assemble_point_loads(block, loads, layout, work, values[i], coefficients[0], result, matrix)
     assemble_springs(system.springs, p, coefficients[0], result, matrix)
     if pattern is None:
         return result, BandTangent(matrix.reshape(unknown, width))
@@ -77,9 +80,9 @@ def linearise(
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns)."""
     result = []
-    for block in system.blocks:
+    for form, block, work in zip(system.forms, system.blocks, system.workspaces(), strict=True):
         stress = np.empty((block.node.shape[0], block.jacobian.shape[1], block.stiffness.shape[2]))
-        predict_stress(block, p, step, stress)
+        predict_stress(form, block, work, p, step, stress)
         result.append(stress)
     return tuple(result)
 

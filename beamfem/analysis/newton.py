@@ -137,7 +137,8 @@ def round_off_floor(system: System, p: np.ndarray) -> float:
     for block in system.blocks:
         stiffest = float(block.stiffness[:, :, 0, 0].max())
         per_node = block.scale.shape[1] // block.node.shape[1]
-        slopes = np.abs(block.slope[:, np.arange(block.scale.shape[1]) % per_node < per_node - 1])
+        carries_r = np.arange(block.scale.shape[1]) % per_node < per_node - 1
+        slopes = np.abs(block.slope[0] / block.scale[0] * block.jacobian[0][:, None])[:, carries_r]
         share = (block.weight[0] / block.weight[0].sum()) @ slopes
         slope = float(slopes.sum(axis=1).max() * share.max())
         worst = max(worst, slope * stiffest / float(block.jacobian.min()))

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-# What carries the nodal vectors of a node, see `node_map`.
+# What carries the nodal vectors of a node, see `coordinates`.
 GRADIENTS = 0
 ROTATION = 1
 STRETCH = 2
@@ -26,15 +26,12 @@ class Block(NamedTuple):
     """
 
     measures: int  # GREEN_LAGRANGE, STRUCTURAL or ELASTIC_LINE
-    slope: np.ndarray  # (nq, nv) dN/dxi on the unit element
-    second: np.ndarray  # (nq, nv) d2N/dxi2 of those that carry r0
+    slope: np.ndarray  # (nc, nq, nv) dN/ds, of a gradient times the mesh length
+    second: np.ndarray  # (nc, nq, nv) d2N/ds2 of those that carry r0, likewise; empty but for the elastic line
     director: np.ndarray  # (nq, nn) N of those that carry d
-    column_start: np.ndarray  # (carriers, npn) first component of a node's e that a coordinate moves
-    column_stop: np.ndarray  # (carriers, npn) one past the last
     kind: np.ndarray  # (ne,) class of an element
     scale: np.ndarray  # (nc, nv) factor of a nodal vector: 1, or the mesh length where it is a gradient [m]
     jacobian: np.ndarray  # (nc, nq) ds/dxi of the reference [m]
-    jacobian_xi: np.ndarray  # (nc, nq) its derivative [m]
     weight: np.ndarray  # (nc, nq) quadrature weight times ds/dxi [m]
     stiffness: np.ndarray  # (nc, nq, ns, ns) section stiffness
     reference: np.ndarray  # (nc, nq, ns) strain measures of the stress-free state
@@ -44,9 +41,17 @@ class Block(NamedTuple):
     node: np.ndarray  # (ne, nn) nodes of an element
     beam: np.ndarray  # (ne,) beam that an element belongs to
     carrier: np.ndarray  # (N,) what carries the nodal vectors of a node
-    frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `node_map`
+    frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `coordinates`
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element of the node, and its place there
+
+
+class Work(NamedTuple):
+    """Space that kernels of a block write to, so that they allocate nothing."""
+
+    nodes: np.ndarray  # (4, N, per_node) nodal vectors, their accelerations and forces
+    matrix: np.ndarray  # (2 nv, 2 nv) of an element
+    rows: np.ndarray  # (nn npn,) where it goes
 
 
 class PointLoads(NamedTuple):

@@ -1,46 +1,35 @@
 """Stress resultants at the quadrature points that a linearised step predicts."""
 
-import numpy as np
 from numba import njit
 
-from beamfem.kernels.assemble import gather, interpolate
+from beamfem.kernels.axis import interpolate
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.kernels.coordinates import node_rates
-from beamfem.kernels.measures import measure
+from beamfem.kernels.form import sizes
+from beamfem.kernels.measures import rates, resultants, strains
 from beamfem.kernels.reduce import place_nodes
 
 
-@njit(cache=True, error_model="numpy")
-def predict_stress(block, p, step, stress):
+@njit(cache=True, _nrt=False, error_model="numpy")
+def predict_stress(form, block, work, p, step, stress):
     """Fill stress (ne, nq, ns) with C (eps + (d eps / de) B dp), B and eps at p, dp = step.
 
-    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
+    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part
+    of the tangent.
     """
-    nn, nv = block.node.shape[1], block.scale.shape[1]
-    nq, ns = block.jacobian.shape[1], block.stiffness.shape[2]
-    m = 8 if block.measures == ELASTIC_LINE else 6
-    shape = (block.dof.shape[0], 2 * nv // nn)
-    e, de = np.empty(shape), np.empty(shape)
+    nn, vpn, measures = sizes(form, block)
+    bends = measures == ELASTIC_LINE
+    e, de = work.nodes[0], work.nodes[1]
     place_nodes(block, p, step, step, e, de)
-    for node in range(shape[0]):
-        node_rates(block.carrier[node], block.dof[node], block.frame[node], e[node], step, de[node])
-    local, change = np.empty((nv, 2)), np.empty((nv, 2))
-    slopes, second, director = np.empty(nv), np.empty(nv), np.empty(nn)
-    q, dq, eps, grad = np.empty(m), np.empty(m), np.empty(ns), np.empty((ns, m))
+    for node in range(block.dof.shape[0]):
+        node_rates(block, node, e, step, de)
     for element in range(block.node.shape[0]):
         kind = block.kind[element]
-        gather(block, element, e, local)
-        gather(block, element, de, change)
-        for point in range(nq):
-            interpolate(block, kind, point, change, slopes, second, director, dq)
-            interpolate(block, kind, point, local, slopes, second, director, q)
-            measure(block.measures, q, eps, grad)
-            for i in range(ns):
-                eps[i] -= block.reference[kind, point, i]
-                for x in range(m):
-                    eps[i] += grad[i, x] * dq[x]
-            for i in range(ns):
-                total = 0.0
-                for j in range(ns):
-                    total += block.stiffness[kind, point, i, j] * eps[j]
-                stress[element, point, i] = total
+        for point in range(block.weight.shape[1]):
+            q = interpolate(nn, vpn, bends, block, element, kind, point, e)
+            dq = interpolate(nn, vpn, bends, block, element, kind, point, de)
+            a, b = strains(measures, q), rates(measures, q, dq)
+            after = (a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5])
+            s = resultants(measures, 1.0, block.stiffness, block.reference, kind, point, after)
+            for i in range(stress.shape[2]):
+                stress[element, point, i] = s[i]

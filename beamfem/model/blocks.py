@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamfem.element.coordinates import columns
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import Block
+from beamfem.kernels.block import ELASTIC_LINE, Block, Work
 from beamfem.model.classes import Classes
 from beamfem.model.mesh import BeamMesh
 
@@ -21,7 +20,6 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
     field = element.field
     xi = np.concatenate([rule[0] for rule in element.energy_rules()])
     width = max(mesh.carried.dof.shape[1] for _, mesh in meshes)
-    start, stop = columns(field.vectors)
     first_kind, first_node, first_element = 0, 0, 0
     parts: dict[str, list[np.ndarray]] = {name: [] for name in (*_PER_CLASS, *_PER_ELEMENT)}
     for number, mesh in meshes:
@@ -42,16 +40,28 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
         first_node += mesh.nodes
         first_element += mesh.elements
     joined = {name: np.ascontiguousarray(np.concatenate(values)) for name, values in parts.items()}
-    slope = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
-    second = np.zeros_like(slope)
-    slope[:, r_slots(field)], slope[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
-    second[:, r_slots(field)] = field.centreline(xi, 2)
+    table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
+    curved = np.zeros_like(table)
+    table[:, r_slots(field)], table[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
+    curved[:, r_slots(field)] = field.centreline(xi, 2)
+    # from derivatives by xi to those by arc length
+    scale, inverse = joined["scale"][:, None, :], 1.0 / joined["jacobian"][:, :, None]
+    second = (curved - joined.pop("jacobian_xi")[:, :, None] * inverse * table) * scale * inverse**2
+    bends = element.forces.code == ELASTIC_LINE
     return Block(
         measures=element.forces.code,
-        slope=slope,
-        second=second,
-        director=field.director(xi),
-        column_start=start[:, :width].copy(),
-        column_stop=stop[:, :width].copy(),
+        slope=np.ascontiguousarray(table * scale * inverse),
+        second=np.ascontiguousarray(second) if bends else np.empty((0, 0, 0)),
+        director=np.ascontiguousarray(field.director(xi)),
         **joined,
+    )
+
+
+def workspace(block: Block) -> Work:
+    """Return space for the kernels of a block."""
+    vectors, nodes = block.scale.shape[1], block.node.shape[1]
+    return Work(
+        np.empty((4, max(len(block.dof), nodes), 2 * vectors // nodes)),
+        np.empty((2 * vectors, 2 * vectors)),
+        np.empty(nodes * block.dof.shape[1], dtype=np.int64),
     )

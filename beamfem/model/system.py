@@ -6,9 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from beamfem.element.coordinates import across, labels
-from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.block import Block, Layout, PointLoads, Springs, Work
+from beamfem.kernels.form import ANY, Form, known_form
 from beamfem.model.actions import Actions, build_actions
-from beamfem.model.blocks import build_block
+from beamfem.model.blocks import build_block, workspace
 from beamfem.model.held import Held, held_coordinates, inclined_rollers
 from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
@@ -48,10 +49,23 @@ class System:
         )
 
     @cached_property
+    def forms(self) -> tuple[Form, ...]:
+        """What compiled code knows in advance of each block; of one block only, so that few kinds are compiled."""
+        if len(self.blocks) > 1:
+            return (ANY,) * len(self.blocks)
+        block = self.blocks[0]
+        nodes = block.node.shape[1]
+        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures),)
+
+    def workspaces(self) -> tuple[Work, ...]:
+        """Return new space for the kernels, of each block."""
+        return tuple(workspace(block) for block in self.blocks)
+
+    @cached_property
     def _actions(self) -> tuple[Actions, ...]:
         return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
-    @property
+    @cached_property
     def point_loads(self) -> tuple[PointLoads, ...]:
         """Loads and springs at points of each block, in the order of `point_values`."""
         return tuple(actions.points for actions in self._actions)
@@ -59,6 +73,11 @@ class System:
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
         return tuple(actions.values(time, self.static) for actions in self._actions)
+
+    @cached_property
+    def varying(self) -> bool:
+        """Whether a load has an amplitude, a function of time."""
+        return any(load.amplitude is not None for load in self.model.loads)
 
     @cached_property
     def springs(self) -> Springs:

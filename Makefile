@@ -14,7 +14,7 @@ verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -m "slow or not slow"
 
 bench: $(VENV)/.ready
-	$(BIN)/python studies/pendulum.py
+	$(BIN)/python studies/peers.py
 
 lint: $(VENV)/.ready
 	$(BIN)/ruff check .

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.system import System
+from beamfem.model.system import system_of
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -23,7 +23,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     near = [s for s in model.point_supports if s.point.beam is point.beam]
     if not any(abs(support.point.fraction - point.fraction) < 1e-9 for support in near):
         raise InputError(f"there is no support at {point}, so there is no reaction")
-    system = System(model, solution.static)
+    system = system_of(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
     held[system.held_dofs] = True
     for dof, _ in system.inclined:

@@ -13,7 +13,7 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.advance import advance
 from beamfem.model.model import Model
 from beamfem.model.sampled import Sampled
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 from beamfem.progress import progress
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count, positive
@@ -47,7 +47,7 @@ def simulate(
     count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
-    system = System(model, static=False)
+    system = system_of(model, static=False)
     if system.unknowns.pattern is not None:
         raise InputError(
             "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"
@@ -70,8 +70,8 @@ def simulate(
     states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])
-    layout, free = system.layouts[0], system.free_dofs
-    memory = np.zeros((len(free), 2 * layout.half_width + 1)), statistics
+    free = system.free_dofs
+    memory = np.zeros((len(free), 2 * system.layouts[0].half_width + 1)), statistics
     scale, work, limits = system.scale, system.workspaces(), np.array([_TOLERANCE, _ITERATIONS])
     done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
@@ -86,7 +86,7 @@ def simulate(
                 work,
                 system.point_loads,
                 system.springs,
-                layout,
+                system.layouts,
                 free,
                 system.held_dofs,
                 system.turned,

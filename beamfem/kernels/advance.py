@@ -3,36 +3,14 @@
 import numpy as np
 from numba import njit
 
-from beamfem.kernels.assemble import assemble
+from beamfem.kernels.balance import balance
 from beamfem.kernels.band import factor, solve
-from beamfem.kernels.loads import assemble_point_loads
-from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def equilibrium_defect(
-    forms, blocks, work, loads, springs, layout, state, body, values, row, coefficients, right, matrix
-):
-    """Fill the residual `right` (n,) and, unless it is empty, the flat matrix, at p, p', p'' of state (4, n).
-
-    values: of each block (rows, nl, 3), of which one row acts.
-    """
-    for i in range(right.shape[0]):
-        right[i] = 0.0
-    for i in range(matrix.shape[0]):
-        matrix[i] = 0.0
-    none = work[0].nodes[:0]
-    p, v, a = state[0], state[1], state[2]
-    for i in range(len(blocks)):
-        assemble(forms[i], blocks[i], layout, work[i], p, v, a, body, coefficients, none, right, matrix)
-        assemble_point_loads(blocks[i], loads[i], layout, work[i], values[i][row], coefficients[0], right, matrix)
-    assemble_springs(springs, p, coefficients[0], right, matrix)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -67,7 +45,7 @@ def correct(state, right, free, inverse_scale, coefficients):
 
 @njit(cache=True, error_model="numpy")
 def advance(
-    forms, blocks, work, loads, springs, layout, free, held, turned, state, inputs, rule, limits, scale, memory, saving
+    forms, blocks, work, loads, springs, layouts, free, held, turned, state, inputs, rule, limits, scale, memory, saving
 ):
     """March through the steps of `inputs`; return how many were completed.
 
@@ -92,7 +70,7 @@ def advance(
     inverse_scale = np.empty(unknown)
     for i in range(unknown):
         inverse_scale[i] = 1.0 / scale[free[i]]
-    matrix = lu.reshape(lu.size)
+    matrix, p, v, a = lu.reshape(lu.size), state[0], state[1], state[2]
     keep, varying = matrix[:0], (body.shape[0] > 1, point_values[0].shape[0] > 1)
     for step in range(steps):
         own_body, row = body[step if varying[0] else 0], step if varying[1] else 0
@@ -105,9 +83,10 @@ def advance(
         while iteration < limits[1]:
             renew = full or fresh
             target = matrix if renew else keep
-            equilibrium_defect(
-                forms, blocks, work, loads, springs, layout, state, own_body, point_values, row, coefficients, residual, target
-            )
+            balance(
+                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients, False,
+                residual, target,
+            )  # fmt: skip
             if renew:
                 hold_normals(lu, turned[0], turned[1])
                 statistics[3] = min(statistics[3], factor(lu))
@@ -140,9 +119,9 @@ def advance(
                 state[2, i], state[3, i] = before[2, i], before[3, i]
             return step
         for i in range(n):
-            state[3, i] = (
-                (1.0 - alpha_f) * state[2, i] + alpha_f * before[2, i] - alpha_m * before[3, i]
-            ) / (1.0 - alpha_m)
+            state[3, i] = ((1.0 - alpha_f) * state[2, i] + alpha_f * before[2, i] - alpha_m * before[3, i]) / (
+                1.0 - alpha_m
+            )
         for i in range(held.shape[0]):
             state[3, held[i]] = state[2, held[i]]
         if (first + step) % every == 0:

@@ -52,6 +52,7 @@ class Work(NamedTuple):
     nodes: np.ndarray  # (4, N, per_node) nodal vectors, their accelerations and forces
     matrix: np.ndarray  # (2 nv, 2 nv) of an element
     rows: np.ndarray  # (nn npn,) where it goes
+    stress: np.ndarray  # (ne, nq, ns) stress resultants for the geometric part of the tangent, or none (0, 0, 0)
 
 
 class PointLoads(NamedTuple):

@@ -76,7 +76,8 @@ def hessian(q, c, k, g, w, s):
     inverse = 1.0 / math.sqrt(rx * rx + ry * ry)
     hxx, hxy = -2.0 * gx * gy, gx * gx - gy * gy
     c00, c01, c02, c03 = w * c[k, g, 0, 0], w * c[k, g, 0, 1], w * c[k, g, 0, 2], w * c[k, g, 0, 3]
-    c11, c12, c13, c22, c23, c33 = w * c[k, g, 1, 1], w * c[k, g, 1, 2], w * c[k, g, 1, 3], w * c[k, g, 2, 2], w * c[k, g, 2, 3], w * c[k, g, 3, 3]
+    c11, c12, c13 = w * c[k, g, 1, 1], w * c[k, g, 1, 2], w * c[k, g, 1, 3]
+    c22, c23, c33 = w * c[k, g, 2, 2], w * c[k, g, 2, 3], w * c[k, g, 3, 3]
     # change of a measure's stress with r' is a vector u_i, with d a vector v_i
     u0x, u0y = c00 * tx + c01 * kx + c02 * dx, c00 * ty + c01 * ky + c02 * dy
     u1x, u1y = c01 * tx + c11 * kx + c12 * dx, c01 * ty + c11 * ky + c12 * dy

@@ -21,7 +21,7 @@ ANY = Form()
 
 def known_form(nodes: int, vectors: int, measures: int) -> Form:
     """Return the form with these sizes; lines and cubics of two nodes and parabolas have one of their own."""
-    if nodes > 3 or nodes == 3 and vectors > 2:
+    if nodes > 3 or (nodes == 3 and vectors > 2):
         return ANY
     return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures))
 

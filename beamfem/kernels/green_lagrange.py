@@ -75,7 +75,6 @@ def _products(w, q, c, k, p, i0, i1, i2, j0, j1, j2):
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, re (4 each), dd, de, ee."""
-    rx, ry, dx, dy, ex, ey = q
     s0, s1, s2, s3, s4, s5 = s
     rr = _products(w, q, c, k, g, 0, 4, 1, 0, 4, 1)
     rd = _products(w, q, c, k, g, 0, 4, 1, 4, 3, 5)

@@ -51,8 +51,22 @@ def resultants(measures, w, c, reference, k, g, eps):
     if measures != GREEN_LAGRANGE:
         return w * s0, w * s1, w * s2, w * s3, 0.0, 0.0
     a4, a5 = eps[4] - reference[k, g, 4], eps[5] - reference[k, g, 5]
-    s4 = c[k, g, 4, 0] * a0 + c[k, g, 4, 1] * a1 + c[k, g, 4, 2] * a2 + c[k, g, 4, 3] * a3 + c[k, g, 4, 4] * a4 + c[k, g, 4, 5] * a5
-    s5 = c[k, g, 5, 0] * a0 + c[k, g, 5, 1] * a1 + c[k, g, 5, 2] * a2 + c[k, g, 5, 3] * a3 + c[k, g, 5, 4] * a4 + c[k, g, 5, 5] * a5
+    s4 = (
+        c[k, g, 4, 0] * a0
+        + c[k, g, 4, 1] * a1
+        + c[k, g, 4, 2] * a2
+        + c[k, g, 4, 3] * a3
+        + c[k, g, 4, 4] * a4
+        + c[k, g, 4, 5] * a5
+    )
+    s5 = (
+        c[k, g, 5, 0] * a0
+        + c[k, g, 5, 1] * a1
+        + c[k, g, 5, 2] * a2
+        + c[k, g, 5, 3] * a3
+        + c[k, g, 5, 4] * a4
+        + c[k, g, 5, 5] * a5
+    )
     return (
         w * (s0 + c[k, g, 0, 4] * a4 + c[k, g, 0, 5] * a5),
         w * (s1 + c[k, g, 1, 4] * a4 + c[k, g, 1, 5] * a5),

@@ -33,7 +33,7 @@ def add_turnings(block, layout, e, force, ck, matrix):
 def add_turning(block, layout, node, row, e, force, ck, matrix):
     """Add ck (dB^T/dp) f of a node to the matrix; its e (N, per_node), f a row of force."""
     carrier = block.carrier[node]
-    if carrier == GRADIENTS or carrier == TURNED_GRADIENTS:
+    if carrier in (GRADIENTS, TURNED_GRADIENTS):
         return
     size, npn = e.shape[1], block.dof.shape[1]
     last = size - 2 if carrier == ROTATION else (3 if carrier == STRETCH else 2)

@@ -36,7 +36,6 @@ def gradients(q):
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def forces(q, s):
     """Return the vectors on r, d and e of stress resultants s."""
-    rx, ry, dx, dy, ex, ey = q
     s0, s1, s2, s3, _, _ = s
     tx, ty, along, across, gx, gy, kx, ky = gradients(q)
     turn = s0 * across - s1 * along
@@ -53,7 +52,6 @@ def forces(q, s):
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def rates(q, dq):
     """Return the change of eps with changes of r, d and e."""
-    rx, ry, dx, dy, ex, ey = q
     rx_, ry_, dx_, dy_, ex_, ey_ = dq
     tx, ty, along, across, gx, gy, kx, ky = gradients(q)
     turn = gx * dx_ + gy * dy_
@@ -70,13 +68,14 @@ def rates(q, dq):
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, re (4 each), dd, de, ee."""
-    rx, ry, dx, dy, ex, ey = q
+    _, _, dx, dy, ex, ey = q
     s0, s1, s2, s3, _, _ = s
     tx, ty, along, across, gx, gy, kx, ky = gradients(q)
     inverse = 1.0 / math.sqrt(dx * dx + dy * dy)
     hxx, hxy = -2.0 * gx * gy, gx * gx - gy * gy
     c00, c01, c02, c03 = w * c[k, g, 0, 0], w * c[k, g, 0, 1], w * c[k, g, 0, 2], w * c[k, g, 0, 3]
-    c11, c12, c13, c22, c23, c33 = w * c[k, g, 1, 1], w * c[k, g, 1, 2], w * c[k, g, 1, 3], w * c[k, g, 2, 2], w * c[k, g, 2, 3], w * c[k, g, 3, 3]
+    c11, c12, c13 = w * c[k, g, 1, 1], w * c[k, g, 1, 2], w * c[k, g, 1, 3]
+    c22, c23, c33 = w * c[k, g, 2, 2], w * c[k, g, 2, 3], w * c[k, g, 3, 3]
     # gradients with respect to d are multiples of g, and k and t; a measure's stress change with d is a vector u_i
     ax, ay, bx, by = across * gx, across * gy, -along * gx, -along * gy
     u0x, u0y = c00 * ax + c01 * bx + c02 * kx + c03 * tx, c00 * ay + c01 * by + c02 * ky + c03 * ty
@@ -105,7 +104,13 @@ def hessian(q, c, k, g, w, s):
         my * gx,
         my * gy,
         ax * u0x + bx * u1x + kx * u2x + tx * u3x + turned * gx * gx + bend + stretch * ty * ty,
-        ax * u0y + bx * u1y + kx * u2y + tx * u3y + turned * gx * gy + angle * hxy + s2 * (real * ex - imaginary * ey)
+        ax * u0y
+        + bx * u1y
+        + kx * u2y
+        + tx * u3y
+        + turned * gx * gy
+        + angle * hxy
+        + s2 * (real * ex - imaginary * ey)
         - stretch * tx * ty,
         ay * u0y + by * u1y + ky * u2y + ty * u3y + turned * gy * gy - bend + stretch * tx * tx,
         u2x * gx + s2 * hxx,

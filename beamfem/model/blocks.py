@@ -57,11 +57,12 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
     )
 
 
-def workspace(block: Block) -> Work:
-    """Return space for the kernels of a block."""
+def workspace(block: Block, stress: np.ndarray | None = None) -> Work:
+    """Return space for the kernels of a block; stress (ne, nq, ns): resultants for the geometric tangent."""
     vectors, nodes = block.scale.shape[1], block.node.shape[1]
     return Work(
         np.empty((4, max(len(block.dof), nodes), 2 * vectors // nodes)),
         np.empty((2 * vectors, 2 * vectors)),
         np.empty(nodes * block.dof.shape[1], dtype=np.int64),
+        np.empty((0, 0, 0)) if stress is None else stress,
     )

@@ -1,6 +1,7 @@
 """A model in numbers: coordinates, blocks of elements, held coordinates and loads at a time."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -20,10 +21,18 @@ from beamfem.model.supports import Spring
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Everything a solver needs of a model; made once a solve."""
+    """Everything a solver needs of a model; `system_of` makes it once.
+
+    proven: names of what has been checked of it, once and for all.
+    """
 
     model: Model
     static: bool
+    proven: set[str] = field(default_factory=set)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Travel to other processes as a model only."""
+        return system_of, (self.model, self.static)
 
     @cached_property
     def reference(self) -> np.ndarray:
@@ -57,9 +66,29 @@ class System:
         nodes = block.node.shape[1]
         return (known_form(nodes, block.scale.shape[1] // nodes, block.measures),)
 
-    def workspaces(self) -> tuple[Work, ...]:
-        """Return new space for the kernels, of each block."""
-        return tuple(workspace(block) for block in self.blocks)
+    def workspaces(self, stresses: Sequence[np.ndarray] | None = None) -> tuple[Work, ...]:
+        """Return new space for the kernels, of each block; stresses (ne, nq, ns): for the geometric tangent."""
+        if stresses is None:
+            return tuple(workspace(block) for block in self.blocks)
+        return tuple(workspace(*both) for both in zip(self.blocks, stresses, strict=True))
+
+    def stress_tables(self) -> tuple[np.ndarray, ...]:
+        """Return new tables of stress resultants, of each block (ne, nq, ns)."""
+        return tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in self.blocks)
+
+    @cached_property
+    def strain_error(self) -> float:
+        """Residual [N/m] that a relative error of one in positions of one metre gives at most, formed as strains."""
+        worst = 0.0
+        for block in self.blocks:
+            stiffest = float(block.stiffness[:, :, 0, 0].max())
+            per_node = block.scale.shape[1] // block.node.shape[1]
+            carries_r = np.arange(block.scale.shape[1]) % per_node < per_node - 1
+            slopes = np.abs(block.slope[0] / block.scale[0] * block.jacobian[0][:, None])[:, carries_r]
+            share = (block.weight[0] / block.weight[0].sum()) @ slopes
+            slope = float(slopes.sum(axis=1).max() * share.max())
+            worst = max(worst, slope * stiffest / float(block.jacobian.min()))
+        return worst
 
     @cached_property
     def _actions(self) -> tuple[Actions, ...]:
@@ -184,6 +213,14 @@ class System:
         for mesh in self.model.meshes:
             scale[mesh.carried.dof[:, :2]] = self.extent
         return scale
+
+
+def system_of(model: Model, static: bool) -> System:
+    """Return the system of a model, the same one every time: a model does not change."""
+    known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
+    if static not in known:
+        known[static] = System(model, static)
+    return known[static]
 
 
 def coordinate_columns(mesh: BeamMesh, reverse: bool = False) -> list[tuple[str, np.ndarray, np.ndarray]]:

@@ -14,7 +14,7 @@ verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -m "slow or not slow"
 
 bench: $(VENV)/.ready
-	$(BIN)/python studies/pendulum.py
+	$(BIN)/python studies/peers.py
 
 docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs

@@ -9,7 +9,7 @@ from beamfem.analysis.equations import element_residual
 from beamfem.element.axis import cross
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 from beamfem.postprocess import SectionForces
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def with_ends(solution: "Solution", beam: Beam) -> SectionForces:
     """
     mesh = solution.model.mesh_of(beam.start)
     inside = postprocess.section_forces(mesh, solution.p)
-    system = System(solution.model, solution.static)
+    system = system_of(solution.model, solution.static)
     vectors = postprocess.nodal_vectors(mesh, solution.p)
     ends = []
     for element, local, sign in ((0, 0, -1.0), (mesh.elements - 1, -1, 1.0)):

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.system import System
+from beamfem.model.system import system_of
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -34,7 +34,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
 def support_forces(solution: "Solution") -> np.ndarray:
     """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
     model = solution.model
-    system = System(model, solution.static)
+    system = system_of(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
     held[system.held_dofs] = True
     for dof, _ in system.inclined:

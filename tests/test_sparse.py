@@ -8,7 +8,7 @@ from conftest import beam as small_beam
 
 import beamfem as bf
 from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.orientation import inverted
+from beamfem.analysis.newton import inverted
 from beamfem.element.axis import cross
 from beamfem.model.layout import Unknowns
 from beamfem.model.reference import stations

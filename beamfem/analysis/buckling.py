@@ -17,7 +17,7 @@ from beamfem.analysis.primary_path import PathEndsError, PrimaryPath
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
-from beamfem.model.system import System
+from beamfem.model.system import system_of
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
 from beamfem.validation import positive
@@ -73,7 +73,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     ConvergenceError, with the equilibria found, where the path ends in a limit point before.
     """
     whole_number("count", count)
-    system = System(model, static=True)
+    system = system_of(model, static=True)
     require_support(system)
     unknown = len(system.free_dofs)
     if count > unknown:

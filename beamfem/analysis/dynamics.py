@@ -14,7 +14,7 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.advance import advance
 from beamfem.model.model import Model
 from beamfem.model.sampled import Sampled
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 from beamfem.progress import progress
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count, positive
@@ -22,6 +22,7 @@ from beamfem.validation import count, positive
 _TOLERANCE = 1e-9
 _ITERATIONS = 25
 _CHUNK_SECONDS = 0.25
+_FIRST_CHUNK = 20_000  # coordinates times steps
 # weights of first and second derivative, times 12; a function of time need not exist before the start
 _CENTRAL = (np.array([1, -8, 0, 8, -1]), np.array([-1, 16, -30, 16, -1]), (-2, -1, 0, 1, 2))
 _FORWARD = (np.array([-25, 48, -36, 16, -3]), np.array([35, -104, 114, -56, 11]), (0, 1, 2, 3, 4))
@@ -50,7 +51,7 @@ def simulate(
     if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
         raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {integrator!r}")
     require_memory(model.size, duration, step, save_every)
-    system = System(model, static=False)
+    system = system_of(model, static=False)
     if system.unknowns.pattern is not None:
         raise InputError(
             "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"
@@ -72,39 +73,39 @@ def simulate(
     state[3] = state[2]
     states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
-    statistics = np.array([0.0, 0.0, 0.0, 1.0])
-    scale = system.scale
-    done, size = 0, save_every
+    statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])
+    free = system.free_dofs
+    memory = np.zeros((len(free), 2 * system.layouts[0].half_width + 1)), statistics
+    scale, work, limits = system.scale, system.workspaces(), np.array([_TOLERANCE, _ITERATIONS])
+    done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
         while done < steps:
             now = min(size, steps - done)
-            saved = np.empty((now, 3, n))
             rows = slice(done + 1, done + now + 1)
             inputs = (held.values[rows], *_sample_loads(system, times[rows]))
             begun = clock.perf_counter()
             completed = advance(
+                system.forms,
                 system.blocks,
+                work,
                 system.point_loads,
                 system.springs,
-                system.layouts[0],
-                system.free_dofs,
+                system.layouts,
+                free,
                 system.held_dofs,
                 system.turned,
                 state,
                 inputs,
                 rule,
-                np.array([_TOLERANCE, _ITERATIONS]),
+                limits,
                 scale,
-                saved,
-                statistics,
+                memory,
+                (states, done + 1, save_every),
             )
             spent = clock.perf_counter() - begun
-            kept = np.arange(done + 1, done + completed + 1)
-            chosen = kept % save_every == 0
-            states[kept[chosen] // save_every] = saved[:completed][chosen]
             done += completed
             if completed and done % save_every:
-                states[done // save_every + 1] = saved[completed - 1]
+                states[done // save_every + 1] = state[:3]
             report(times[done])
             if completed < now:
                 message = (
@@ -114,8 +115,7 @@ def simulate(
                 )
                 raise ConvergenceError(message, _solution(system, times, states, done, save_every, statistics))
             if spent < _CHUNK_SECONDS:
-                largest = max(int(64e6 / (24 * n)), 1)
-                size = save_every * max(min(2 * size, largest) // save_every, 1)
+                size *= 4
     return _solution(system, times, states, done, save_every, statistics)
 
 
@@ -160,6 +160,9 @@ class HeldMotion:
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """Body forces (steps, beams, 4) and point values of each block (steps, nl, 3); one row where nothing varies."""
+    if not system.varying:
+        times = times[:1]
     body = np.array([system.body(now) for now in times])
     values = [system.point_values(now) for now in times]
     return body, tuple(np.array([value[i] for value in values]) for i in range(len(system.blocks)))

@@ -4,40 +4,47 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
-from beamfem.kernels.assemble import assemble
-from beamfem.kernels.block import Block
-from beamfem.kernels.loads import assemble_point_loads
-from beamfem.kernels.springs import assemble_springs
+from beamfem.kernels.balance import balance
+from beamfem.kernels.block import Block, PointLoads, Springs
 from beamfem.kernels.stress import predict_stress
+from beamfem.model.blocks import workspace
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
 _EMPTY = np.empty(0)
-_NO_STRESS = np.empty((0, 0, 0))
 
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
-    result = np.zeros(len(p))
-    body, values = system.body(time), system.point_values(time)
-    for i, (block, loads) in enumerate(zip(system.blocks, system.point_loads, strict=True)):
-        layout = system.layouts[i]
-        assemble(block, layout, p, v, a, body, np.ones(3), _NO_STRESS, result, _EMPTY)
-        assemble_point_loads(block, loads, layout, p, values[i], 1.0, result, _EMPTY)
-    assemble_springs(system.springs, p, 1.0, result, _EMPTY)
+    result, model = np.empty(len(p)), (system.forms, system.blocks, system.workspaces(), system.point_loads)
+    actions = system.body(time), point_rows(system, time), 0
+    balance(*model, system.springs, system.layouts, p, v, a, *actions, np.ones(3), False, result, _EMPTY)
     return result
+
+
+def point_rows(system: System, time: float) -> tuple[np.ndarray, ...]:
+    """Return the forces and moments (1, nl, 3) of each block at a time, as the kernels take them."""
+    return tuple(values[None] for values in system.point_values(time))
 
 
 def element_residual(
     system: System, block: int, element: int, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float
 ) -> np.ndarray:
     """Return inertia + elastic - body forces (n,) [N, N m] of one element of a block, without loads at points."""
-    own = slice(element, element + 1)
     whole = system.blocks[block]
-    part = whole._replace(**{name: getattr(whole, name)[own] for name in ("kind", "carrier", "frame", "dof", "beam")})
-    result = np.zeros(len(p))
-    assemble(part, system.layouts[block], p, v, a, system.body(time), np.ones(3), _NO_STRESS, result, _EMPTY)
+    nodes = whole.node[element]
+    part = whole._replace(
+        node=np.arange(len(nodes))[None],
+        **{name: getattr(whole, name)[element : element + 1] for name in ("kind", "beam")},
+        **{name: getattr(whole, name)[nodes] for name in ("carrier", "frame", "dof", "home")},
+    )
+    result = np.empty(len(p))
+    nothing = PointLoads(*(values[:0] for values in system.point_loads[block]))
+    loose = Springs(*(values[:0] for values in system.springs))
+    model = (system.forms[block],), (part,), (workspace(part),), (nothing,), loose, (system.layouts[block],)
+    actions = system.body(time), (np.empty((1, 0, 3)),), 0
+    balance(*model, p, v, a, *actions, np.ones(3), False, result, _EMPTY)
     return result
 
 
@@ -59,15 +66,11 @@ def linearise(
     unknowns = system.unknowns
     unknown, pattern = len(unknowns.dofs), unknowns.pattern
     width = 2 * system.layouts[0].half_width + 1
-    matrix = np.zeros(unknown * width) if pattern is None else np.zeros(len(pattern.data))
-    result = np.zeros(len(p))
-    body, values, weights = system.body(time), system.point_values(time), np.array(coefficients)
-    for i, (block, loads) in enumerate(zip(blocks or system.blocks, system.point_loads, strict=True)):
-        layout = system.layouts[i]
-        geometric = _NO_STRESS if stresses is None else stresses[i]
-        assemble(block, layout, p, v, a, body, weights, geometric, result, matrix)
-        assemble_point_loads(block, loads, layout, p, values[i], coefficients[0], result, matrix)
-    assemble_springs(system.springs, p, coefficients[0], result, matrix)
+    matrix = np.empty(unknown * width if pattern is None else len(pattern.data))
+    result, loads = np.empty(len(p)), system.point_loads
+    model = system.forms, blocks or system.blocks, system.workspaces(stresses), loads, system.springs, system.layouts
+    actions = system.body(time), point_rows(system, time), 0
+    balance(*model, p, v, a, *actions, np.array(coefficients), stresses is not None, result, matrix)
     if pattern is None:
         return result, BandTangent(matrix.reshape(unknown, width))
     return result, SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
@@ -75,12 +78,10 @@ def linearise(
 
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns)."""
-    result = []
-    for block in system.blocks:
-        stress = np.empty((block.frame.shape[0], block.jacobian.shape[1], block.stiffness.shape[2]))
-        predict_stress(block, p, step, stress)
-        result.append(stress)
-    return tuple(result)
+    stresses = system.stress_tables()
+    for form, block, work, stress in zip(system.forms, system.blocks, system.workspaces(), stresses, strict=True):
+        predict_stress(form, block, work, p, step, stress)
+    return stresses
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:

@@ -14,15 +14,19 @@ from beamfem.model.system import System
 
 _DENSE_BODIES = 300
 _ZERO = 1e-9
+_PROVEN = "supported"
 
 
 def require_support(system: System) -> None:
     """Raise FreeMotionError naming a beam, a point and the motion where a rigid motion or a mechanism is left free."""
+    if _PROVEN in system.proven:
+        return
     model = system.model
     body = _bodies(model)
     rows = _Rows(model, body, system.extent)
     free = _null_space(rows.matrix(), 3 * int(body.max() + 1))
     if not len(free):
+        system.proven.add(_PROVEN)
         return
     moving = [int(np.argmax(np.abs(motion.reshape(-1, 3)).max(axis=1)[body])) for motion in free]
     number = moving[0]

@@ -18,13 +18,13 @@ def mode_stiffness(system: System, p: np.ndarray, load_factor: float, mode: np.n
     K = sum B^T C B over the quadrature points, and what stresses, springs and loads add.
     """
     rest, material, weak = np.zeros(len(p)), 0.0, []
-    for block in system.blocks:
+    for form, block, work in zip(system.forms, system.blocks, system.workspaces(), strict=True):
         classes, points, measures, _ = block.stiffness.shape
         unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
         plain = block._replace(stiffness=unit)
         ends = np.empty((2, len(block.kind), points, measures))
         for strain, step in zip(ends, (rest, mode), strict=True):
-            predict_stress(plain, p, step, strain)
+            predict_stress(form, plain, work, p, step, strain)
         strain = ends[1] - ends[0]
         stiffness, weight = block.stiffness[block.kind], block.weight[block.kind]
         material += float(np.einsum("eq,eqi,eqij,eqj->", weight, strain, stiffness, strain))

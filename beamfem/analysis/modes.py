@@ -14,7 +14,7 @@ from beamfem.analysis.rigid import sort_rigid
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
-from beamfem.model.system import System
+from beamfem.model.system import system_of
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
 from beamfem.validation import positive
@@ -91,7 +91,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     Raises InputError; ConvergenceError where modes were missed.
     """
     whole_number("count", count)
-    system = System(model, static=True)
+    system = system_of(model, static=True)
     p, load_factor = resting_state(system, about)
     unknown = len(system.free_dofs)
     if count > unknown:

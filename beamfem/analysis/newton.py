@@ -6,14 +6,17 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
-from beamfem.analysis.orientation import inverted
+from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
+from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
-from beamfem.kernels.block import ELASTIC_LINE, Block
+from beamfem.kernels.balance import smallest_jacobian
+from beamfem.kernels.equilibrate import equilibrate
+from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
 from beamfem.validation import count, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
+_LARGEST = 1e3  # of the model; larger corrections lead nowhere
 
 
 class Ended(Enum):
@@ -69,12 +72,16 @@ class Newton:
 
 def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
+    held_step = np.zeros(len(start))
+    held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
+    if system.unknowns.pattern is None:
+        result = _solve_band(system, start, load_factor, newton, held_step)
+        if result is not None:
+            return result
     p, rest = start.copy(), np.zeros(len(start))
     scale = system.scale
     free = system.free_dofs
     stresses = None
-    held_step = np.zeros(len(p))
-    held_step[system.held_dofs] = system.held_values(load_factor) - p[system.held_dofs]
     last = np.inf
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
@@ -99,32 +106,93 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 
+def _solve_band(
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray
+) -> NewtonResult | None:
+    """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
+    p, held_force = start.copy(), np.zeros(len(start))
+    if held_step.any():
+        held_force = _held_force(system, start, held_step, load_factor)
+    rows = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1))
+    values = point_rows(system, load_factor)
+    model = (
+        system.forms,
+        system.blocks,
+        system.workspaces(system.stress_tables()),
+        system.point_loads,
+        system.springs,
+        system.layouts,
+        system.free_dofs,
+        system.turned,
+    )
+    body = system.body(load_factor)
+    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0])
+    settings = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT, newton.iterations, newton.independent_stresses
+    limits = np.array(settings, dtype=float)
+    change = held_step, held_force
+    load = max((float(np.abs(forces).max(initial=0.0)) for forces in values), default=0.0)
+    while found[0] < newton.iterations:
+        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found):
+            return None
+        iterations, size, before = int(found[0]), found[1], found[2]
+        # the factorisation keeps the inverse of each pivot on the diagonal
+        negative = int((rows[:, rows.shape[1] // 2] < 0.0).sum())
+        if _grown(size):
+            return NewtonResult(start, iterations, Ended.DIVERGED, negative)
+        if _small(size, before, iterations, newton):
+            ended = _judge(system, p, newton, size, found[3], max(found[4], load), found[5] <= 0.0)
+            if ended is not None:
+                return NewtonResult(p, iterations, ended, negative)
+        change = np.zeros(len(p)), np.zeros(len(p))
+    return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
 def verdict(
     system: System, p: np.ndarray, load_factor: float, newton: Newton, iteration: int, sizes: tuple[float, float]
 ) -> Ended | None:
     """Say how an iteration ended whose last two corrections have these sizes; None where it shall go on."""
     size, before = sizes
-    if not np.isfinite(size) or size > 1e3:
+    if _grown(size):
         return Ended.DIVERGED
-    stagnant = iteration > 2 and size > 0.25 * before and size < _STAGNANT
-    if size <= newton.tolerance or stagnant:
-        return _judge(system, p, load_factor, newton, size)
-    return None
-
-
-def _judge(system: System, p: np.ndarray, load_factor: float, newton: Newton, size: float) -> Ended | None:
-    """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on."""
+    if not _small(size, before, iteration, newton):
+        return None
     rest = np.zeros(len(p))
     unbalanced = residual(system, p, rest, rest, load_factor)
     largest = float(np.max(np.abs(system.along_free(unbalanced)), initial=0.0))
     force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
+    return _judge(system, p, newton, size, largest, force, inverted(system, p))
+
+
+def _grown(size: float) -> bool:
+    return not np.isfinite(size) or size > _LARGEST
+
+
+def _small(size: float, before: float, iteration: int, newton: Newton) -> bool:
+    return size <= newton.tolerance or (iteration > 2 and size > 0.25 * before and size < _STAGNANT)
+
+
+def _judge(
+    system: System, p: np.ndarray, newton: Newton, size: float, largest: float, force: float, inside_out: bool
+) -> Ended | None:
+    """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
+
+    largest: residual of the unknown directions [N, N m]; force: largest force that acts or reacts.
+    """
     if size <= newton.tolerance and largest <= newton.residual_tolerance * force:
         ended = Ended.CONVERGED
     elif largest <= round_off_floor(system, p):
         ended = Ended.ROUND_OFF
     else:
         return None
-    return Ended.INVERTED if inverted(system, p) else ended
+    return Ended.INVERTED if inside_out else ended
+
+
+def inverted(system: System, p: np.ndarray) -> bool:
+    """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
+    work, rest = system.workspaces(), np.zeros(len(p))
+    for block, own in zip(system.blocks, work, strict=True):
+        place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
+    return bool(smallest_jacobian(system.forms, system.blocks, work) <= 0.0)
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:
@@ -133,20 +201,8 @@ def round_off_floor(system: System, p: np.ndarray) -> float:
     A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l times
     the slopes of the shape functions; the section answers with its largest axial stiffness, again times slopes.
     """
-    worst = 0.0
-    for block in system.blocks:
-        worst = max(worst, float(block.stiffness[:, :, 0, 0].max()) * _gain(block, block.r_xi, 1))
-        if block.measures == ELASTIC_LINE:
-            worst = max(worst, float(block.stiffness[:, :, 1, 1].max()) * _gain(block, block.r_xixi, 2))
     reach = max(float(np.max(np.abs(p))), system.extent)
-    return 4.0 * np.finfo(float).eps * worst * reach
-
-
-def _gain(block: Block, table: np.ndarray, derivative: int) -> float:
-    """Force on a node for a unit of displacement through a derivative of r0, per section stiffness."""
-    slopes = np.abs(table)
-    share = (block.weight[0] / block.weight[0].sum()) @ slopes
-    return float(slopes.sum(axis=1).max() * share.max()) / float(block.jacobian.min()) ** (2 * derivative - 1)
+    return 4.0 * np.finfo(float).eps * system.strain_error * reach
 
 
 def _load_size(system: System, load_factor: float) -> float:

@@ -7,7 +7,7 @@ from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.newton import Ended, Newton, NewtonResult, round_off_floor, solve_equilibrium
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 from beamfem.progress import progress
 from beamfem.solution import Solution, Statistics
 from beamfem.validation import count
@@ -25,7 +25,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     Raises FreeMotionError before, ConvergenceError (with the states found) where it cannot go on.
     """
     count("steps", steps)
-    system = System(model, static=True)
+    system = system_of(model, static=True)
     require_support(system)
     newton = newton or Newton()
     done = _Record(model)

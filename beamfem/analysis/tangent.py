@@ -11,7 +11,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from beamfem.kernels.band import factor, solve
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
-_SMALLEST_PIVOT = 1e-13
+SMALLEST_PIVOT = 1e-13
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
 Turned = tuple[np.ndarray, np.ndarray]
@@ -90,7 +90,7 @@ class BandTangent:
         rows = self.rows.copy()
         hold_normals(rows, *turned)
         lu = rows.copy()
-        return BandFactors(rows, lu, factor(lu) > _SMALLEST_PIVOT, turned)
+        return BandFactors(rows, lu, factor(lu) > SMALLEST_PIVOT, turned)
 
     def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""

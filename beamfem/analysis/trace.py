@@ -17,7 +17,7 @@ from beamfem.analysis.statics import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.progress import progress
 from beamfem.validation import count, finite, positive
@@ -57,7 +57,7 @@ def trace_equilibrium(
     count("points", points)
     if direction not in (1, -1):
         raise InputError(f"direction must be 1 or -1, got {direction!r}")
-    system = System(model, static=True)
+    system = system_of(model, static=True)
     require_support(system)
     _require_load(system)
     _require_crossing(model, start)

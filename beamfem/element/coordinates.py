@@ -54,24 +54,6 @@ def labels(carrier: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
     return (*components[:-2], "theta") if carrier == ROTATION else components
 
 
-def columns(vectors: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """First component of e, and one past the last, that each coordinate of a node moves (carriers, npn)."""
-    size = 2 * len(vectors)
-    start, stop = np.zeros((TURNED_GRADIENTS + 1, size), dtype=np.int64), np.zeros((TURNED_GRADIENTS + 1, size), int)
-    for carrier in range(TURNED_GRADIENTS + 1):
-        names = labels(carrier, vectors)
-        start[carrier] = np.arange(size)
-        stop[carrier] = start[carrier] + 1
-        if names[-1] == "theta":
-            start[carrier, len(names) - 1] = size - 2 if carrier == ROTATION else 2
-            stop[carrier, len(names) - 1] = size
-        if carrier == STRETCH:
-            start[carrier, 2], stop[carrier, 2] = 2, 4
-        if carrier == TURNED_GRADIENTS:
-            start[carrier, -2:], stop[carrier, -2:] = size - 2, size
-    return start, stop
-
-
 def nodal_vectors(carrier: int, vectors: tuple[str, ...], p: np.ndarray, frame: np.ndarray) -> np.ndarray:
     """Return e (steps, nodes, vectors, 2) of coordinates p (steps, nodes, npn); frame (nodes, 3), see `node_map`."""
     result = np.empty((*p.shape[:2], len(vectors), 2))

@@ -3,89 +3,129 @@
 import numpy as np
 from numba import njit
 
-from beamfem.kernels.assemble import assemble
+from beamfem.kernels.balance import balance
 from beamfem.kernels.band import factor, solve
-from beamfem.kernels.loads import assemble_point_loads
-from beamfem.kernels.springs import assemble_springs
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
+
+# Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
+# them, or above which rate of convergence, the next step gets a new tangent.
+_MOST, _MANY, _SLOW = 8, 3, 0.05
+_REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def predict(state, before, held, values, rule):
+    """Start a step from `before` (4, n): p and p' with the acceleration kept, held coordinates at `values` (3, nh)."""
+    h, alpha_m, gamma, beta = rule[0], rule[1], rule[3], rule[4]
+    for i in range(state.shape[1]):
+        new = (before[2, i] - alpha_m * before[3, i]) / (1.0 - alpha_m)
+        state[0, i] = before[0, i] + h * before[1, i] + h * h * ((0.5 - beta) * before[3, i] + beta * new)
+        state[1, i] = before[1, i] + h * ((1.0 - gamma) * before[3, i] + gamma * new)
+        state[2, i] = before[2, i]
+    for i in range(held.shape[0]):
+        for k in range(3):
+            state[k, held[i]] = values[k, i]
+
+
+@njit(cache=True, _nrt=False, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
+def correct(state, right, free, inverse_scale, coefficients):
+    """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
+    largest = 0.0
+    to_velocity, to_acceleration = coefficients[1], coefficients[2]
+    for i in range(free.shape[0]):
+        dof, change = free[i], right[i]
+        state[0, dof] += change
+        state[1, dof] += to_velocity * change
+        state[2, dof] += to_acceleration * change
+        size = abs(change) * inverse_scale[i]
+        if not size <= largest:
+            largest = size
+    return largest
 
 
 @njit(cache=True, error_model="numpy")
-def advance(blocks, loads, springs, layout, free, held, turned, state, inputs, rule, limits, scale, saved, statistics):
+def advance(
+    forms, blocks, work, loads, springs, layouts, free, held, turned, state, inputs, rule, limits, scale, memory, saving
+):
     """March through the steps of `inputs`; return how many were completed.
 
     turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
-    advanced in place. inputs: held values (steps, 3, nh), body (steps, beams, 4), point values a tuple of
-    (steps, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
-    `scale` (n,), largest number of iterations.
-    saved (steps, 3, n). statistics (4,): iterations, most iterations in a step, last correction, worst pivot ratio.
-    Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step.
+    advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams, 4), point values of each block
+    (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
+    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, and statistics
+    (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of the last
+    step (negative: its tangent is of no use), number of tangents. saving: rows (steps, 3, n), number of the first step,
+    and how many steps make a row.
+
+    Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
+    keep the tangent, over steps as well, and stop where the estimated error is small (Hairer and Wanner 1996, IV.8).
     """
     held_values, body, point_values = inputs
+    lu, statistics = memory
+    saved, first, every = saving
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     steps, n, unknown = held_values.shape[0], state.shape[1], free.shape[0]
-    width = 2 * layout.half_width + 1
-    matrix = np.empty(unknown * width)
-    residual, right = np.empty(n), np.empty(unknown)
-    none = np.empty((0, 0, 0))
-    to_velocity = gamma / (h * beta)
-    to_acceleration = (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
-    coefficients = np.array([1.0, to_velocity, to_acceleration])
-    before = state.copy()
+    coefficients = np.array([1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))])
+    residual, right, before = np.empty(n), np.empty(unknown), np.empty((4, n))
+    inverse_scale = np.empty(unknown)
+    for i in range(unknown):
+        inverse_scale[i] = 1.0 / scale[free[i]]
+    matrix, p, v, a = lu.reshape(lu.size), state[0], state[1], state[2]
+    keep, varying = matrix[:0], (body.shape[0] > 1, point_values[0].shape[0] > 1)
     for step in range(steps):
-        before[:] = state
-        p, v, a, aux = state[0], state[1], state[2], state[3]
+        own_body, row = body[step if varying[0] else 0], step if varying[1] else 0
         for i in range(n):
-            new = (before[2, i] - alpha_m * before[3, i]) / (1.0 - alpha_m)
-            p[i] += h * before[1, i] + h * h * ((0.5 - beta) * before[3, i] + beta * new)
-            v[i] += h * ((1.0 - gamma) * before[3, i] + gamma * new)
-        for i in range(held.shape[0]):
-            p[held[i]] = held_values[step, 0, i]
-            v[held[i]] = held_values[step, 1, i]
-            a[held[i]] = held_values[step, 2, i]
-        done = False
-        for iteration in range(int(limits[1])):
-            residual[:] = 0.0
-            matrix[:] = 0.0
-            for i in range(len(blocks)):
-                assemble(blocks[i], layout, p, v, a, body[step], coefficients, none, residual, matrix)
-                if loads[i].element.shape[0] > 0:
-                    values = point_values[i][step]
-                    assemble_point_loads(blocks[i], loads[i], layout, p, values, 1.0, residual, matrix)
-            assemble_springs(springs, p, 1.0, residual, matrix)
+            before[0, i], before[1, i], before[2, i], before[3, i] = state[0, i], state[1, i], state[2, i], state[3, i]
+        predict(state, before, held, held_values[step], rule)
+        rate, size, iteration = statistics[4], 0.0, 0
+        full, fresh, done = False, rate < 0.0, False
+        rate = max(rate, 1e-4) ** 0.8 if not fresh else 1.0
+        while iteration < limits[1]:
+            renew = full or fresh
+            target = matrix if renew else keep
+            balance(
+                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients, False,
+                residual, target,
+            )  # fmt: skip
+            if renew:
+                hold_normals(lu, turned[0], turned[1])
+                statistics[3] = min(statistics[3], factor(lu))
+                statistics[5] += 1
             for i in range(unknown):
                 right[i] = -residual[free[i]]
-            lu = matrix.reshape(unknown, width)
-            hold_normals(lu, turned[0], turned[1])
             turn_in(right, turned[0], turned[1])
-            statistics[3] = min(statistics[3], factor(lu))
             solve(lu, right)
             turn_back(right, turned[0], turned[1])
-            largest = 0.0
-            for i in range(unknown):
-                dof = free[i]
-                p[dof] += right[i]
-                v[dof] += to_velocity * right[i]
-                a[dof] += to_acceleration * right[i]
-                size = abs(right[i]) / scale[dof]
-                if not size <= largest:
-                    largest = size
+            last, size = size, correct(state, right, free, inverse_scale, coefficients)
+            fresh = False
+            iteration += 1
             statistics[0] += 1
-            statistics[1] = max(statistics[1], iteration + 1)
-            statistics[2] = largest
-            if not np.isfinite(largest):
+            statistics[2] = size
+            if iteration > 1:
+                rate = size / last
+            done = size <= limits[0] if full else rate < 1.0 and rate * size <= (1.0 - rate) * _REMAINDER * limits[0]
+            # corrections within the tolerance that no longer shrink are round-off
+            done = done or (iteration > 1 and last <= limits[0] and size <= limits[0] and rate > 0.5)
+            if done or (full and not np.isfinite(size)):
                 break
-            if largest <= limits[0]:
-                done = True
-                break
+            if not full and not (iteration < _MOST and (iteration < 2 or rate < 0.5)):
+                predict(state, before, held, held_values[step], rule)
+                full, iteration = True, 0
+        statistics[1] = max(statistics[1], iteration)
+        statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
         if not done:
-            state[:] = before
+            for i in range(n):
+                state[0, i], state[1, i] = before[0, i], before[1, i]
+                state[2, i], state[3, i] = before[2, i], before[3, i]
             return step
         for i in range(n):
-            aux[i] = ((1.0 - alpha_f) * a[i] + alpha_f * before[2, i] - alpha_m * before[3, i]) / (1.0 - alpha_m)
+            state[3, i] = ((1.0 - alpha_f) * state[2, i] + alpha_f * before[2, i] - alpha_m * before[3, i]) / (
+                1.0 - alpha_m
+            )
         for i in range(held.shape[0]):
-            aux[held[i]] = a[held[i]]
-        saved[step, 0] = p
-        saved[step, 1] = v
-        saved[step, 2] = a
+            state[3, held[i]] = state[2, held[i]]
+        if (first + step) % every == 0:
+            row = (first + step) // every
+            for i in range(n):
+                saved[row, 0, i], saved[row, 1, i], saved[row, 2, i] = state[0, i], state[1, i], state[2, i]
     return steps

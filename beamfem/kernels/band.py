@@ -7,7 +7,7 @@ SciPy's pivoted solver.
 from numba import njit
 
 
-@njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
+@njit(cache=True, _nrt=False, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
 def factor(ab):
     """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry."""
     n, width = ab.shape
@@ -32,7 +32,7 @@ def factor(ab):
     return worst
 
 
-@njit(cache=True, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
+@njit(cache=True, _nrt=False, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
 def solve(lu, x):
     """Replace the right-hand side x (n,) by the solution; lu from `factor`."""
     n, width = lu.shape

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-# What carries the nodal vectors of a node, see `node_map`.
+# What carries the nodal vectors of a node, see `coordinates`.
 GRADIENTS = 0
 ROTATION = 1
 STRETCH = 2
@@ -20,33 +20,39 @@ ELASTIC_LINE = 2
 class Block(NamedTuple):
     """Elements of one field and one kind of strain measures.
 
-    Sizes: ne elements, nc classes of identical elements, nq quadrature points, nn nodes an element, nv nodal vectors
-    an element (nr of them carry r0, nd carry d), npn coordinates a node at most, ns strain measures.
+    Sizes: ne elements, nc classes of identical elements, nq quadrature points, N nodes in all, nn of an element, vpn
+    nodal vectors a node (the last is r_y, which carries d; the others carry r0), nv = nn vpn, npn coordinates a node at
+    most, ns strain measures.
     """
 
     measures: int  # GREEN_LAGRANGE, STRUCTURAL or ELASTIC_LINE
-    r_slots: np.ndarray  # (nr,) which nodal vectors carry r0
-    d_slots: np.ndarray  # (nd,) which nodal vectors carry d
-    r_xi: np.ndarray  # (nq, nr) dN_r/dxi on the unit element
-    r_xixi: np.ndarray  # (nq, nr) d2N_r/dxi2
-    d: np.ndarray  # (nq, nd) N_d
-    d_xi: np.ndarray  # (nq, nd) dN_d/dxi
-    column_start: np.ndarray  # (carriers, npn) first component of a node's e that a coordinate moves
-    column_stop: np.ndarray  # (carriers, npn) one past the last
+    slope: np.ndarray  # (nc, nq, nv) dN/ds, of a gradient times the mesh length
+    second: np.ndarray  # (nc, nq, nv) d2N/ds2 of those that carry r0, likewise; empty but for the elastic line
+    director: np.ndarray  # (nq, nn) N of those that carry d
     kind: np.ndarray  # (ne,) class of an element
     scale: np.ndarray  # (nc, nv) factor of a nodal vector: 1, or the mesh length where it is a gradient [m]
     jacobian: np.ndarray  # (nc, nq) ds/dxi of the reference [m]
-    jacobian_xi: np.ndarray  # (nc, nq) its derivative [m]
     weight: np.ndarray  # (nc, nq) quadrature weight times ds/dxi [m]
     stiffness: np.ndarray  # (nc, nq, ns, ns) section stiffness
     reference: np.ndarray  # (nc, nq, ns) strain measures of the stress-free state
     mass: np.ndarray  # (nc, nv, nv) scalar consistent mass, one entry a pair of nodal vectors [kg]
     gravity: np.ndarray  # (nc, nv) mass carried by a nodal vector under a uniform acceleration [kg]
     length: np.ndarray  # (nc, nv) integral of N_r over the reference length [m]
-    carrier: np.ndarray  # (ne, nn) what carries the nodal vectors of each node
-    frame: np.ndarray  # (ne, nn, 3) cosine and sine of the node's angle, |r_x| in the reference; see `node_map`
-    dof: np.ndarray  # (ne, nn * npn) coordinates of an element, -1 where a node has fewer
+    node: np.ndarray  # (ne, nn) nodes of an element
     beam: np.ndarray  # (ne,) beam that an element belongs to
+    carrier: np.ndarray  # (N,) what carries the nodal vectors of a node
+    frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `coordinates`
+    dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
+    home: np.ndarray  # (N, 2) an element of the node, and its place there
+
+
+class Work(NamedTuple):
+    """Space that kernels of a block write to, so that they allocate nothing."""
+
+    nodes: np.ndarray  # (4, N, per_node) nodal vectors, their accelerations and forces
+    matrix: np.ndarray  # (2 nv, 2 nv) of an element
+    rows: np.ndarray  # (nn npn,) where it goes
+    stress: np.ndarray  # (ne, nq, ns) stress resultants for the geometric part of the tangent, or none (0, 0, 0)
 
 
 class PointLoads(NamedTuple):

@@ -1,110 +1,95 @@
 """From the coordinates p of a node to its absolute nodal coordinates e, with all derivatives a solver needs.
 
 e = e(p), e' = B p', e'' = B p'' + B' p'. For an unknown increment dp that changes p by ck dp, p' by cv dp and p'' by
-ca dp, the change of e'' is C dp. Columns j of B and C are zero outside [column_start[j], column_stop[j]).
+ca dp, the change of e'' is C dp. What B and C do to element matrices is in `reduce`.
+
+GRADIENTS: e = p. TURNED_GRADIENTS: the same, but r_y is a stored vector turned by the frame's angle.
+ROTATION: r_y = (-sin t, cos t), t from the reference; paper, eqs. (5) to (7), (11), (12).
+STRETCH: r_x = s (cos t, sin t) as well, paper, section 1.5. SHEAR_RIGID: s = |r_x| of the reference, section 3.5.
+A frame holds cosine and sine of the section's angle in the reference, and |r_x| there.
 """
 
 import math
 
-import numpy as np
 from numba import njit
 
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
 
 
-@njit(cache=True, error_model="numpy")
-def node_map(carrier, p, v, a, frame, coefficients, e, acceleration, b, c):
-    """Fill e, acceleration (ne,), b and c (npn, ne) of one node; rows of b and c are columns of B and C.
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+def linear(carrier, size):
+    """Return how many of the first coordinates of a node are nodal vectors themselves."""
+    return size if carrier == GRADIENTS else (2 if carrier in (STRETCH, SHEAR_RIGID) else size - 2)
 
-    frame: cosine and sine of the section's angle in the reference, and |r_x| there.
-    GRADIENTS: e = p. TURNED_GRADIENTS: the same, but r_y is a stored vector turned by the frame's angle.
-    ROTATION: r_y = (-sin t, cos t), t from the reference; paper, eqs. (5) to (7), (11), (12).
-    STRETCH: r_x = s (cos t, sin t) as well, paper, section 1.5. SHEAR_RIGID: s = |r_x|, paper, section 3.5.
-    """
-    size = e.shape[0]
+
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+def node_vectors(block, node, p, v, a, e, acceleration):
+    """Fill a node's rows of e and e'' (N, per_node) from p, p', p'' (n,)."""
+    carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]
+    for j in range(linear(carrier, size)):
+        e[node, j], acceleration[node, j] = p[dof[node, j]], a[dof[node, j]]
     if carrier == GRADIENTS:
-        _linear(0, size, p, a, coefficients, e, acceleration, b, c)
-    elif carrier == ROTATION:
-        _linear(0, size - 2, p, a, coefficients, e, acceleration, b, c)
-        j = size - 2
-        ct, st = _cos_sin(p[j], frame[0], frame[1])
-        _turning(j, j, -st, ct, v[j], a[j], coefficients, e, acceleration, b, c)
-    elif carrier in (STRETCH, SHEAR_RIGID):
-        _linear(0, 2, p, a, coefficients, e, acceleration, b, c)
-        j = 3 if carrier == STRETCH else 2
-        ct, st = _cos_sin(p[j], frame[0], frame[1])
-        s, rate, second = frame[2], 0.0, 0.0
-        if carrier == STRETCH:
-            s, rate, second = p[2], v[2], a[2]
-        _turning(j, size - 2, -st, ct, v[j], a[j], coefficients, e, acceleration, b, c)
-        _turning(j, 2, s * ct, s * st, v[j], a[j], coefficients, e, acceleration, b, c)
-        if carrier == STRETCH:
-            ck, cv, ca = coefficients[0], coefficients[1], coefficients[2]
-            spin, turn = v[j], a[j]
-            acceleration[2] += second * ct - 2.0 * rate * spin * st
-            acceleration[3] += second * st + 2.0 * rate * spin * ct
-            b[2, 2], b[2, 3] = ct, st
-            radial, across = ca - ck * spin * spin, 2.0 * cv * spin + ck * turn
-            c[2, 2] = radial * ct - across * st
-            c[2, 3] = radial * st + across * ct
-            radial = -2.0 * (ck * rate * spin)
-            across = ck * second + 2.0 * cv * rate
-            c[j, 2] += radial * ct - across * st
-            c[j, 3] += radial * st + across * ct
-    elif carrier == TURNED_GRADIENTS:
-        _linear(0, size - 2, p, a, coefficients, e, acceleration, b, c)
-        j, co, si, ca = size - 2, frame[0], frame[1], coefficients[2]
-        e[j], e[j + 1] = co * p[j] - si * p[j + 1], si * p[j] + co * p[j + 1]
-        acceleration[j] = co * a[j] - si * a[j + 1]
-        acceleration[j + 1] = si * a[j] + co * a[j + 1]
-        b[j, j], b[j, j + 1], b[j + 1, j], b[j + 1, j + 1] = co, si, -si, co
-        c[j, j], c[j, j + 1], c[j + 1, j], c[j + 1, j + 1] = ca * co, ca * si, -ca * si, ca * co
-
-
-@njit(cache=True, inline="always", error_model="numpy")
-def _linear(first, stop, p, a, coefficients, e, acceleration, b, c):
-    for j in range(first, stop):
-        e[j] = p[j]
-        acceleration[j] = a[j]
-        b[j, j] = 1.0
-        c[j, j] = coefficients[2]
-
-
-@njit(cache=True, inline="always", error_model="numpy")
-def _turning(j, i, x, y, spin, turn, coefficients, e, acceleration, b, c):
-    """A vector (x, y) at components i, i + 1 of e that turns with the angle p[j]."""
-    ck, cv, ca = coefficients[0], coefficients[1], coefficients[2]
-    e[i], e[i + 1] = x, y
+        return
+    if carrier == TURNED_GRADIENTS:
+        x, y = dof[node, size - 2], dof[node, size - 1]
+        co, si = frame[node, 0], frame[node, 1]
+        e[node, size - 2], e[node, size - 1] = co * p[x] - si * p[y], si * p[x] + co * p[y]
+        acceleration[node, size - 2], acceleration[node, size - 1] = co * a[x] - si * a[y], si * a[x] + co * a[y]
+        return
+    angle = dof[node, size - 2 if carrier == ROTATION else (3 if carrier == STRETCH else 2)]
+    spin, turn = v[angle], a[angle]
+    ca, sa = math.cos(p[angle]), math.sin(p[angle])
+    ct, st = ca * frame[node, 0] - sa * frame[node, 1], sa * frame[node, 0] + ca * frame[node, 1]
     square = spin * spin
-    acceleration[i] = -y * turn - x * square
-    acceleration[i + 1] = x * turn - y * square
-    b[j, i], b[j, i + 1] = -y, x
-    across = ca - ck * square
-    along = -ck * turn - 2.0 * cv * spin
-    c[j, i] = -y * across + x * along
-    c[j, i + 1] = x * across + y * along
+    e[node, size - 2], e[node, size - 1] = -st, ct
+    acceleration[node, size - 2] = -ct * turn + st * square
+    acceleration[node, size - 1] = -st * turn - ct * square
+    if carrier != ROTATION:
+        s, rate, second = frame[node, 2], 0.0, 0.0
+        if carrier == STRETCH:
+            s, rate, second = p[dof[node, 2]], v[dof[node, 2]], a[dof[node, 2]]
+        e[node, 2], e[node, 3] = s * ct, s * st
+        radial, across = second - s * square, s * turn + 2.0 * rate * spin
+        acceleration[node, 2], acceleration[node, 3] = radial * ct - across * st, radial * st + across * ct
 
 
-@njit(cache=True, error_model="numpy")
-def element_map(block, element, p, e, b):
-    """Fill e (2 nv,) and the columns of B, b (npe, ne of a node), of an element at rest; p (n,) of the whole model."""
-    nn, npe = block.frame.shape[1], block.dof.shape[1]
-    npn, per_node = npe // nn, e.shape[0] // nn
-    here, zero = np.zeros(npn), np.zeros(npn)
-    unused, c = np.empty(per_node), np.zeros((npn, per_node))
-    coefficients = np.array([1.0, 0.0, 0.0])
-    for node in range(nn):
-        lo, hi = node * npn, (node + 1) * npn
-        for i in range(npn):
-            dof = block.dof[element, lo + i]
-            if dof >= 0:
-                here[i] = p[dof]
-        local = e[node * per_node : (node + 1) * per_node]
-        carrier, frame = block.carrier[element, node], block.frame[element, node]
-        node_map(carrier, here, zero, zero, frame, coefficients, local, unused, b[lo:hi], c)
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+def node_rates(block, node, e, v, rates):
+    """Fill a node's row of e' = B p' (N, per_node) from p' (n,)."""
+    carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]
+    for j in range(linear(carrier, size)):
+        rates[node, j] = v[dof[node, j]]
+    if carrier == GRADIENTS:
+        return
+    if carrier == TURNED_GRADIENTS:
+        x, y = v[dof[node, size - 2]], v[dof[node, size - 1]]
+        rates[node, size - 2] = frame[node, 0] * x - frame[node, 1] * y
+        rates[node, size - 1] = frame[node, 1] * x + frame[node, 0] * y
+        return
+    spin = v[dof[node, size - 2 if carrier == ROTATION else (3 if carrier == STRETCH else 2)]]
+    rates[node, size - 2], rates[node, size - 1] = -spin * e[node, size - 1], spin * e[node, size - 2]
+    if carrier != ROTATION:
+        rate = v[dof[node, 2]] if carrier == STRETCH else 0.0
+        rates[node, 2] = -spin * e[node, 3] + rate * e[node, size - 1]
+        rates[node, 3] = spin * e[node, 2] - rate * e[node, size - 2]
 
 
-@njit(cache=True, inline="always", error_model="numpy")
-def _cos_sin(angle, cosine, sine):
-    from_reference_c, from_reference_s = math.cos(angle), math.sin(angle)
-    return from_reference_c * cosine - from_reference_s * sine, from_reference_s * cosine + from_reference_c * sine
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+def add_node_force(block, node, row, e, force, residual):
+    """Add B^T f of a node to the residual (n,); its e (N, per_node) and f a row of force (rows, per_node)."""
+    carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]
+    for j in range(linear(carrier, size)):
+        residual[dof[node, j]] += force[row, j]
+    if carrier == GRADIENTS:
+        return
+    x, y = force[row, size - 2], force[row, size - 1]
+    if carrier == TURNED_GRADIENTS:
+        residual[dof[node, size - 2]] += frame[node, 0] * x + frame[node, 1] * y
+        residual[dof[node, size - 1]] += -frame[node, 1] * x + frame[node, 0] * y
+        return
+    moment = e[node, size - 2] * y - e[node, size - 1] * x
+    if carrier != ROTATION:
+        moment += e[node, 2] * force[row, 3] - e[node, 3] * force[row, 2]
+    if carrier == STRETCH:
+        residual[dof[node, 2]] += e[node, size - 1] * force[row, 2] - e[node, size - 2] * force[row, 3]
+    residual[dof[node, size - 2 if carrier == ROTATION else (3 if carrier == STRETCH else 2)]] += moment

@@ -3,7 +3,7 @@
 from numba import njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def assemble_springs(springs, p, ck, residual, matrix):
     """Add the forces k (p - rest) of springs to `residual` (n,), their stiffness to the diagonal of `matrix` (flat)."""
     for i in range(springs.dof.shape[0]):

@@ -56,11 +56,17 @@ def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
     return free
 
 
+def _numbers_of(block: Block, free: np.ndarray) -> np.ndarray:
+    """Numbers among the unknown (ne, nn npn) of each element's coordinates, -1 where there is none."""
+    numbers = np.where(block.dof >= 0, free[block.dof], -1)
+    return np.asarray(numbers[block.node].reshape(len(block.node), -1))
+
+
 def _half_width(blocks: Sequence[Block], free: np.ndarray) -> int:
     """Largest distance between two unknowns of an element."""
     widest = 0
     for block in blocks:
-        number = np.where(block.dof >= 0, free[block.dof], -1)
+        number = _numbers_of(block, free)
         low = np.where(number >= 0, number, len(free)).min(axis=1)
         widest = max(widest, int((number.max(axis=1) - low).max(initial=0)))
     return widest
@@ -70,8 +76,7 @@ def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
     """Order the coordinates (size,) by reverse Cuthill-McKee on pairs (x, y) and the rest of a node together."""
     rows, columns = [], []
     for block in blocks:
-        nn = block.carrier.shape[1]
-        first = block.dof.reshape(len(block.dof), nn, -1)[:, :, 0]
+        first = block.dof[block.node, 0]
         # neighbours along an element, and its ends, which join it to others
         rows += [first[:, :-1].ravel(), first[:, 0]]
         columns += [first[:, 1:].ravel(), first[:, -1]]
@@ -79,11 +84,9 @@ def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
     # x and y of a node stay neighbours: collapse each coordinate onto the first of its node
     owner = np.arange(size)
     for block in blocks:
-        nn = block.carrier.shape[1]
-        table = block.dof.reshape(-1, block.dof.shape[1] // nn)
-        for own in table.T[1:]:
+        for own in block.dof.T[1:]:
             known = own >= 0
-            owner[own[known]] = np.minimum(owner[own[known]], table[known, 0])
+            owner[own[known]] = np.minimum(owner[own[known]], block.dof[known, 0])
     owner = owner[owner]
     graph = coo_array((np.ones(len(row)), (owner[row], owner[column])), shape=(size, size)).tocsr()
     order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
@@ -94,7 +97,7 @@ def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
 
 def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[csc_array, list[np.ndarray]]:
     """Return the sparse pattern of all element matrices and the place of each of their entries."""
-    numbers = [np.where(block.dof >= 0, free[block.dof], -1) for block in blocks]
+    numbers = [_numbers_of(block, free) for block in blocks]
     rows, columns = [np.arange(unknown)], [np.arange(unknown)]
     for number in numbers:
         i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])

@@ -1,14 +1,16 @@
 """A model in numbers: coordinates, blocks of elements, held coordinates and loads at a time."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from beamfem.element.coordinates import across, labels
-from beamfem.kernels.block import TURNED_GRADIENTS, Block, Layout, PointLoads, Springs
+from beamfem.kernels.block import ELASTIC_LINE, TURNED_GRADIENTS, Block, Layout, PointLoads, Springs, Work
+from beamfem.kernels.form import ANY, Form, known_form
 from beamfem.model.actions import Actions, build_actions
-from beamfem.model.blocks import build_block
+from beamfem.model.blocks import build_block, workspace
 from beamfem.model.held import Held, held_coordinates, inclined_rollers
 from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
@@ -19,10 +21,18 @@ from beamfem.model.supports import Spring
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Everything a solver needs of a model; made once a solve."""
+    """Everything a solver needs of a model; `system_of` makes it once.
+
+    proven: names of what has been checked of it, once and for all.
+    """
 
     model: Model
     static: bool
+    proven: set[str] = field(default_factory=set)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Travel to other processes as a model only."""
+        return system_of, (self.model, self.static)
 
     @cached_property
     def reference(self) -> np.ndarray:
@@ -47,10 +57,39 @@ class System:
         )
 
     @cached_property
+    def forms(self) -> tuple[Form, ...]:
+        """What compiled code knows in advance of each block; of one block only, so that few kinds are compiled."""
+        if len(self.blocks) > 1:
+            return (ANY,) * len(self.blocks)
+        block = self.blocks[0]
+        nodes = block.node.shape[1]
+        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures),)
+
+    def workspaces(self, stresses: Sequence[np.ndarray] | None = None) -> tuple[Work, ...]:
+        """Return new space for the kernels, of each block; stresses (ne, nq, ns): for the geometric tangent."""
+        if stresses is None:
+            return tuple(workspace(block) for block in self.blocks)
+        return tuple(workspace(*both) for both in zip(self.blocks, stresses, strict=True))
+
+    def stress_tables(self) -> tuple[np.ndarray, ...]:
+        """Return new tables of stress resultants, of each block (ne, nq, ns)."""
+        return tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in self.blocks)
+
+    @cached_property
+    def strain_error(self) -> float:
+        """Residual [N/m] that a relative error of one in positions of one metre gives at most, formed as strains."""
+        worst = 0.0
+        for block in self.blocks:
+            worst = max(worst, float(block.stiffness[:, :, 0, 0].max()) * _gain(block, block.slope))
+            if block.measures == ELASTIC_LINE:
+                worst = max(worst, float(block.stiffness[:, :, 1, 1].max()) * _gain(block, block.second))
+        return worst
+
+    @cached_property
     def _actions(self) -> tuple[Actions, ...]:
         return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
-    @property
+    @cached_property
     def point_loads(self) -> tuple[PointLoads, ...]:
         """Loads and springs at points of each block, in the order of `point_values`."""
         return tuple(actions.points for actions in self._actions)
@@ -58,6 +97,11 @@ class System:
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
         return tuple(actions.values(time, self.static) for actions in self._actions)
+
+    @cached_property
+    def varying(self) -> bool:
+        """Whether a load has an amplitude, a function of time."""
+        return any(load.amplitude is not None for load in self.model.loads)
 
     @cached_property
     def springs(self) -> Springs:
@@ -164,6 +208,23 @@ class System:
         for mesh in self.model.meshes:
             scale[mesh.carried.dof[:, :2]] = self.extent
         return scale
+
+
+def _gain(block: Block, table: np.ndarray) -> float:
+    """Force on a node for a unit of displacement through a derivative of r0 [1/m], per section stiffness."""
+    per_node = block.scale.shape[1] // block.node.shape[1]
+    carries_r = np.arange(block.scale.shape[1]) % per_node < per_node - 1
+    slopes = np.abs(table / block.scale[:, None, :])[:, :, carries_r]
+    share = np.einsum("cq,cqi->ci", block.weight, slopes)
+    return float((slopes.sum(axis=2).max(axis=1) * share.max(axis=1)).max())
+
+
+def system_of(model: Model, static: bool) -> System:
+    """Return the system of a model, the same one every time: a model does not change."""
+    known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
+    if static not in known:
+        known[static] = System(model, static)
+    return known[static]
 
 
 def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray]]:

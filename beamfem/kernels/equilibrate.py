@@ -1,0 +1,89 @@
+"""Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
+
+import numpy as np
+from numba import njit
+
+from beamfem.kernels.balance import balance, smallest_jacobian
+from beamfem.kernels.band import factor, solve
+from beamfem.kernels.stress import predict_stress
+from beamfem.kernels.turned import hold_normals, turn_back, turn_in
+
+FAST = {"contract", "reassoc", "nsz"}
+
+
+@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+def _take(step, p, scale):
+    """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
+    size = 0.0
+    for i in range(p.shape[0]):
+        p[i] += step[i]
+        own = abs(step[i]) / scale[i]
+        if not own <= size:
+            size = own
+    return size
+
+
+@njit(cache=True, error_model="numpy")
+def equilibrate(
+    forms, blocks, work, loads, springs, layouts, free, turned, p, body, values, held_change, scale, limits, rows, found
+):
+    """Iterate from p (n,), changed in place; return whether every tangent could be factorised without pivots.
+
+    held_change: first step (n,) of the held coordinates and what it changes in the residual (n,), zero to go on.
+    limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
+    iterations, 1 to take predicted stresses for the geometric tangent. rows (unknown, width): the band. found (6,):
+    iterations so far, last correction and the one before; then largest residual of the unknown, of all coordinates and
+    the smallest r0' x d of the state reached. Stops where corrections are small or stagnant, or have grown.
+    """
+    n, unknown = p.shape[0], free.shape[0]
+    matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
+    residual, step, rest, right = np.empty(n), np.empty(n), np.zeros(n), np.empty(unknown)
+    held_step, held_force = held_change
+    first = True
+    while found[0] < limits[4]:
+        predicted = found[0] > 0.0 and limits[5] > 0.0
+        balance(
+            forms, blocks, work, loads, springs, layouts, p, rest, rest, body, values, 0, coefficients, predicted,
+            residual, matrix,
+        )  # fmt: skip
+        for i in range(unknown):
+            right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
+        hold_normals(rows, turned[0], turned[1])
+        if not factor(rows) > limits[3]:
+            return False
+        turn_in(right, turned[0], turned[1])
+        solve(rows, right)
+        turn_back(right, turned[0], turned[1])
+        for i in range(n):
+            step[i] = held_step[i] if first else 0.0
+        for i in range(unknown):
+            step[free[i]] = right[i]
+        first = False
+        if limits[5] > 0.0:
+            _predict(forms, blocks, work, p, step)
+        found[0] += 1.0
+        found[2], found[1] = found[1], _take(step, p, scale)
+        if not found[1] <= limits[2]:
+            return True
+        if found[1] <= limits[0] or (found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]):
+            break
+    found[3], found[4] = 0.0, 0.0
+    balance(
+        forms, blocks, work, loads, springs, layouts, p, rest, rest, body, values, 0, coefficients, False, residual,
+        matrix[:0],
+    )  # fmt: skip
+    for i in range(n):
+        found[4] = max(found[4], abs(residual[i]))
+    for i in range(unknown):
+        right[i] = residual[free[i]]
+    turn_in(right, turned[0], turned[1])
+    for i in range(unknown):
+        found[3] = max(found[3], abs(right[i]))
+    found[5] = smallest_jacobian(forms, blocks, work)
+    return True
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
+def _predict(forms, blocks, work, p, step):
+    for i in range(len(blocks)):
+        predict_stress(forms[i], blocks[i], work[i], p, step, work[i].stress)

@@ -1,0 +1,35 @@
+"""Sizes that compiled code knows in advance, so that its loops are unrolled and foreign branches fall away."""
+
+from typing import NamedTuple
+
+from numba import njit
+
+
+class Form(NamedTuple):
+    """Sizes of a block's elements as lengths of tuples: each form is a type with compiled code of its own.
+
+    nodes: nn; vectors: vpn; measures: one more than the code of the strain measures. All empty: read at run time.
+    """
+
+    nodes: tuple[bool, ...] = ()
+    vectors: tuple[bool, ...] = ()
+    measures: tuple[bool, ...] = ()
+
+
+ANY = Form()
+
+
+def known_form(nodes: int, vectors: int, measures: int) -> Form:
+    """Return the form with these sizes; lines and cubics of two nodes and parabolas have one of their own."""
+    if nodes > 3 or (nodes == 3 and vectors > 2):
+        return ANY
+    return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures))
+
+
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+def sizes(form, block):
+    """Return nn, vpn and the code of the strain measures, constants where the form knows them."""
+    if len(form.nodes) > 0:
+        return len(form.nodes), len(form.vectors), len(form.measures) - 1
+    nodes = block.node.shape[1]
+    return nodes, block.scale.shape[1] // nodes, block.measures

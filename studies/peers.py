@@ -176,10 +176,9 @@ def _swing(
         rule = bf.GeneralizedAlpha(1.0)
         found[:] = [bf.simulate(model, duration=duration, step=duration / steps, integrator=rule)]
 
-    solvers = (False, True) if peer_count <= 24 else (True,)
-    times = _in_turns(
-        [own, *[(lambda sparse=sparse: peer.motion(steps, duration, sparse)) for sparse in solvers]], repeat
-    )
+    solvers, theirs = (False, True) if peer_count <= 24 else (True,), peer_steps or steps
+    others = [(lambda sparse=sparse: peer.motion(theirs, duration, sparse)) for sparse in solvers]
+    times = _in_turns([own, *others], repeat)
     times = [[seconds / duration for seconds in each] for each in times]  # reckoned as 1 s of motion
     error = other = np.nan
     if duration == 1.0 and isinstance(element.forces, bf.Structural):

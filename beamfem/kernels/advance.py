@@ -74,10 +74,9 @@ def advance(
     advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams, 4), point values of each block
     (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
     `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, the same flat, and
-    statistics (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of the last
-    step (negative: its tangent is of no use), number of tangents. space: see `working_space`.
-    saving: rows (steps, 3, n), number of the first step,
-    and how many steps make a row.
+    statistics (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of
+    the last step (negative: its tangent is of no use), number of tangents. space: see `working_space`.
+    saving: rows (steps, 3, n), number of the first step, and how many steps make a row.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, and stop where the estimated error is small (Hairer and Wanner 1996, IV.8).

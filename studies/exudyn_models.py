@@ -81,6 +81,10 @@ class Peer:
         settings.staticSolver.verboseMode = 0
         self.system.SolveStatic(settings)
 
+    def tangents(self) -> int:
+        """Return how many tangents the last motion took; many a step mean that the solver struggles."""
+        return int(self.system.sys["dynamicSolver"].it.newtonJacobiCount)
+
     def tip_position(self) -> tuple[float, float]:
         """Return where the tip is after the last solve [m]."""
         x, y, _ = self.system.GetNodeOutput(self.tip, exu.OutputVariableType.Position)

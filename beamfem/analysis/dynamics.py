@@ -11,7 +11,7 @@ from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.memory import require_memory
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.kernels.advance import advance
+from beamfem.kernels.advance import advance, working_space
 from beamfem.model.model import Model
 from beamfem.model.sampled import Sampled
 from beamfem.model.system import System, system_of
@@ -75,7 +75,8 @@ def simulate(
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])
     free = system.free_dofs
-    memory = np.zeros((len(free), 2 * system.layouts[0].half_width + 1)), statistics
+    lu = np.zeros((len(free), 2 * system.layouts[0].half_width + 1))
+    memory, space = (lu, lu.reshape(-1), statistics), working_space(n, len(free))
     scale, work, limits = system.scale, system.workspaces(), np.array([_TOLERANCE, _ITERATIONS])
     done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
@@ -100,6 +101,7 @@ def simulate(
                 limits,
                 scale,
                 memory,
+                space,
                 (states, done + 1, save_every),
             )
             spent = clock.perf_counter() - begun

@@ -13,6 +13,11 @@ _MOST, _MANY, _SLOW = 8, 3, 0.05
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
 
 
+def working_space(size: int, unknown: int) -> tuple[np.ndarray, ...]:
+    """Return space for `advance`, so that it allocates nothing."""
+    return np.empty(size), np.empty(unknown), np.empty((4, size)), np.empty(unknown), np.empty(3)
+
+
 @njit(cache=True, _nrt=False, error_model="numpy")
 def predict(state, before, held, values, rule):
     """Start a step from `before` (4, n): p and p' with the acceleration kept, held coordinates at `values` (3, nh)."""
@@ -43,34 +48,50 @@ def correct(state, right, free, inverse_scale, coefficients):
     return largest
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def advance(
-    forms, blocks, work, loads, springs, layouts, free, held, turned, state, inputs, rule, limits, scale, memory, saving
+    forms,
+    blocks,
+    work,
+    loads,
+    springs,
+    layouts,
+    free,
+    held,
+    turned,
+    state,
+    inputs,
+    rule,
+    limits,
+    scale,
+    memory,
+    space,
+    saving,
 ):
     """March through the steps of `inputs`; return how many were completed.
 
     turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
     advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams, 4), point values of each block
     (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
-    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, and statistics
-    (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of the last
-    step (negative: its tangent is of no use), number of tangents. saving: rows (steps, 3, n), number of the first step,
-    and how many steps make a row.
+    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, the same flat, and
+    statistics (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of
+    the last step (negative: its tangent is of no use), number of tangents. space: see `working_space`.
+    saving: rows (steps, 3, n), number of the first step, and how many steps make a row.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, and stop where the estimated error is small (Hairer and Wanner 1996, IV.8).
     """
     held_values, body, point_values = inputs
-    lu, statistics = memory
+    lu, matrix, statistics = memory
     saved, first, every = saving
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     steps, n, unknown = held_values.shape[0], state.shape[1], free.shape[0]
-    coefficients = np.array([1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))])
-    residual, right, before = np.empty(n), np.empty(unknown), np.empty((4, n))
-    inverse_scale = np.empty(unknown)
+    residual, right, before, inverse_scale, coefficients = space
+    coefficients[0], coefficients[1] = 1.0, gamma / (h * beta)
+    coefficients[2] = (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
     for i in range(unknown):
         inverse_scale[i] = 1.0 / scale[free[i]]
-    matrix, p, v, a = lu.reshape(lu.size), state[0], state[1], state[2]
+    p, v, a = state[0], state[1], state[2]
     keep, varying = matrix[:0], (body.shape[0] > 1, point_values[0].shape[0] > 1)
     for step in range(steps):
         own_body, row = body[step if varying[0] else 0], step if varying[1] else 0

@@ -15,7 +15,7 @@ from beamfem.kernels.reduce import add_forces, add_matrix, add_turnings, place_n
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def assemble(form, block, layout, work, p, v, a, body, coefficients, geometric_stress, residual, matrix):
     """Add the residual of all elements to `residual` (n,) and their tangent to `matrix` (flat).
 
@@ -39,7 +39,7 @@ def assemble(form, block, layout, work, p, v, a, body, coefficients, geometric_s
         add_turnings(block, layout, e, geometric, coefficients[0], matrix)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def clear(values):
     """Set a table to zero; a slice assignment would compile the words of its error message as well."""
     for i in range(values.shape[0]):
@@ -47,7 +47,7 @@ def clear(values):
             values[i, j] = 0.0
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def add_element_forces(form, block, e, acceleration, body, inertia, force):
     """Add elastic forces and inertia less body forces of all elements to those of their nodes (N, per_node)."""
     nn, vpn, measures = sizes(form, block)

@@ -27,8 +27,10 @@ def balance(
     for i in range(len(blocks)):
         stress = work[i].stress if predicted else work[i].stress[:0]
         assemble(forms[i], blocks[i], layouts[i], work[i], p, v, a, body, coefficients, stress, residual, matrix)
-        assemble_point_loads(blocks[i], loads[i], layouts[i], work[i], values[i][row], ck, residual, matrix)
-    assemble_springs(springs, p, ck, residual, matrix)
+        if loads[i].element.shape[0] > 0:
+            assemble_point_loads(blocks[i], loads[i], layouts[i], work[i], values[i][row], ck, residual, matrix)
+    if springs.dof.shape[0] > 0:
+        assemble_springs(springs, p, ck, residual, matrix)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")

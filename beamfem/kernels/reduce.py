@@ -8,14 +8,14 @@ from beamfem.kernels.coordinates import add_node_force, node_vectors
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def place_nodes(block, p, v, a, e, acceleration):
     """Fill e and e'' (N, per_node) of all nodes of a block from p, p', p'' (n,) of the whole model."""
     for node in range(block.dof.shape[0]):
         node_vectors(block, node, p, v, a, e, acceleration)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def add_forces(block, e, force, residual):
     """Add B^T f of all nodes to the residual (n,); e and f (N, per_node)."""
     for node in range(block.dof.shape[0]):

@@ -28,8 +28,9 @@ def require_support(system: System) -> None:
     if not len(free):
         system.proven.add(_PROVEN)
         return
-    moving = [int(np.argmax(np.abs(motion.reshape(-1, 3)).max(axis=1)[body])) for motion in free]
-    number = moving[0]
+    sizes = np.abs(free[0].reshape(-1, 3)).max(axis=1)[body]
+    # the first of those that move alike, whatever the round-off
+    number = int(np.flatnonzero(sizes > (1.0 - 1e-6) * sizes.max())[0])
     motions = [motion.reshape(-1, 3)[body[number]] for motion in free]
     described = [
         "it " + describe(motion[:2] * system.extent, motion[2], rows.centre, system.extent)
@@ -37,8 +38,8 @@ def require_support(system: System) -> None:
         if np.abs(motion).max() > _ZERO
     ]
     start, end = model.beams[number].start, model.beams[number].end
-    sizes = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
-    farthest = (start, end)[int(np.argmax(sizes))]
+    moved = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
+    farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     raise FreeMotionError(
         f"beam {number} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves. A static solve needs "

@@ -72,6 +72,11 @@ class Solution:
     a: np.ndarray
     statistics: Statistics
 
+    def __repr__(self) -> str:
+        what = "load factor" if self.static else "time"
+        span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
+        return f"{type(self).__name__}({len(self.at)} states, {span}, of {self.model!r})"
+
     def __len__(self) -> int:
         return len(self.at)
 

@@ -73,7 +73,7 @@ def test_colour_bar_has_the_limits_and_the_unit_of_the_field(bent):
     low, high = bar.get_ylim()
     assert low == pytest.approx(0.0, abs=1e-3 * EI)
     assert high == pytest.approx(abs(bent.reaction(bent.model.beams[0].start)[-1, 2]), rel=1e-4)
-    assert figure.axes[0].get_title() == "load factor 0 to 1"
+    assert figure.axes[0].get_title() == "load factor 1"
 
 
 @pytest.mark.parametrize("element", [bf.CRBF(1), bf.CRBF(3), bf.ANCFCRBF(), bf.ShearRigid()], ids=lambda e: e.name)

@@ -40,6 +40,9 @@ class Buckling:
     modes: np.ndarray
     states: np.ndarray
 
+    def __repr__(self) -> str:
+        return f"Buckling(load factors {', '.join(f'{value:.8g}' for value in self.load_factors)})"
+
     def __len__(self) -> int:
         return len(self.load_factors)
 

@@ -10,6 +10,7 @@ from beamfem.analysis.equations import INERTIA, linearise
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.memory import require_memory
+from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.advance import advance, working_space
 from beamfem.model.model import Model
@@ -50,8 +51,9 @@ def simulate(
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
     if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
         raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {integrator!r}")
-    require_memory(model.size, duration, step, save_every)
     system = system_of(model, static=False)
+    tell_of_compilation()
+    require_memory(model.size, duration, step, save_every)
     if system.unknowns.pattern is not None:
         raise InputError(
             "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"

@@ -40,6 +40,10 @@ class Modes:
     modes: np.ndarray
     rigid: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        listed = ", ".join(f"{value:.6g}" for value in self.frequencies[:12])
+        return f"Modes({listed}{' ...' if len(self) > 12 else ''} Hz)"
+
     def __len__(self) -> int:
         return len(self.frequencies)
 

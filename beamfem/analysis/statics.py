@@ -5,6 +5,7 @@ import numpy as np
 from beamfem.analysis.equations import residual
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.newton import Ended, Newton, NewtonResult, round_off_floor, solve_equilibrium
+from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
@@ -26,6 +27,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
     """
     count("steps", steps)
     system = system_of(model, static=True)
+    tell_of_compilation()
     require_support(system)
     newton = newton or Newton()
     done = _Record(model)

@@ -24,7 +24,8 @@ def doctor(as_json: AsJson = False) -> None:
     """Show versions, compiled kernels, a first solve, whether pictures of bodies work and which extras are missing."""
     with reported(as_json):
         begun = time.perf_counter()
-        from beamfem.cli import compiled, targets
+        from beamfem import compiled
+        from beamfem.cli import targets
 
         cache = compiled.cache_folder()
         found: dict[str, Any] = {
@@ -64,7 +65,7 @@ def first_solve() -> dict[str, Any]:
     P L^2 / (E I) = 5 of the geometrically exact beam with L / h = 100: tip deflection 0.71385896416 L.
     """
     from beamfem.analysis.statics import solve_static
-    from beamfem.cli.compiled import kernels
+    from beamfem.compiled import kernels
     from beamfem.curves import Line
     from beamfem.element.element import CRBF
     from beamfem.material import Material

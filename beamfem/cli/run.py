@@ -34,9 +34,9 @@ def run(
 ) -> None:
     """Solve a model file, print what it asks for and write the files that are asked for here."""
     with reported(as_json, quiet):
-        from beamfem.cli.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
         from beamfem.cli.targets import require_target
+        from beamfem.compiled import tell_of_compilation
         from beamfem.errors import ConvergenceError
 
         job = read_model_file(model)

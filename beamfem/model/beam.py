@@ -56,6 +56,10 @@ class Beam:
             if self.element.forces.fills_body:
                 section.moments(self.material)
 
+    def __repr__(self) -> str:
+        count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
+        return f"Beam({type(self.curve).__name__} of length {self.curve.length:g}, {count} x {self.element.name})"
+
     def section_at(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
         if isinstance(self.section, CrossSection):

@@ -32,6 +32,11 @@ class Model:
     loads: Sequence[Load] = ()
     joints: Sequence[Joint] = ()
 
+    def __repr__(self) -> str:
+        parts = (("beam", self.beams), ("support", self.supports), ("load", self.loads), ("joint", self.joints))
+        counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]
+        return f"Model({', '.join(counted)})"
+
     def __post_init__(self) -> None:
         for name, kinds in (("beams", Beam), ("supports", Support), ("loads", Load), ("joints", Joint)):
             if not isinstance(getattr(self, name), Sequence):
@@ -58,7 +63,8 @@ class Model:
         kind = type(item).__name__
         wanted = Beam if name == "beam" else Point
         if not isinstance(place, wanted):
-            raise InputError(f"{name} of {kind} must be a {wanted.__name__} such as beam.end or beam, got {place!r}")
+            example = "one of the model's beams" if wanted is Beam else "such as beam.end or beam.at(0.5)"
+            raise InputError(f"{name} of {kind} must be a {wanted.__name__}, {example}, got {place!r}")
         beam = place.beam if isinstance(place, Point) else place
         if id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from beamfem.element.coordinates import across, labels
+from beamfem.errors import InputError
 from beamfem.kernels.block import ELASTIC_LINE, TURNED_GRADIENTS, Block, Layout, PointLoads, Springs, Work
 from beamfem.kernels.form import ANY, Form, known_form
 from beamfem.model.actions import Actions, build_actions
@@ -220,7 +221,9 @@ def _gain(block: Block, table: np.ndarray) -> float:
 
 
 def system_of(model: Model, static: bool) -> System:
-    """Return the system of a model, the same one every time: a model does not change."""
+    """Return the system of a model, the same one every time: a model does not change. Raises InputError."""
+    if not isinstance(model, Model):
+        raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {model!r}")
     known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
     if static not in known:
         known[static] = System(model, static)

@@ -41,6 +41,8 @@ def plot_shapes(
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to draw")
     rows = spread_rows(solution, count("shapes", shapes))
+    if colour is not None and solution.static and len(rows) > 1:
+        rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
     figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED)
     if undeformed:

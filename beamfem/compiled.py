@@ -3,6 +3,7 @@
 import importlib
 import pkgutil
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,8 @@ def cached() -> int:
     return len(list(folder.glob("*.nbi"))) if folder and folder.is_dir() else 0
 
 
+@cache
 def tell_of_compilation() -> None:
-    """Say on a terminal that the first solve has to wait for the compiler."""
+    """Say on a terminal, once, that the first solve has to wait for the compiler."""
     if sys.stderr.isatty() and not cached():
         print("compiling kernels, once on this computer: some ten seconds ...", file=sys.stderr)

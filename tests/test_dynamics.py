@@ -141,3 +141,16 @@ def test_a_bent_beam_is_released_from_its_clamp(element):
         assert released.position(point)[0] == pytest.approx(bent.position(point)[-1], abs=1e-12)
         assert released.rotation(point)[0] == pytest.approx(bent.rotation(point)[-1], abs=1e-12)
     assert released.energy().strain[0] == pytest.approx(bent.energy().strain[-1], rel=1e-9)
+
+
+@pytest.mark.parametrize("element", [bf.ShearRigid(), bf.ShearRigid(stretchable=False), bf.CRBF(2), bf.ANCF()])
+def test_the_drift_of_a_spinning_beam_falls_with_the_square_of_small_steps(element):
+    """An iteration that keeps its tangent must not leave an error behind that adds up over many small steps."""
+    drifts = []
+    for step in (1e-4, 1e-5):
+        one = beam(element, 2, (-0.5, 0.0), (0.5, 0.0))
+        spin = bf.RigidVelocity((0.0, 0.0), angular=10.0)
+        flight = bf.simulate(bf.Model([one]), 0.02, step, velocity=spin, save_every=round(1e-3 / step))
+        energy = flight.energy().total
+        drifts.append(np.ptp(energy) / energy[0])
+    assert drifts[1] / drifts[0] == pytest.approx(0.01, rel=0.1)

@@ -1,5 +1,7 @@
 """What importing costs, and that the studies run."""
 
+import copy
+import pickle
 import subprocess
 import sys
 
@@ -7,6 +9,7 @@ import numpy as np
 import pendulum
 import pendulum_figures
 
+import beamfem as bf
 from beamfem.view.page import Part, write_page
 
 
@@ -38,3 +41,15 @@ def test_figure_12_shows_the_difference_the_paper_states():
     assert 3.5e-4 < largest < 5.5e-4
     for run in runs.values():
         assert np.abs(run.length_of_r_y - 1.0).max() < 1e-8
+
+
+def test_models_and_solutions_survive_copies_and_other_processes():
+    """What a model keeps of its meshes knows beams by identity, which no copy shares."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1e5))])
+    solution = bf.solve_static(model)
+    for other in (pickle.loads(pickle.dumps(solution)), copy.deepcopy(solution)):
+        end = other.model.beams[0].end
+        assert np.array_equal(other.position(end), solution.position(beam.end))
+        again = bf.solve_static(other.model)
+        assert np.array_equal(again.p, solution.p)

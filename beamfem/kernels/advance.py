@@ -11,6 +11,9 @@ from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
+# Of the first correction of a step, which is as large as what the step neglects. An error that is left behind in every
+# step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
+_SHARE = 1e-8
 
 
 def working_space(size: int, unknown: int) -> tuple[np.ndarray, ...]:
@@ -98,7 +101,7 @@ def advance(
         for i in range(n):
             before[0, i], before[1, i], before[2, i], before[3, i] = state[0, i], state[1, i], state[2, i], state[3, i]
         predict(state, before, held, held_values[step], rule)
-        rate, size, iteration = statistics[4], 0.0, 0
+        rate, size, first_size, iteration = statistics[4], 0.0, 0.0, 0
         full, fresh, done = False, rate < 0.0, False
         rate = max(rate, 1e-4) ** 0.8 if not fresh else 1.0
         while iteration < limits[1]:
@@ -122,11 +125,16 @@ def advance(
             iteration += 1
             statistics[0] += 1
             statistics[2] = size
-            if iteration > 1:
-                rate = size / last
-            done = size <= limits[0] if full else rate < 1.0 and rate * size <= (1.0 - rate) * _REMAINDER * limits[0]
-            # corrections within the tolerance that no longer shrink are round-off
-            done = done or (iteration > 1 and last <= limits[0] and size <= limits[0] and rate > 0.5)
+            if iteration == 1:
+                first_size = size
+            elif last <= limits[0] and size <= limits[0] and size > 0.5 * last:
+                # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
+                done = True
+                break
+            else:
+                rate = size / last if last > 0.0 else 0.0
+            bound = min(_REMAINDER * limits[0], _SHARE * first_size)
+            done = size <= limits[0] if full else rate < 1.0 and rate * size <= (1.0 - rate) * bound
             if done or (full and not np.isfinite(size)):
                 break
             if not full and not (iteration < _MOST and (iteration < 2 or rate < 0.5)):

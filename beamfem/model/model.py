@@ -32,6 +32,10 @@ class Model:
     loads: Sequence[Load] = ()
     joints: Sequence[Joint] = ()
 
+    def __getstate__(self) -> dict[str, object]:
+        """Copies and other processes make their meshes anew: what is kept here knows beams by identity."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
     def __repr__(self) -> str:
         parts = (("beam", self.beams), ("support", self.supports), ("load", self.loads), ("joint", self.joints))
         counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]

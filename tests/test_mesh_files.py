@@ -2,33 +2,14 @@
 
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
+from mesh_parts import THREE, ends, frame, written
 
 import beamfem as bf
 from beamfem.io.mesh import read_mesh
 
 MESHES = Path(__file__).parents[1] / "meshes"
-SECTION = bf.Rectangle(0.1, 0.1)
-STEEL = bf.Material(2e11, 0.3, 7850.0)
-THREE = [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]
-
-
-def frame(mesh, elements=1, element=None, **options):
-    return mesh.frame(elements, element or bf.CRBF(2), options.pop("section", SECTION), STEEL, **options)
-
-
-def written(path, points, cells, **data):
-    """Write a file with meshio and read it back."""
-    options = {"file_format": "gmsh22", "binary": True} if path.suffix == ".msh" else {}
-    meshio.write(path, meshio.Mesh(np.array(points, dtype=float), cells, **data), **options)
-    return read_mesh(path)
-
-
-def ends(mesh):
-    """Corners of each line, whichever way it runs, in order."""
-    return sorted(sorted(map(tuple, mesh.nodes[cell[:2]].tolist())) for cell in mesh.cells)
 
 
 # What files hold

@@ -75,11 +75,16 @@ def simulate(
     state[3] = state[2]
     states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
-    statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])
+    statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0])
     free = system.free_dofs
+    work = system.workspaces()
     lu = np.zeros((len(free), 2 * system.layouts[0].half_width + 1))
-    memory, space = (lu, lu.reshape(-1), statistics), working_space(n, len(free))
-    scale, work, limits = system.scale, system.workspaces(), np.array([_TOLERANCE, _ITERATIONS])
+    directions = np.zeros((2, sum(len(one.nodes[0]) for one in work), 2))
+    memory, space = (
+        (lu, lu.reshape(-1), np.zeros((3, n)), *directions, statistics),
+        working_space(n, len(free)),
+    )
+    scale, limits = system.scale, np.array([_TOLERANCE, _ITERATIONS])
     done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
         while done < steps:
@@ -97,6 +102,7 @@ def simulate(
                 free,
                 system.held_dofs,
                 system.turned,
+                system.turning,
                 state,
                 inputs,
                 rule,

@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError, solve_banded
 from scipy.sparse import csc_array, csr_array, dia_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.kernels.band import factor, solve
+from beamfem.kernels.band import ANY_WIDTH, factor, solve
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 SMALLEST_PIVOT = 1e-13
@@ -70,7 +70,7 @@ class BandFactors:
         turn_in(x, *self.turned)
         if self.plain:
             balanced = x.copy()
-            solve(self.lu, x)
+            solve(self.lu, x, ANY_WIDTH)
             if not np.isfinite(x).all():
                 x = _solve_pivoted(self.rows, balanced)
         else:
@@ -90,7 +90,7 @@ class BandTangent:
         rows = self.rows.copy()
         hold_normals(rows, *turned)
         lu = rows.copy()
-        return BandFactors(rows, lu, factor(lu) > SMALLEST_PIVOT, turned)
+        return BandFactors(rows, lu, factor(lu, ANY_WIDTH) > SMALLEST_PIVOT, turned)
 
     def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""

@@ -5,37 +5,47 @@ from numba import njit
 
 from beamfem.kernels.balance import balance
 from beamfem.kernels.band import factor, solve
+from beamfem.kernels.corotate import keep_directions, turn, turns_since
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
+FAST = {"contract", "reassoc", "nsz"}
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
-# Of the first correction of a step, which is as large as what the step neglects. An error that is left behind in every
+# Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
+# behind in every
 # step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _SHARE = 1e-8
 
 
 def working_space(size: int, unknown: int) -> tuple[np.ndarray, ...]:
     """Return space for `advance`, so that it allocates nothing."""
-    return np.empty(size), np.empty(unknown), np.empty((4, size)), np.empty(unknown), np.empty(3)
+    return np.empty(size), np.empty(unknown), np.empty((4, size)), np.empty(size), np.empty(3)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
-def predict(state, before, held, values, rule):
-    """Start a step from `before` (4, n): p and p' with the acceleration kept, held coordinates at `values` (3, nh)."""
-    h, alpha_m, gamma, beta = rule[0], rule[1], rule[3], rule[4]
+def predict(state, before, differences, order, held, values, rule):
+    """Start a step from `before` (4, n), held coordinates at `values` (3, nh).
+
+    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on.
+    differences (3, n): its backward differences.
+    """
+    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
+    kept, mean, share = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
+    first, second, third = min(order, 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
     for i in range(state.shape[1]):
-        new = (before[2, i] - alpha_m * before[3, i]) / (1.0 - alpha_m)
+        ahead = first * differences[0, i] + second * differences[1, i] + third * differences[2, i]
+        new = kept * before[2, i] - mean * before[3, i] + share * ahead
         state[0, i] = before[0, i] + h * before[1, i] + h * h * ((0.5 - beta) * before[3, i] + beta * new)
         state[1, i] = before[1, i] + h * ((1.0 - gamma) * before[3, i] + gamma * new)
-        state[2, i] = before[2, i]
+        state[2, i] = before[2, i] + ahead
     for i in range(held.shape[0]):
         for k in range(3):
             state[k, held[i]] = values[k, i]
 
 
-@njit(cache=True, _nrt=False, fastmath={"contract", "reassoc", "nsz"}, error_model="numpy")
+@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def correct(state, right, free, inverse_scale, coefficients):
     """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
     largest = 0.0
@@ -45,10 +55,33 @@ def correct(state, right, free, inverse_scale, coefficients):
         state[0, dof] += change
         state[1, dof] += to_velocity * change
         state[2, dof] += to_acceleration * change
-        size = abs(change) * inverse_scale[i]
+        size = abs(change) * inverse_scale[dof]
         if not size <= largest:
             largest = size
     return largest
+
+
+@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+def remember(state, before, differences, inverse_scale):
+    """Bring the differences of p'' up to date; return the best order of extrapolation and the largest change of p''."""
+    e0, e1, e2, e3 = 0.0, 0.0, 0.0, 0.0
+    for i in range(state.shape[1]):
+        d0 = state[2, i] - before[2, i]
+        d1 = d0 - differences[0, i]
+        d2 = d1 - differences[1, i]
+        d3 = d2 - differences[2, i]
+        differences[0, i], differences[1, i], differences[2, i] = d0, d1, d2
+        weight = inverse_scale[i]
+        e0, e1 = max(e0, abs(d0) * weight), max(e1, abs(d1) * weight)
+        e2, e3 = max(e2, abs(d2) * weight), max(e3, abs(d3) * weight)
+    order, least = 0, e0
+    if e1 < least:
+        order, least = 1, e1
+    if e2 < least:
+        order, least = 2, e2
+    if e3 < least:
+        order = 3
+    return order, e0
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
@@ -62,6 +95,7 @@ def advance(
     free,
     held,
     turned,
+    pairs,
     state,
     inputs,
     rule,
@@ -76,31 +110,35 @@ def advance(
     turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
     advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams, 4), point values of each block
     (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
-    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, the same flat, and
-    statistics (6,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of convergence of
-    the last step (negative: its tangent is of no use), number of tangents. space: see `working_space`.
+    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, the same flat,
+    differences of p'' (3, n), and statistics (8,): iterations, most iterations in a step, last correction, worst pivot
+    ratio, rate of convergence of the last step (negative: its tangent is of no use), number of tangents, order of
+    extrapolation, and what the last change of p'' changed in p. space: see `working_space`.
     saving: rows (steps, 3, n), number of the first step, and how many steps make a row.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, and stop where the estimated error is small (Hairer and Wanner 1996, IV.8).
     """
     held_values, body, point_values = inputs
-    lu, matrix, statistics = memory
+    lu, matrix, differences, kept, turns, statistics = memory
+    window = forms[0].window
     saved, first, every = saving
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     steps, n, unknown = held_values.shape[0], state.shape[1], free.shape[0]
     residual, right, before, inverse_scale, coefficients = space
     coefficients[0], coefficients[1] = 1.0, gamma / (h * beta)
     coefficients[2] = (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
+    for i in range(n):
+        inverse_scale[i] = 0.0
     for i in range(unknown):
-        inverse_scale[i] = 1.0 / scale[free[i]]
+        inverse_scale[free[i]] = 1.0 / scale[free[i]]
     p, v, a = state[0], state[1], state[2]
-    keep, varying = matrix[:0], (body.shape[0] > 1, point_values[0].shape[0] > 1)
+    keep, predicted, varying = matrix[:0], n < 0, (body.shape[0] > 1, point_values[0].shape[0] > 1)
     for step in range(steps):
         own_body, row = body[step if varying[0] else 0], step if varying[1] else 0
         for i in range(n):
             before[0, i], before[1, i], before[2, i], before[3, i] = state[0, i], state[1, i], state[2, i], state[3, i]
-        predict(state, before, held, held_values[step], rule)
+        predict(state, before, differences, statistics[6], held, held_values[step], rule)
         rate, size, first_size, iteration = statistics[4], 0.0, 0.0, 0
         full, fresh, done = False, rate < 0.0, False
         rate = max(rate, 1e-4) ** 0.8 if not fresh else 1.0
@@ -108,17 +146,22 @@ def advance(
             renew = full or fresh
             target = matrix if renew else keep
             balance(
-                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients, False,
+                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients, predicted,
                 residual, target,
             )  # fmt: skip
             if renew:
                 hold_normals(lu, turned[0], turned[1])
-                statistics[3] = min(statistics[3], factor(lu))
+                statistics[3] = min(statistics[3], factor(lu, window))
                 statistics[5] += 1
+                keep_directions(work, kept)
+            if iteration == 0 or renew:
+                turns_since(work, kept, turns)
             for i in range(unknown):
                 right[i] = -residual[free[i]]
             turn_in(right, turned[0], turned[1])
-            solve(lu, right)
+            turn(right, pairs, turns, -1.0)
+            solve(lu, right, window)
+            turn(right, pairs, turns, 1.0)
             turn_back(right, turned[0], turned[1])
             last, size = size, correct(state, right, free, inverse_scale, coefficients)
             fresh = False
@@ -126,7 +169,7 @@ def advance(
             statistics[0] += 1
             statistics[2] = size
             if iteration == 1:
-                first_size = size
+                first_size = max(size, statistics[7])
             elif last <= limits[0] and size <= limits[0] and size > 0.5 * last:
                 # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
                 done = True
@@ -138,7 +181,7 @@ def advance(
             if done or (full and not np.isfinite(size)):
                 break
             if not full and not (iteration < _MOST and (iteration < 2 or rate < 0.5)):
-                predict(state, before, held, held_values[step], rule)
+                predict(state, before, differences, 0.0, held, held_values[step], rule)
                 full, iteration = True, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
@@ -153,6 +196,8 @@ def advance(
             )
         for i in range(held.shape[0]):
             state[3, held[i]] = state[2, held[i]]
+        statistics[6], change = remember(state, before, differences, inverse_scale)
+        statistics[7] = change / coefficients[2]
         if (first + step) % every == 0:
             row = (first + step) // every
             for i in range(n):

@@ -10,7 +10,7 @@ from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.springs import assemble_springs
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def balance(
     forms, blocks, work, loads, springs, layouts, p, v, a, body, values, row, coefficients, predicted, residual, matrix
 ):

@@ -35,24 +35,27 @@ def equilibrate(
     iterations so far, last correction and the one before; then largest residual of the unknown, of all coordinates and
     the smallest r0' x d of the state reached. Stops where corrections are small or stagnant, or have grown.
     """
-    n, unknown = p.shape[0], free.shape[0]
+    n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
     residual, step, rest, right = np.empty(n), np.empty(n), np.zeros(n), np.empty(unknown)
     held_step, held_force = held_change
-    first = True
-    while found[0] < limits[4]:
-        predicted = found[0] > 0.0 and limits[5] > 0.0
+    first, row, done = True, int(limits[4]) * 0, False
+    while True:
+        predicted = not done and found[0] > 0.0 and limits[5] > 0.0
+        target = matrix[:0] if done else matrix
         balance(
-            forms, blocks, work, loads, springs, layouts, p, rest, rest, body, values, 0, coefficients, predicted,
-            residual, matrix,
+            forms, blocks, work, loads, springs, layouts, p, rest, rest, body, values, row, coefficients, predicted,
+            residual, target,
         )  # fmt: skip
+        if done:
+            break
         for i in range(unknown):
             right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
         hold_normals(rows, turned[0], turned[1])
-        if not factor(rows) > limits[3]:
+        if not factor(rows, window) > limits[3]:
             return False
         turn_in(right, turned[0], turned[1])
-        solve(rows, right)
+        solve(rows, right, window)
         turn_back(right, turned[0], turned[1])
         for i in range(n):
             step[i] = held_step[i] if first else 0.0
@@ -65,13 +68,9 @@ def equilibrate(
         found[2], found[1] = found[1], _take(step, p, scale)
         if not found[1] <= limits[2]:
             return True
-        if found[1] <= limits[0] or (found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]):
-            break
+        stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]
+        done = found[1] <= limits[0] or stagnant or not found[0] < limits[4]
     found[3], found[4] = 0.0, 0.0
-    balance(
-        forms, blocks, work, loads, springs, layouts, p, rest, rest, body, values, 0, coefficients, False, residual,
-        matrix[:0],
-    )  # fmt: skip
     for i in range(n):
         found[4] = max(found[4], abs(residual[i]))
     for i in range(unknown):

@@ -4,26 +4,31 @@ from typing import NamedTuple
 
 from numba import njit
 
+from beamfem.kernels.band import ANY_WIDTH, known_width
+
 
 class Form(NamedTuple):
     """Sizes of a block's elements as lengths of tuples: each form is a type with compiled code of its own.
 
     nodes: nn; vectors: vpn; measures: one more than the code of the strain measures. All empty: read at run time.
+    window: see `band.known_width`.
     """
 
     nodes: tuple[bool, ...] = ()
     vectors: tuple[bool, ...] = ()
     measures: tuple[bool, ...] = ()
+    window: tuple[float, ...] = ANY_WIDTH
 
 
 ANY = Form()
 
 
-def known_form(nodes: int, vectors: int, measures: int) -> Form:
+def known_form(nodes: int, vectors: int, measures: int, half_width: int) -> Form:
     """Return the form with these sizes; lines and cubics of two nodes and parabolas have one of their own."""
+    window = known_width(half_width)
     if nodes > 3 or (nodes == 3 and vectors > 2):
-        return ANY
-    return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures))
+        return Form(window=window)
+    return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures), window)
 
 
 @njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")

@@ -8,7 +8,19 @@ import numpy as np
 
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
-from beamfem.kernels.block import ELASTIC_LINE, TURNED_GRADIENTS, Block, Layout, PointLoads, Springs, Work
+from beamfem.kernels.block import (
+    ELASTIC_LINE,
+    GRADIENTS,
+    ROTATION,
+    SHEAR_RIGID,
+    STRETCH,
+    TURNED_GRADIENTS,
+    Block,
+    Layout,
+    PointLoads,
+    Springs,
+    Work,
+)
 from beamfem.kernels.form import ANY, Form, known_form
 from beamfem.model.actions import Actions, build_actions
 from beamfem.model.blocks import build_block, workspace
@@ -18,6 +30,10 @@ from beamfem.model.loads import factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.supports import Spring
+
+# which carriers have r, the derivatives of r and r_y themselves as coordinates
+_GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+_TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +80,8 @@ class System:
             return (ANY,) * len(self.blocks)
         block = self.blocks[0]
         nodes = block.node.shape[1]
-        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures),)
+        half_width = self.layouts[0].half_width
+        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures, half_width),)
 
     def workspaces(self, stresses: Sequence[np.ndarray] | None = None) -> tuple[Work, ...]:
         """Return new space for the kernels, of each block; stresses (ne, nq, ns): for the geometric tangent."""
@@ -182,6 +199,27 @@ class System:
         """Numbers among the unknown (nt,) and unit normals (nt, 2) of inclined rollers."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
+
+    @cached_property
+    def turning(self) -> np.ndarray:
+        """Numbers among the unknown of x and y of each vector that turns with its section, and its node (np, 3).
+
+        Nodes of all blocks are numbered one after the other; vectors of which a part is held do not turn.
+        """
+        free, found, first = self.unknowns.free, [], 0
+        for block in self.blocks:
+            vectors = block.scale.shape[1] // block.node.shape[1]
+            for slot in range(vectors):
+                turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
+                nodes = np.flatnonzero(np.isin(block.carrier, turning))
+                x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
+                known = (x >= 0) & (y >= 0)
+                found.append(np.column_stack([x, y, first + nodes])[known])
+            first += len(block.dof)
+        pairs = np.concatenate(found)
+        _, once = np.unique(pairs[:, 0], return_index=True)
+        inclined = np.isin(pairs[once, 0], self.turned[0])
+        return np.ascontiguousarray(pairs[once[~inclined]])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknown directions: reactions of inclined rollers are taken out."""

@@ -8,10 +8,11 @@ from scipy.linalg import LinAlgError, solve_banded
 from scipy.sparse import csc_array, csr_array, dia_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.kernels.band import ANY_WIDTH, factor, solve
+from beamfem.kernels.band import ANY_WIDTH, factor, solve_lower, solve_upper
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 SMALLEST_PIVOT = 1e-13
+_NOTHING = np.empty(0)
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
 Turned = tuple[np.ndarray, np.ndarray]
@@ -70,7 +71,8 @@ class BandFactors:
         turn_in(x, *self.turned)
         if self.plain:
             balanced = x.copy()
-            solve(self.lu, x, ANY_WIDTH)
+            solve_lower(self.lu, x, ANY_WIDTH)
+            solve_upper(self.lu, x, ANY_WIDTH)
             if not np.isfinite(x).all():
                 x = _solve_pivoted(self.rows, balanced)
         else:
@@ -90,7 +92,7 @@ class BandTangent:
         rows = self.rows.copy()
         hold_normals(rows, *turned)
         lu = rows.copy()
-        return BandFactors(rows, lu, factor(lu, ANY_WIDTH) > SMALLEST_PIVOT, turned)
+        return BandFactors(rows, lu, factor(lu, _NOTHING, np.empty(len(lu)), ANY_WIDTH) > SMALLEST_PIVOT, turned)
 
     def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.balance import balance
-from beamfem.kernels.band import factor, solve
+from beamfem.kernels.band import factor, solve_lower, solve_upper
 from beamfem.kernels.corotate import keep_directions, turn, turns_since
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
@@ -14,8 +14,7 @@ FAST = {"contract", "reassoc", "nsz"}
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
-# behind in every
-# step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
+# behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _SHARE = 1e-8
 
 
@@ -63,7 +62,7 @@ def correct(state, right, free, inverse_scale, coefficients):
 
 @njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def remember(state, before, differences, inverse_scale):
-    """Bring the differences of p'' up to date; return the best order of extrapolation and the largest change of p''."""
+    """Bring the differences of p'' up to date; return the best order of extrapolation and the largest first one."""
     e0, e1, e2, e3 = 0.0, 0.0, 0.0, 0.0
     for i in range(state.shape[1]):
         d0 = state[2, i] - before[2, i]
@@ -151,7 +150,7 @@ def advance(
             )  # fmt: skip
             if renew:
                 hold_normals(lu, turned[0], turned[1])
-                statistics[3] = min(statistics[3], factor(lu, window))
+                statistics[3] = min(statistics[3], factor(lu, right[:0], right, window))
                 statistics[5] += 1
                 keep_directions(work, kept)
             if iteration == 0 or renew:
@@ -160,7 +159,8 @@ def advance(
                 right[i] = -residual[free[i]]
             turn_in(right, turned[0], turned[1])
             turn(right, pairs, turns, -1.0)
-            solve(lu, right, window)
+            solve_lower(lu, right, window)
+            solve_upper(lu, right, window)
             turn(right, pairs, turns, 1.0)
             turn_back(right, turned[0], turned[1])
             last, size = size, correct(state, right, free, inverse_scale, coefficients)

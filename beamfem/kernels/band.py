@@ -1,8 +1,8 @@
 """LU factorisation of a band matrix in row storage: row i holds A[i, i - w .. i + w]; L and U get unit diagonals.
 
 No pivoting: tangents of a supported beam have strong diagonals. Growth is watched, and whoever calls can then ask
-SciPy's pivoted solver. Where the half width is known to the compiler, a window of the last w values stays in registers:
-each then waits for one multiplication, not for memory.
+SciPy's pivoted solver. Where the half width is known to the compiler, loops are unrolled and a solution's last w values
+stay in registers: each value then waits for one multiplication, not for memory.
 """
 
 from numba import njit
@@ -17,118 +17,105 @@ def known_width(half_width: int) -> tuple[float, ...]:
     return (0.0,) * half_width if 1 < half_width <= _LARGEST_KNOWN else ANY_WIDTH
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
-def factor(ab, window):
+@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+def factor(ab, right, original, window):
     """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
-    The diagonal holds the inverse pivots then. window: see `known_width`.
+    The diagonal holds the inverse pivots then. right (n,) or empty: eliminated on the way, `solve_upper` does the rest.
+    original (n,): space. window: see `known_width`. Pivots are taken in pairs, so that rows pass through memory half as
+    often.
     """
-    if len(window) == 1:
-        return _factor_any(ab)
-    return _factor_known(ab, window)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy")
-def solve(lu, x, window):
-    """Replace the right-hand side x (n,) by the solution; lu and window as for `factor`."""
-    if len(window) == 1:
-        _solve_any(lu, x)
-    else:
-        _solve_known(lu, x, window)
-
-
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
-def _factor_any(ab):
-    n, width = ab.shape
-    w = width // 2
-    worst = 1.0
-    for i in range(n):
-        row = ab[i]
-        original = abs(row[w])
-        for k in range(max(0, i - w), i):
-            scaled = row[w + k - i]
-            row[w + k - i] = scaled * ab[k, w]
-            if scaled != 0.0:
-                offset = w + k - i
-                above = ab[k]
-                for j in range(1, w + 1):
-                    row[offset + j] -= scaled * above[w + j]
-        pivot = row[w]
-        if pivot == 0.0 or original == 0.0:
+    n = ab.shape[0]
+    w = len(window) if len(window) > 1 else ab.shape[1] // 2
+    eliminates, worst = right.shape[0] > 0, 1.0
+    for i in range(min(n, w)):
+        original[i] = abs(ab[i, w])
+    for k in range(0, n, 2):
+        top = ab[k]
+        if k + w < n:
+            original[k + w] = abs(ab[k + w, w])
+        if top[w] == 0.0 or original[k] == 0.0:
             return 0.0
-        worst = min(worst, abs(pivot) / original)
-        inverse = 1.0 / pivot
-        row[w] = inverse
+        worst = min(worst, abs(top[w]) / original[k])
+        inverse = 1.0 / top[w]
+        top[w] = inverse
+        if k + 1 == n:
+            break
+        below = ab[k + 1]
+        if k + 1 + w < n:
+            original[k + 1 + w] = abs(ab[k + 1 + w, w])
+        first = below[w - 1] * inverse
+        below[w - 1] = first
         for j in range(1, w + 1):
-            row[w + j] *= inverse
+            below[w - 1 + j] -= first * top[w + j]
+        if below[w] == 0.0 or original[k + 1] == 0.0:
+            return 0.0
+        worst = min(worst, abs(below[w]) / original[k + 1])
+        inverse_below = 1.0 / below[w]
+        below[w] = inverse_below
+        upper, lower = 0.0, 0.0
+        if eliminates:
+            right[k + 1] -= first * right[k]
+            upper, lower = right[k], right[k + 1]
+        beside = top[w + 1]
+        for i in range(k + 2, min(n, k + w + 1)):
+            row, offset = ab[i], w + k - i
+            first = row[offset] * inverse
+            second = (row[offset + 1] - first * beside) * inverse_below
+            row[offset], row[offset + 1] = first, second
+            for j in range(2, w + 1):
+                row[offset + j] -= first * top[w + j] + second * below[w + j - 1]
+            row[offset + w + 1] -= second * below[2 * w]
+            if eliminates:
+                right[i] -= first * upper + second * lower
+        if k + w + 1 < n:
+            row = ab[k + w + 1]
+            second = row[0] * inverse_below
+            row[0] = second
+            for j in range(1, w + 1):
+                row[j] -= second * below[w + j]
+            if eliminates:
+                right[k + w + 1] -= second * lower
+        for j in range(1, w + 1):
+            top[w + j] *= inverse
+            below[w + j] *= inverse_below
     return worst
+
+
+@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
+def solve_lower(lu, x, window):
+    """Replace the right-hand side x (n,) by that of the upper triangle; lu and window as for `factor`."""
+    last, w = window, lu.shape[1] // 2
+    for i in range(lu.shape[0]):
+        row, total = lu[i], x[i]
+        if len(window) > 1:
+            for j in range(len(window)):
+                total -= row[j] * last[j]
+            last = _push(last, total)
+        else:
+            for k in range(max(0, i - w), i):
+                total -= row[w + k - i] * x[k]
+        x[i] = total
+
+
+@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
+def solve_upper(lu, x, window):
+    """Replace what `solve_lower` left in x (n,) by the solution."""
+    last, n, w = window, lu.shape[0], lu.shape[1] // 2
+    for i in range(n - 1, -1, -1):
+        row = lu[i]
+        if len(window) > 1:
+            total = x[i] * row[len(window)]
+            for j in range(len(window)):
+                total -= row[2 * len(window) - j] * last[j]
+            last = _push(last, total)
+        else:
+            total = x[i] * row[w]
+            for k in range(min(n, i + w + 1) - 1, i, -1):
+                total -= row[w + k - i] * x[k]
+        x[i] = total
 
 
 @njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
 def _push(window, value):
     return window[1:] + (value,)  # noqa: RUF005 (numba does not unpack)
-
-
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
-def _factor_known(ab, window):
-    n, w, worst = ab.shape[0], len(window), 1.0
-    originals = window
-    for k in range(min(n, w)):
-        originals = _push(originals, abs(ab[k, w]))
-    if n < w:
-        for _ in range(w - n):
-            originals = _push(originals, 0.0)
-    for k in range(n):
-        top = ab[k]
-        pivot, original = top[w], originals[0]
-        if pivot == 0.0 or original == 0.0:
-            return 0.0
-        worst = min(worst, abs(pivot) / original)
-        originals = _push(originals, abs(ab[k + w, w]) if k + w < n else 0.0)
-        inverse = 1.0 / pivot
-        for i in range(k + 1, min(n, k + w + 1)):
-            row, offset = ab[i], w + k - i
-            scaled = row[offset] * inverse
-            row[offset] = scaled
-            for j in range(1, w + 1):
-                row[offset + j] -= scaled * top[w + j]
-        top[w] = inverse
-        for j in range(1, w + 1):
-            top[w + j] *= inverse
-    return worst
-
-
-@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
-def _solve_any(lu, x):
-    n, width = lu.shape
-    w = width // 2
-    for i in range(n):
-        total = x[i]
-        for k in range(max(0, i - w), i):
-            total -= lu[i, w + k - i] * x[k]
-        x[i] = total
-    for i in range(n - 1, -1, -1):
-        total = x[i] * lu[i, w]
-        for k in range(min(n, i + w + 1) - 1, i, -1):
-            total -= lu[i, w + k - i] * x[k]
-        x[i] = total
-
-
-@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
-def _solve_known(lu, x, window):
-    n, w = lu.shape[0], len(window)
-    last = window
-    for i in range(n):
-        row, total = lu[i], x[i]
-        for j in range(w):
-            total -= row[j] * last[j]
-        last = _push(last, total)
-        x[i] = total
-    last = window
-    for i in range(n - 1, -1, -1):
-        row = lu[i]
-        total = x[i] * row[w]
-        for j in range(w):
-            total -= row[2 * w - j] * last[j]
-        last = _push(last, total)
-        x[i] = total

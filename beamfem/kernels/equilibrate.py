@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.balance import balance, smallest_jacobian
-from beamfem.kernels.band import factor, solve
+from beamfem.kernels.band import factor, solve_upper
 from beamfem.kernels.stress import predict_stress
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
@@ -52,10 +52,10 @@ def equilibrate(
         for i in range(unknown):
             right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
         hold_normals(rows, turned[0], turned[1])
-        if not factor(rows, window) > limits[3]:
-            return False
         turn_in(right, turned[0], turned[1])
-        solve(rows, right, window)
+        if not factor(rows, right, step, window) > limits[3]:
+            return False
+        solve_upper(rows, right, window)
         turn_back(right, turned[0], turned[1])
         for i in range(n):
             step[i] = held_step[i] if first else 0.0

@@ -24,9 +24,9 @@ ANY = Form()
 
 
 def known_form(nodes: int, vectors: int, measures: int, half_width: int) -> Form:
-    """Return the form with these sizes; lines and cubics of two nodes and parabolas have one of their own."""
+    """Return the form with these sizes; lines up to fourth order and cubics have one of their own."""
     window = known_width(half_width)
-    if nodes > 3 or (nodes == 3 and vectors > 2):
+    if nodes > 5 or (nodes > 2 and vectors > 2):
         return Form(window=window)
     return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures), window)
 

@@ -112,7 +112,7 @@ def swing(model: bf.Model, steps: int, duration: float = 1.0) -> bf.Solution:
 
 def tips_of(solution: bf.Solution) -> np.ndarray:
     """Return the tip at the instants that are known and were reached (times, 2) [m]."""
-    reached = INSTANTS[INSTANTS < solution.time[-1] + 1e-9]
+    reached = INSTANTS[: np.searchsorted(INSTANTS, solution.time[-1] + 1e-9)]
     rows = np.round(reached / solution.time[1]).astype(int)
     return solution.position(solution.model.beams[0].end)[rows]
 

@@ -20,6 +20,15 @@ class Timing:
         return Timing(factor * self.least, factor * self.median)
 
 
+def once(task: Callable[[], object]) -> float:
+    """Return the CPU time [ms] of a task that has run before."""
+    calls, begun = 0, time.process_time()
+    while (spent := time.process_time() - begun) < _SHORTEST or not calls:
+        task()
+        calls += 1
+    return 1e3 * spent / calls
+
+
 def in_turns(
     tasks: Sequence[Callable[[], object]], rounds: int, clock: Callable[[], float] = time.process_time
 ) -> list[Timing]:

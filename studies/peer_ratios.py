@@ -2,6 +2,7 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import astuple, dataclass
 
 import numpy as np
@@ -28,6 +29,7 @@ from peer_clock import Timing, fastest, in_turns
 
 import beamfem as bf
 
+Task = Callable[[], object]
 LOAD_STEPS = (1, 2, 3, 5, 10)
 PAIRS = (
     (STRUCTURAL, TWO_NODES, 0.2),
@@ -146,32 +148,27 @@ def same_mesh() -> list[Row]:
 
 def default_threads() -> list[tuple[object, ...]]:
     """Return wall times with the threads that each code takes by itself, and Exudyn with all cores as well."""
-    cores, rows = os.cpu_count() or 1, []
-    for element, kind, elements in ((STRUCTURAL, TWO_NODES, 24), (STRUCTURAL, TWO_NODES, 1000)):
-        model, other = pendulum(element, elements), peer(kind, elements, PENDULUM)
-        steps = 1000 if elements <= 24 else 200
-        solver, duration = SPARSE, 1e-3 * steps
-        tasks = [
-            lambda: swing(model, steps, duration),
-            lambda: other.motion(steps, duration, solver),
-            lambda: other.motion(steps, duration, solver, cores),
-        ]
-        rows.append(_wall(f"pendulum, {steps} steps", elements, element, kind, in_turns(tasks, 3, time.perf_counter)))
-    for element, kind, elements in ((STRUCTURAL, TWO_NODES, 12), (bf.CRBF(2), THREE_NODES, 1000)):
-        model, other = cantilever(element, elements), peer(kind, elements, CANTILEVER)
-        tasks = [
-            lambda: bf.solve_static(model),
-            lambda: other.equilibrium(5, SPARSE),
-            lambda: other.equilibrium(5, SPARSE, cores),
-        ]
-        rows.append(
-            _wall("cantilever, 5 load steps there", elements, element, kind, in_turns(tasks, 3, time.perf_counter))
-        )
-    return rows
+    motions = ((STRUCTURAL, TWO_NODES, 24), (STRUCTURAL, TWO_NODES, 1000))
+    equilibria = ((STRUCTURAL, TWO_NODES, 12), (bf.CRBF(2), THREE_NODES, 1000))
+    rows = [_wall("pendulum, 200 steps", *chosen, *_motion_tasks(*chosen)) for chosen in motions]
+    return rows + [_wall("cantilever, 5 load steps there", *chosen, *_static_tasks(*chosen)) for chosen in equilibria]
 
 
-def _wall(case: str, elements: int, element: bf.Element, kind: str, timings: list[Timing]) -> tuple[object, ...]:
-    mine, single, many = (timing.least for timing in timings)
+def _motion_tasks(element: bf.Element, kind: str, elements: int) -> tuple[Task, Callable[[int], Task]]:
+    model, other = pendulum(element, elements), peer(kind, elements, PENDULUM)
+    return lambda: swing(model, 200, 0.2), lambda threads: lambda: other.motion(200, 0.2, SPARSE, threads)
+
+
+def _static_tasks(element: bf.Element, kind: str, elements: int) -> tuple[Task, Callable[[int], Task]]:
+    model, other = cantilever(element, elements), peer(kind, elements, CANTILEVER)
+    return lambda: bf.solve_static(model), lambda threads: lambda: other.equilibrium(5, SPARSE, threads)
+
+
+def _wall(
+    case: str, element: bf.Element, kind: str, elements: int, own: Task, other: Callable[[int], Task]
+) -> tuple[object, ...]:
+    cores = os.cpu_count() or 1
+    mine, single, many = (t.least for t in in_turns([own, other(1), other(cores)], 3, time.perf_counter))
     return case, elements, f"{element.name}, {element.forces.name}", mine, kind, single, many, mine / min(single, many)
 
 

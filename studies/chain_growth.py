@@ -39,7 +39,7 @@ HEADER = (
 
 
 def measure(analysis: str, name: str, elements: int) -> tuple[object, ...]:
-    """Return iterations, ns an element and iteration, CPU seconds, error [m], memory [MB], bytes a coordinate, remark."""
+    """Return what a row holds behind the number of elements, without the ratio to the smallest."""
     with threadpool_limits(1):
         _solve(analysis, _model(analysis, name, 4))
         before = _peak()
@@ -88,7 +88,9 @@ def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[objec
                     iterations, each, *rest = found
                     first = each if np.isnan(first) else first
                     rows.append((analysis, name, elements, iterations, each, each / first, *rest))
-                    print(f"{analysis}, {name}, {elements} elements: {each:.0f} ns an element and iteration", flush=True)
+                    print(
+                        f"{analysis}, {name}, {elements} elements: {each:.0f} ns an element and iteration", flush=True
+                    )
     print(as_text(HEADER, rows, "growth of one chain, one thread"))
     write_csv(folder / "growth.csv", HEADER, rows)
     return rows

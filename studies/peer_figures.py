@@ -25,7 +25,7 @@ def draw_cost(rows: list[Row], path: Path) -> None:
         _line(axes, len(own) + number, np.array(line).T, f"Exudyn, {name}", True)
     axes.set(xscale="log", yscale="log", xlabel="elements", ylabel="CPU time of 1000 steps [ms], one thread")
     axes.set_title("Pendulum, steps of 1 ms, trapezoidal rule", fontsize=10)
-    axes.legend(frameon=False, fontsize=8)
+    figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=2)
     save_figure(figure, path)
 
 
@@ -41,7 +41,7 @@ def draw_precision(runs: list[Run], title: str, error: str, path: Path) -> None:
         _line(axes, number, np.array(envelope(shown)), name, own[0].peer)
     axes.set(xscale="log", yscale="log", xlabel="CPU time [ms], one thread", ylabel=error)
     axes.set_title(title, fontsize=10)
-    axes.legend(frameon=False, fontsize=8, loc="lower left")
+    figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=2)
     save_figure(figure, path)
 
 

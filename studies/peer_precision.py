@@ -124,10 +124,10 @@ def _timed(
 
 
 def envelope(runs: Iterable[Run]) -> tuple[np.ndarray, np.ndarray]:
-    """Return times [ms] and errors [m] of the runs that no other beats in both, the cheapest first."""
+    """Return times [ms] and errors [m] of the runs that no cheaper one is as precise as, the cheapest first."""
     times, errors = [], []
     for run in sorted(runs, key=lambda run: run.milliseconds):
-        if np.isfinite(run.error) and (not errors or run.error < errors[-1]):
+        if np.isfinite(run.error) and (not errors or run.error < 0.9 * errors[-1]):
             times.append(run.milliseconds)
             errors.append(run.error)
     return np.array(times), np.array(errors)

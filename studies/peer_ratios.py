@@ -9,6 +9,7 @@ import numpy as np
 from peer_cases import (
     CABLE,
     CANTILEVER,
+    DENSE,
     LINEAR_SOLVERS,
     PENDULUM,
     REISSNER_TIPS,
@@ -156,12 +157,14 @@ def default_threads() -> list[tuple[object, ...]]:
 
 def _motion_tasks(element: bf.Element, kind: str, elements: int) -> tuple[Task, Callable[[int], Task]]:
     model, other = pendulum(element, elements), peer(kind, elements, PENDULUM)
-    return lambda: swing(model, 200, 0.2), lambda threads: lambda: other.motion(200, 0.2, SPARSE, threads)
+    solver = DENSE if elements <= 24 else SPARSE
+    return lambda: swing(model, 200, 0.2), lambda threads: lambda: other.motion(200, 0.2, solver, threads)
 
 
 def _static_tasks(element: bf.Element, kind: str, elements: int) -> tuple[Task, Callable[[int], Task]]:
+    solver = DENSE if elements <= 24 else SPARSE
     model, other = cantilever(element, elements), peer(kind, elements, CANTILEVER)
-    return lambda: bf.solve_static(model), lambda threads: lambda: other.equilibrium(5, SPARSE, threads)
+    return lambda: bf.solve_static(model), lambda threads: lambda: other.equilibrium(5, solver, threads)
 
 
 def _wall(

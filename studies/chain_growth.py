@@ -27,6 +27,7 @@ HEADER = (
     "analysis",
     "element",
     "elements",
+    "steps",
     "iterations",
     "ns an element and iteration",
     "to that of the smallest",
@@ -54,10 +55,10 @@ def measure(analysis: str, name: str, elements: int) -> tuple[object, ...]:
             seconds.append(time.process_time() - begun)
             if remark:
                 break
-    iterations = solution.statistics.iterations
+    steps, iterations = solution.statistics.steps, solution.statistics.iterations
     error = static_error(solution.position(model.beams[0].end)[-1]) if analysis == "statics" else np.nan
     each = min(seconds) / max(iterations, 1) / elements * 1e9
-    return iterations, each, min(seconds), error, _peak() / 1e6, (_peak() - before) / model.size, remark
+    return steps, iterations, each, min(seconds), error, _peak() / 1e6, (_peak() - before) / model.size, remark
 
 
 def _model(analysis: str, name: str, elements: int) -> bf.Model:
@@ -85,9 +86,9 @@ def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[objec
                 first = np.nan
                 for elements in sizes:
                     found = pool.submit(measure, analysis, name, elements).result()
-                    iterations, each, *rest = found
+                    steps, iterations, each, *rest = found
                     first = each if np.isnan(first) else first
-                    rows.append((analysis, name, elements, iterations, each, each / first, *rest))
+                    rows.append((analysis, name, elements, steps, iterations, each, each / first, *rest))
                     print(
                         f"{analysis}, {name}, {elements} elements: {each:.0f} ns an element and iteration", flush=True
                     )

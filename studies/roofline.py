@@ -50,17 +50,17 @@ def _copy(times: int, band: np.ndarray, copy: np.ndarray) -> None:
 
 
 @njit
-def _factor(times: int, band: np.ndarray, copy: np.ndarray) -> None:
+def _factor(times: int, band: np.ndarray, copy: np.ndarray, window: Any) -> None:
     for _ in range(times):
         copy[:] = band
-        factor(copy)
+        factor(copy, *window)
 
 
 @njit
-def _solve(times: int, band: np.ndarray, right: np.ndarray, copy: np.ndarray) -> None:
+def _solve(times: int, band: np.ndarray, right: np.ndarray, copy: np.ndarray, window: Any) -> None:
     for _ in range(times):
         copy[:] = right
-        solve(band, copy)
+        solve(band, copy, *window)
 
 
 def seconds(form: str, elements: int) -> dict[str, float]:
@@ -71,8 +71,8 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     found = {RESIDUAL: least_seconds(_balance, times, (*one.balance, one.residual, nothing))}
     found[TANGENT] = least_seconds(_balance, times, (*one.balance, one.residual, matrix))
     copying = least_seconds(_copy, times, one.band, copy)
-    found[FACTOR] = least_seconds(_factor, times, one.band, copy) - copying
-    found[SOLVE] = least_seconds(_solve, times, copy, one.right, np.empty_like(one.right))
+    found[FACTOR] = least_seconds(_factor, times, one.band, copy, one.window) - copying
+    found[SOLVE] = least_seconds(_solve, times, copy, one.right, np.empty_like(one.right), one.window)
     return {name: spent / times for name, spent in found.items()}
 
 

@@ -19,13 +19,15 @@ _STEP = 1e-3  # [s]; weighs the inertia in the tangent
 class Case(NamedTuple):
     """Arguments of the kernels.
 
-    balance: all but the residual (n,) and the matrix; band (unknown, width); right: a right-hand side (unknown,).
+    balance: all but the residual (n,) and the matrix; band (unknown, width); right: a right-hand side (unknown,);
+    window: what `factor` and `solve` take besides.
     """
 
     balance: tuple[Any, ...]
     residual: np.ndarray
     band: np.ndarray
     right: np.ndarray
+    window: tuple[Any, ...]
 
 
 def case(form: str, elements: int) -> tuple[System, Case]:
@@ -39,7 +41,8 @@ def case(form: str, elements: int) -> tuple[System, Case]:
     model = system.forms, system.blocks, system.workspaces(), system.point_loads, system.springs, system.layouts
     actions = system.body(0.0), point_rows(system, 0.0), 0
     arguments = (*model, p, v, a, *actions, weights, False)
-    return system, Case(arguments, np.empty(len(p)), np.zeros((unknown, width)), rng.normal(size=unknown))
+    window = (system.forms[0].window,) if hasattr(system.forms[0], "window") else ()
+    return system, Case(arguments, np.empty(len(p)), np.zeros((unknown, width)), rng.normal(size=unknown), window)
 
 
 def least_traffic(system: System, one: Case) -> dict[str, int]:

@@ -14,14 +14,15 @@ _DEPTH = 16  # multiply-adds after one another on each number of a vector
 
 @dataclass(frozen=True)
 class Ceilings:
-    """memory, cache: a stream triad from memory and in cache [GB/s]; peak, chain: multiply-adds [GFlop/s].
+    """memory, cache: a stream triad from memory and in cache [GB/s]; the others: fused multiply-adds [GFlop/s].
 
-    peak: many that do not wait for each other, in vectors; chain: one by one, each needs the one before.
+    peak: in vectors, none waits for another; scalar: the same without vectors; chain: each needs the one before.
     """
 
     memory: float
     cache: float
     peak: float
+    scalar: float
     chain: float
 
 
@@ -50,6 +51,16 @@ def _one_by_one(times: int, x: float, a: float, b: float) -> float:
     return x
 
 
+@njit(fastmath={"contract"}, error_model="numpy")
+def _scalars(times: int, x: float, a: float, b: float) -> float:
+    # numba packs no scalars into vectors, and the loop needs its own results
+    p, q, r, s, t, u, v, w, y, z = x, x, x, x, x, x, x, x, x, x
+    for _ in range(times):
+        p, q, r, s, t = p * a + b, q * a + b, r * a + b, s * a + b, t * a + b
+        u, v, w, y, z = u * a + b, v * a + b, w * a + b, y * a + b, z * a + b
+    return p + q + r + s + t + u + v + w + y + z
+
+
 def least_seconds(task: Callable[..., Any], *arguments: Any, rounds: int = 5) -> float:
     """Return the least CPU time [s] of a task, once it is compiled."""
     task(*arguments)
@@ -68,4 +79,5 @@ def measure() -> Ceilings:
     cache = 24.0 * _SMALL * 1000 / least_seconds(_triad, 1000, *small)
     peak = 2.0 * _DEPTH * len(numbers) * 10_000 / least_seconds(_side_by_side, 10_000, numbers, 0.999, 1e-3)
     chain = 2.0 * 10_000_000 / least_seconds(_one_by_one, 10_000_000, 1.0, 0.999, 1e-3)
-    return Ceilings(memory / 1e9, cache / 1e9, peak / 1e9, chain / 1e9)
+    scalar = 20.0 * 3_000_000 / least_seconds(_scalars, 3_000_000, 1.0, 0.999, 1e-3)
+    return Ceilings(memory / 1e9, cache / 1e9, peak / 1e9, scalar / 1e9, chain / 1e9)

@@ -2,7 +2,8 @@
 
 Operations are counted (`flop_counts`), bytes are the least that must move (`roofline_cases.least_traffic`), times are
 of warm kernels in a compiled loop. 1000 elements stay in cache, 100,000 do not. The limit named is the ceiling of which
-a kernel reaches half or more; where it is none, operations wait for each other: short vectors, chains, divisions.
+a kernel reaches half or more: that of memory (or cache), or of arithmetic without vectors, which element kernels do not
+use. Where it is none, operations wait for each other: chains, divisions, sines.
 """
 
 from pathlib import Path
@@ -30,7 +31,8 @@ HEADER = (
     "of which slow",
     "bytes",
     "GFlop/s",
-    "of peak [%]",
+    "of vector peak [%]",
+    "of scalar peak [%]",
     "GB/s",
     "of bandwidth [%]",
     "limit",
@@ -88,11 +90,11 @@ def rows_of(
     for name in KERNELS:
         spent, (operations, slow) = times[name], counts[name]
         flops, rate = operations * elements / spent / 1e9, traffic[name] / spent / 1e9
-        shares = {"arithmetic": flops / top.peak, "bandwidth": rate / bandwidth}
+        shares = {"compute": flops / top.scalar, "memory": rate / bandwidth}
         limit = max(shares, key=lambda key: shares[key])
         per = elements / unknown
         work = operations * per, slow * per, traffic[name] / unknown
-        rates = flops, 100.0 * shares["arithmetic"], rate, 100.0 * shares["bandwidth"]
+        rates = flops, 100.0 * flops / top.peak, 100.0 * shares["compute"], rate, 100.0 * shares["memory"]
         each = 1e6 * spent, 1e9 * spent / unknown
         rows.append((form, elements, name, *each, *work, *rates, limit if shares[limit] >= 0.5 else "latency"))
     return rows
@@ -102,7 +104,9 @@ def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[objec
     """Measure all, print the table and write it as CSV."""
     top, counts = measure(), count_all()
     print(f"one core: {top.memory:.1f} GB/s from memory, {top.cache:.0f} GB/s in cache (stream triad)")
-    print(f"fused multiply-adds: {top.peak:.1f} GFlop/s side by side, {top.chain:.2f} GFlop/s one after the other")
+    print(
+        f"fused multiply-adds: {top.peak:.1f} GFlop/s in vectors, {top.scalar:.1f} in scalars, {top.chain:.2f} in a chain"
+    )
     rows = [row for form in FORMS for elements in sizes for row in rows_of(form, elements, counts[form], top)]
     print(as_text(HEADER, rows, "kernels in motion; operations, slow ones among them, and bytes a coordinate"))
     write_csv(folder / "roofline.csv", HEADER, rows)

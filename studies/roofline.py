@@ -105,7 +105,7 @@ def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[objec
     top, counts = measure(), count_all()
     print(f"one core: {top.memory:.1f} GB/s from memory, {top.cache:.0f} GB/s in cache (stream triad)")
     print(
-        f"fused multiply-adds: {top.peak:.1f} GFlop/s in vectors, {top.scalar:.1f} in scalars, {top.chain:.2f} in a chain"
+        f"fused multiply-adds: {top.peak:.1f} GFlop/s in vectors, {top.scalar:.1f} without, {top.chain:.2f} in a chain"
     )
     rows = [row for form in FORMS for elements in sizes for row in rows_of(form, elements, counts[form], top)]
     print(as_text(HEADER, rows, "kernels in motion; operations, slow ones among them, and bytes a coordinate"))

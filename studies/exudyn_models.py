@@ -3,80 +3,77 @@
 from typing import Any
 
 import exudyn as exu
+import numpy as np
 from exudyn import itemInterface as items
-
-TWO_NODES, THREE_NODES, CABLE = "geometrically exact, 2 nodes", "geometrically exact, 3 nodes", "ANCF cable"
+from peer_cases import CABLE, LINEAR_SOLVERS, THREE_NODES, Chain
 
 
 class Peer:
-    """A beam in Exudyn.
+    """A chain of beams in Exudyn; instants: how often the tip of a motion is written down [s]."""
 
-    stiffness: E A, k_s G A, E I; mass: per length [kg/m], rotary [kg m]; clamped: else pinned; gravity [m/s^2]; force
-    (fy) [N] at the tip.
-    """
-
-    def __init__(
-        self,
-        kind: str,
-        elements: int,
-        length: float,
-        stiffness: tuple[float, float, float],
-        mass: tuple[float, float],
-        clamped: bool,
-        gravity: float = 0.0,
-        force: float = 0.0,
-    ) -> None:
+    def __init__(self, kind: str, elements: int, chain: Chain, instants: float = 0.1) -> None:
         self.container = exu.SystemContainer()
         self.system = self.container.AddSystem()
-        add = self.system
-        inner = 2 if kind == THREE_NODES else 1
-        axial, shear, bending = stiffness
+        self.instants = instants
+        nodes = self._add_beams(kind, elements, chain)
+        self._hold(nodes[0], (0, 1, 3 if kind == CABLE else 2) if chain.clamped else (0, 1))
+        self.tip, self.sensor = nodes[-1], None
+        if chain.force:
+            marker = self.system.AddMarker(items.MarkerNodePosition(nodeNumber=self.tip))
+            self.system.AddLoad(items.Force(markerNumber=marker, loadVector=[0.0, chain.force, 0.0]))
+        else:
+            position = {"nodeNumber": self.tip, "outputVariableType": exu.OutputVariableType.Position}
+            sensor = items.SensorNode(**position, storeInternal=True, writeToFile=False)
+            self.sensor = self.system.AddSensor(sensor)
+        self.system.Assemble()
+
+    def _add_beams(self, kind: str, elements: int, chain: Chain) -> list[Any]:
+        add, inner = self.system, 2 if kind == THREE_NODES else 1
         nodes = []
         for i in range(inner * elements + 1):
-            x = length * i / (inner * elements)
+            x = chain.length * i / (inner * elements)
             if kind == CABLE:
                 nodes.append(add.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[x, 0.0, 1.0, 0.0])))
             else:
                 nodes.append(add.AddNode(items.NodeRigidBody2D(referenceCoordinates=[x, 0.0, 0.0])))
         own: dict[str, Any] = {
-            "length": length / elements,
-            "massPerLength": mass[0],
-            "bendingStiffness": bending,
-            "axialStiffness": axial,
+            "length": chain.length / elements,
+            "massPerLength": chain.mass,
+            "bendingStiffness": chain.bending,
+            "axialStiffness": chain.axial,
         }
         for i in range(elements):
             chosen = nodes[inner * i : inner * (i + 1) + 1]
             if kind == CABLE:
                 body = add.AddObject(items.ObjectANCFCable2D(nodeNumbers=chosen, **own))
             else:
-                rest = {"crossSectionInertia": mass[1], "shearStiffness": shear}
+                rest = {"crossSectionInertia": chain.rotary, "shearStiffness": chain.shear}
                 body = add.AddObject(items.ObjectBeamGeometricallyExact2D(nodeNumbers=chosen, **own, **rest))
-            if gravity:
+            if chain.gravity:
                 marker = add.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-                add.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -gravity, 0.0]))
-        ground = add.AddMarker(
-            items.MarkerNodeCoordinate(nodeNumber=add.AddNode(items.NodePointGround()), coordinate=0)
-        )
-        for coordinate in (0, 1, 3 if kind == CABLE else 2) if clamped else (0, 1):
-            held = add.AddMarker(items.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=coordinate))
-            add.AddObject(items.CoordinateConstraint(markerNumbers=[ground, held]))
-        self.tip = nodes[-1]
-        if force:
-            marker = add.AddMarker(items.MarkerNodePosition(nodeNumber=self.tip))
-            add.AddLoad(items.Force(markerNumber=marker, loadVector=[0.0, force, 0.0]))
-        self.system.Assemble()
+                add.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0.0, -chain.gravity, 0.0]))
+        return nodes
 
-    def motion(self, steps: int, duration: float, sparse: bool) -> None:
+    def _hold(self, node: Any, coordinates: tuple[int, ...]) -> None:
+        add = self.system
+        ground = add.AddNode(items.NodePointGround())
+        fixed = add.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+        for coordinate in coordinates:
+            held = add.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+            add.AddObject(items.CoordinateConstraint(markerNumbers=[fixed, held]))
+
+    def motion(self, steps: int, duration: float, linear_solver: str, threads: int = 1) -> None:
         """March with the trapezoidal rule and Exudyn's own modified Newton iteration."""
-        settings = _settings(sparse)
+        settings = _settings(linear_solver, threads)
+        settings.solution.sensors.writePeriod = self.instants
         settings.timeIntegration.numberOfSteps = steps
         settings.timeIntegration.endTime = duration
         settings.timeIntegration.verboseMode = 0
         self.system.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
 
-    def equilibrium(self, load_steps: int, sparse: bool) -> None:
+    def equilibrium(self, load_steps: int, linear_solver: str, threads: int = 1) -> None:
         """Find the equilibrium in load steps."""
-        settings = _settings(sparse)
+        settings = _settings(linear_solver, threads)
         settings.staticSolver.numberOfLoadSteps = load_steps
         settings.staticSolver.verboseMode = 0
         self.system.SolveStatic(settings)
@@ -85,15 +82,19 @@ class Peer:
         """Return how many tangents the last motion took; many a step mean that the solver struggles."""
         return int(self.system.sys["dynamicSolver"].it.newtonJacobiCount)
 
-    def tip_position(self) -> tuple[float, float]:
-        """Return where the tip is after the last solve [m]."""
-        x, y, _ = self.system.GetNodeOutput(self.tip, exu.OutputVariableType.Position)
-        return x, y
+    def tip_position(self) -> np.ndarray:
+        """Return where the tip is after the last solve (2,) [m]."""
+        return np.array(self.system.GetNodeOutput(self.tip, exu.OutputVariableType.Position)[:2])
+
+    def tip_positions(self) -> np.ndarray:
+        """Return where the tip was at the instants of the last motion, without the start (times, 2) [m]."""
+        return np.array(self.system.GetSensorStoredData(self.sensor))[1:, 1:3]
 
 
-def _settings(sparse: bool) -> Any:
+def _settings(linear_solver: str, threads: int) -> Any:
+    assert linear_solver in LINEAR_SOLVERS, linear_solver
     settings = exu.SimulationSettings()
-    settings.solutionSettings.writeSolutionToFile = False
-    settings.parallel.numberOfThreads = 1
-    settings.linearSolverType = exu.LinearSolverType.EigenSparse if sparse else exu.LinearSolverType.EXUdense
+    settings.solution.file.write = False
+    settings.parallel.numberOfThreads = threads
+    settings.linearSolver.solverType = getattr(exu.LinearSolverType, linear_solver)
     return settings

@@ -1,0 +1,117 @@
+"""How far the kernels are from what one core gives: operations and bytes a coordinate against measured ceilings.
+
+Operations are counted (`flop_counts`), bytes are the least that must move (`roofline_cases.least_traffic`), times are
+of warm kernels in a compiled loop. 1000 elements stay in cache, 100,000 do not. The limit named is the ceiling of which
+a kernel reaches half or more: that of memory (or cache), or of arithmetic without vectors, which element kernels do not
+use. Where it is none, operations wait for each other: chains, divisions, sines.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from ceilings import Ceilings, least_seconds, measure
+from flop_counts import count_all
+from numba import njit
+from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, least_traffic
+
+from beamfem.kernels.balance import balance
+from beamfem.kernels.band import factor, solve
+from beamfem.tabulate import as_text, write_csv
+
+OUT = Path("out/bench")
+SIZES = (1000, 100_000)
+HEADER = (
+    "form",
+    "elements",
+    "kernel",
+    "us",
+    "ns a coordinate",
+    "operations",
+    "of which slow",
+    "bytes",
+    "GFlop/s",
+    "of vector peak [%]",
+    "of scalar peak [%]",
+    "GB/s",
+    "of bandwidth [%]",
+    "limit",
+)
+
+
+@njit
+def _balance(times: int, arguments: Any) -> None:
+    for _ in range(times):
+        balance(*arguments)
+
+
+@njit
+def _copy(times: int, band: np.ndarray, copy: np.ndarray) -> None:
+    for _ in range(times):
+        copy[:] = band
+
+
+@njit
+def _factor(times: int, band: np.ndarray, copy: np.ndarray, window: Any) -> None:
+    for _ in range(times):
+        copy[:] = band
+        factor(copy, *window)
+
+
+@njit
+def _solve(times: int, band: np.ndarray, right: np.ndarray, copy: np.ndarray, window: Any) -> None:
+    for _ in range(times):
+        copy[:] = right
+        solve(band, copy, *window)
+
+
+def seconds(form: str, elements: int) -> dict[str, float]:
+    """Return the CPU time of one call of each kernel [s]."""
+    one = case(form, elements)[1]
+    times = max(1, 100_000 // elements)
+    nothing, matrix, copy = one.band.reshape(-1)[:0], one.band.reshape(-1), np.empty_like(one.band)
+    found = {RESIDUAL: least_seconds(_balance, times, (*one.balance, one.residual, nothing))}
+    found[TANGENT] = least_seconds(_balance, times, (*one.balance, one.residual, matrix))
+    copying = least_seconds(_copy, times, one.band, copy)
+    found[FACTOR] = least_seconds(_factor, times, one.band, copy, one.window) - copying
+    found[SOLVE] = least_seconds(_solve, times, copy, one.right, np.empty_like(one.right), one.window)
+    return {name: spent / times for name, spent in found.items()}
+
+
+def rows_of(
+    form: str, elements: int, counts: dict[str, tuple[float, float]], top: Ceilings
+) -> list[tuple[object, ...]]:
+    """Return a line for each kernel."""
+    system, one = case(form, elements)
+    times, traffic = seconds(form, elements), least_traffic(system, one)
+    unknown = len(one.right)
+    bandwidth = top.cache if traffic[TANGENT] < 1e7 else top.memory
+    rows = []
+    for name in KERNELS:
+        spent, (operations, slow) = times[name], counts[name]
+        flops, rate = operations * elements / spent / 1e9, traffic[name] / spent / 1e9
+        shares = {"compute": flops / top.scalar, "memory": rate / bandwidth}
+        limit = max(shares, key=lambda key: shares[key])
+        per = elements / unknown
+        work = operations * per, slow * per, traffic[name] / unknown
+        rates = flops, 100.0 * flops / top.peak, 100.0 * shares["compute"], rate, 100.0 * shares["memory"]
+        each = 1e6 * spent, 1e9 * spent / unknown
+        rows.append((form, elements, name, *each, *work, *rates, limit if shares[limit] >= 0.5 else "latency"))
+    return rows
+
+
+def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[object, ...]]:
+    """Measure all, print the table and write it as CSV."""
+    top, counts = measure(), count_all()
+    print(f"one core: {top.memory:.1f} GB/s from memory, {top.cache:.0f} GB/s in cache (stream triad)")
+    print(
+        f"fused multiply-adds: {top.peak:.1f} GFlop/s in vectors, {top.scalar:.1f} without, {top.chain:.2f} in a chain"
+    )
+    rows = [row for form in FORMS for elements in sizes for row in rows_of(form, elements, counts[form], top)]
+    print(as_text(HEADER, rows, "kernels in motion; operations, slow ones among them, and bytes a coordinate"))
+    write_csv(folder / "roofline.csv", HEADER, rows)
+    return rows
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+"""Growth, roofline and compile budget: what is counted is what closed forms say."""
+
+import chain_growth
+import compile_budget
+import flop_counts
+import numpy as np
+import pytest
+import roofline
+import roofline_cases
+
+
+def test_operations_of_plain_numbers():
+    tally = flop_counts.Tally()
+    x, y = (flop_counts.counted(np.array([value]), tally)[0] for value in (3.0, 4.0))
+    assert float(np.sqrt(float(x * x + y * y))) == 5.0
+    assert (tally.operations, tally.slow) == (4, 1)  # two products, a sum and a root
+    assert (1.0 / x + -y).value == pytest.approx(1 / 3 - 4)
+    assert (tally.operations, tally.slow) == (6, 2)
+    assert 2.0 < x < y
+    assert abs(-x) == 3.0
+
+
+def test_operations_of_the_kernels():
+    """Solution: each of the 2 w neighbours and the pivot; the tangent costs more than the residual it contains."""
+    counts = flop_counts.count_all()
+    for form, element in roofline_cases.FORMS.items():
+        found = counts[form]
+        system, one = roofline_cases.case(form, 4)
+        half = one.band.shape[1] // 2
+        assert half == system.layouts[0].half_width
+        unknown = element.field.degree * 3 if form != "ANCF, continuum" else 6
+        assert found[roofline_cases.SOLVE][0] == pytest.approx(unknown * (4 * half + 1), rel=0.02)
+        # a full band takes w (2 w + 1) operations a row, blocks leave some zeros
+        assert 0.4 < found[roofline_cases.FACTOR][0] / (unknown * half * (2 * half + 1)) <= 1.1
+        assert found[roofline_cases.TANGENT][0] > 3 * found[roofline_cases.RESIDUAL][0]
+
+
+def test_bytes_of_the_band():
+    _, one = roofline_cases.case("bilinear, structural", 10)
+    system, _ = roofline_cases.case("bilinear, structural", 10)
+    traffic = roofline_cases.least_traffic(system, one)
+    unknown, width = one.band.shape
+    assert traffic[roofline_cases.FACTOR] == 16 * unknown * width
+    assert traffic[roofline_cases.SOLVE] == 8 * unknown * (width + 4)
+
+
+def test_the_roofline_has_a_line_for_each_kernel():
+    top = roofline.Ceilings(memory=40.0, cache=200.0, peak=100.0, scalar=16.0, chain=2.0)
+    counts = dict.fromkeys(roofline_cases.KERNELS, (100.0, 2.0))
+    rows = roofline.rows_of("bilinear, structural", 20, counts, top)
+    assert [line[2] for line in rows] == list(roofline_cases.KERNELS)
+    assert all(len(line) == len(roofline.HEADER) for line in rows)
+    assert all(line[3] > 0.0 for line in rows)
+
+
+@pytest.mark.parametrize("analysis", ["statics", "motion"])
+def test_growth_measures_a_chain(analysis):
+    found = chain_growth.measure(analysis, "order 2", 40)
+    steps, iterations, each, _, error, peak, _, remark = found
+    assert (steps, remark) == (1 if analysis == "statics" else chain_growth.STEPS, "")
+    assert iterations >= steps
+    assert each > 0.0
+    assert peak > 50.0
+    assert np.isnan(error) if analysis == "motion" else error < 1e-6
+    assert len(found) + 4 == len(chain_growth.HEADER)
+
+
+def test_compile_times_add_up():
+    inner, outer = ("beamfem.kernels.a.f", 1.0, 1.0), ("beamfem.kernels.a.g", 2.0, 3.0)
+    rows = compile_budget.rows_of([inner, outer, inner])
+    assert rows == [("a.f", 2, 2.0, 2.0), ("a.g", 1, 2.0, 3.0)]

@@ -118,8 +118,8 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tasks = {
         RESIDUAL: lambda: balance(*one.balance, one.residual, nothing),
         TANGENT: lambda: balance(*one.balance, one.residual, one.band.reshape(-1)),
-        FACTOR: lambda: factor(one.band, *one.window),
-        SOLVE: lambda: solve(one.band, one.right, *one.window),
+        FACTOR: lambda: factor(one.band, one.right[:0], np.empty_like(one.right), one.window),
+        SOLVE: lambda: solve(one.band, one.right, one.window),
     }
     found = {}
     for name, task in tasks.items():

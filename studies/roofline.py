@@ -52,17 +52,17 @@ def _copy(times: int, band: np.ndarray, copy: np.ndarray) -> None:
 
 
 @njit
-def _factor(times: int, band: np.ndarray, copy: np.ndarray, window: Any) -> None:
+def _factor(times: int, band: np.ndarray, copy: np.ndarray, space: np.ndarray, window: Any) -> None:
     for _ in range(times):
         copy[:] = band
-        factor(copy, *window)
+        factor(copy, space[:0], space, window)
 
 
 @njit
 def _solve(times: int, band: np.ndarray, right: np.ndarray, copy: np.ndarray, window: Any) -> None:
     for _ in range(times):
         copy[:] = right
-        solve(band, copy, *window)
+        solve(band, copy, window)
 
 
 def seconds(form: str, elements: int) -> dict[str, float]:
@@ -73,7 +73,7 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     found = {RESIDUAL: least_seconds(_balance, times, (*one.balance, one.residual, nothing))}
     found[TANGENT] = least_seconds(_balance, times, (*one.balance, one.residual, matrix))
     copying = least_seconds(_copy, times, one.band, copy)
-    found[FACTOR] = least_seconds(_factor, times, one.band, copy, one.window) - copying
+    found[FACTOR] = least_seconds(_factor, times, one.band, copy, np.empty_like(one.right), one.window) - copying
     found[SOLVE] = least_seconds(_solve, times, copy, one.right, np.empty_like(one.right), one.window)
     return {name: spent / times for name, spent in found.items()}
 

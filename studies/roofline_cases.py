@@ -20,14 +20,14 @@ class Case(NamedTuple):
     """Arguments of the kernels.
 
     balance: all but the residual (n,) and the matrix; band (unknown, width); right: a right-hand side (unknown,);
-    window: what `factor` and `solve` take besides.
+    window: of the band, see `beamfem.kernels.band`.
     """
 
     balance: tuple[Any, ...]
     residual: np.ndarray
     band: np.ndarray
     right: np.ndarray
-    window: tuple[Any, ...]
+    window: tuple[float, ...]
 
 
 def case(form: str, elements: int) -> tuple[System, Case]:
@@ -41,7 +41,7 @@ def case(form: str, elements: int) -> tuple[System, Case]:
     model = system.forms, system.blocks, system.workspaces(), system.point_loads, system.springs, system.layouts
     actions = system.body(0.0), point_rows(system, 0.0), 0
     arguments = (*model, p, v, a, *actions, weights, False)
-    window = (system.forms[0].window,) if hasattr(system.forms[0], "window") else ()
+    window = system.forms[0].window
     return system, Case(arguments, np.empty(len(p)), np.zeros((unknown, width)), rng.normal(size=unknown), window)
 
 

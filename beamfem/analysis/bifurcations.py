@@ -4,10 +4,10 @@ Close to a bifurcation round-off leads Newton's method off the path, so no equil
 and mode are interpolated between points that keep their distance on both sides.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import krogh_interpolate
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.continuation import PathPoint
@@ -31,6 +31,12 @@ class Crossing:
     y: np.ndarray
     tangent: np.ndarray
     mode: np.ndarray
+
+
+def _interpolated(at: Sequence[float] | np.ndarray, values: Sequence[float] | np.ndarray, x: float) -> float:
+    from scipy.interpolate import krogh_interpolate  # slow to import
+
+    return float(krogh_interpolate(at, values, x))
 
 
 def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
@@ -86,7 +92,7 @@ def _zero(segment: Segment, start: float, end: float) -> list[Crossing] | None:
             pivots = [segment.at(at).negative_pivots for at in (start, samples[0], samples[-1], end)]
             if pivots[0] != pivots[1] or pivots[2] != pivots[3]:
                 return None
-            x = float(krogh_interpolate([known[at] for at in samples], samples, 0.0))
+            x = _interpolated([known[at] for at in samples], samples, 0.0)
             return _crossings(segment, x, np.array(samples), distance, abs(pivots[1] - pivots[2]))
     return None
 
@@ -110,7 +116,7 @@ def _root(known: dict[float, float], start: float, end: float) -> float:
     low = max(x for x, value in known.items() if value * sign > 0.0)
     high = min((x for x, value in known.items() if value * sign <= 0.0 and x > low), default=end)
     near = sorted(known, key=lambda x: abs(known[x]))[: len(_SAMPLES)]
-    x = float(krogh_interpolate([known[at] for at in near], near, 0.0))
+    x = _interpolated([known[at] for at in near], near, 0.0)
     return x if low <= x <= high else 0.5 * (low + high)
 
 
@@ -157,7 +163,7 @@ def _refined(segment: Segment, points: list[PathPoint], modes: np.ndarray, near:
         mode_stiffness(system, point.y[:-1], point.load_factor, mode[:-1])
         for point, mode in zip(points, modes, strict=True)
     ]
-    return float(krogh_interpolate(stiffness, near, 0.0))
+    return _interpolated(stiffness, near, 0.0)
 
 
 def _symmetric(segment: Segment, point: PathPoint) -> bool:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.optimize import brentq
 
 from beamfem.analysis.continuation import Continuation, PathPoint
 
@@ -58,6 +57,8 @@ class Segment:
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
         ends = (self.before.y[-1], self.after.y[-1], *(slope[-1] for slope in self.slopes))
         x = brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15)
         load = np.zeros(len(self.chord))
@@ -82,6 +83,8 @@ class Segment:
 
     def limit_points(self) -> list[float]:
         """Return the shares x where the load factor has an extremum, in order. Raises SegmentLostError."""
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
         stops = [0.0, 1.0]
         hidden = self._hidden_extremum()
         if hidden is not None:

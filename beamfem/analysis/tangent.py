@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError, solve_banded
 from scipy.sparse import csc_array, csr_array, dia_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.kernels.band import ANY_WIDTH, factor, solve_lower, solve_upper
+from beamfem.kernels.band import ANY_WIDTH, factor, solve
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 SMALLEST_PIVOT = 1e-13
@@ -71,8 +71,7 @@ class BandFactors:
         turn_in(x, *self.turned)
         if self.plain:
             balanced = x.copy()
-            solve_lower(self.lu, x, ANY_WIDTH)
-            solve_upper(self.lu, x, ANY_WIDTH)
+            solve(self.lu, x, ANY_WIDTH)
             if not np.isfinite(x).all():
                 x = _solve_pivoted(self.rows, balanced)
         else:

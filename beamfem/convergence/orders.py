@@ -7,7 +7,6 @@ Science and Engineering, 1998; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 SAFETY = 1.25  # Roache's factor for three or more meshes
@@ -47,6 +46,8 @@ class Extrapolation:
 def order_of_three(h: np.ndarray, q: np.ndarray) -> float:
     """Solve (q1 - q2)/(q2 - q3) = (h1^p - h2^p)/(h2^p - h3^p) for p > 0; nan where the values do not close in."""
     coarse, fine = q[0] - q[1], q[1] - q[2]
+    from scipy.optimize import brentq  # slow to import, and seldom needed
+
     up, down = np.log(h[0] / h[1]), np.log(h[2] / h[1])
     if fine == 0.0 or coarse / fine <= up / -down:  # the right side for p -> 0
         return float("nan")

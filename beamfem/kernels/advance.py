@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.balance import balance
-from beamfem.kernels.band import factor, solve_lower, solve_upper
+from beamfem.kernels.band import factor, solve
 from beamfem.kernels.corotate import keep_directions, turn, turns_since
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
@@ -145,8 +145,8 @@ def advance(
             renew = full or fresh
             target = matrix if renew else keep
             balance(
-                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients, predicted,
-                residual, target,
+                forms, blocks, work, loads, springs, layouts, p, v, a, own_body, point_values, row, coefficients,
+                predicted, residual, target,
             )  # fmt: skip
             if renew:
                 hold_normals(lu, turned[0], turned[1])
@@ -159,8 +159,7 @@ def advance(
                 right[i] = -residual[free[i]]
             turn_in(right, turned[0], turned[1])
             turn(right, pairs, turns, -1.0)
-            solve_lower(lu, right, window)
-            solve_upper(lu, right, window)
+            solve(lu, right, window)
             turn(right, pairs, turns, 1.0)
             turn_back(right, turned[0], turned[1])
             last, size = size, correct(state, right, free, inverse_scale, coefficients)

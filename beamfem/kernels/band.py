@@ -82,6 +82,13 @@ def factor(ab, right, original, window):
     return worst
 
 
+@njit(cache=True, _nrt=False, error_model="numpy")
+def solve(lu, x, window):
+    """Replace the right-hand side x (n,) by the solution; lu and window as for `factor`."""
+    solve_lower(lu, x, window)
+    solve_upper(lu, x, window)
+
+
 @njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
 def solve_lower(lu, x, window):
     """Replace the right-hand side x (n,) by that of the upper triangle; lu and window as for `factor`."""

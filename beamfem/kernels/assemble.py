@@ -88,7 +88,7 @@ def add_tangents(form, block, layout, work, e, v, a, coefficients, geometric_str
     bends = measures == ELASTIC_LINE
     nv, ns = nn * vpn, block.stiffness.shape[2]
     stiffness, reference, weight = block.stiffness, block.reference, block.weight
-    ck, ca = coefficients[0], coefficients[2]
+    ck, cv, ca = coefficients[0], coefficients[1], coefficients[2]
     predicted = geometric_stress.shape[0] > 0
     k, rows = work.matrix, work.rows
     for element in range(block.node.shape[0]):
@@ -132,5 +132,5 @@ def add_tangents(form, block, layout, work, e, v, a, coefficients, geometric_str
                 for j in range(nv):
                     k[2 * i, 2 * j] += ca * block.mass[kind, i, j]
                     k[2 * i + 1, 2 * j + 1] += ca * block.mass[kind, i, j]
-        reduce_matrix(nn, vpn, block, element, kind, e, v, a, coefficients, k)
+        reduce_matrix(nn, vpn, block, element, kind, e, v, a, (ck, cv, ca), k)
         add_matrix(nn, vpn, block, layout, element, rows, k, matrix)

@@ -55,9 +55,11 @@ def rates(q, dq):
 
 
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
-def _products(w, q, c, k, p, i0, i1, i2, j0, j1, j2):
-    """Return w sum_kl c[k, p, i_k, j_l] v_k v_l^T (xx, xy, yx, yy) of the vectors v = r, d, e in q."""
+def _products(w, q, c, k, p, rows, columns):
+    """Return w sum_kl c[k, p, rows_k, columns_l] v_k v_l^T (xx, xy, yx, yy) of the vectors v = r, d, e in q."""
     rx, ry, dx, dy, ex, ey = q
+    i0, i1, i2 = rows
+    j0, j1, j2 = columns
     a, b, g = w * c[k, p, i0, j0], w * c[k, p, i0, j1], w * c[k, p, i0, j2]
     ux, uy = a * rx + b * dx + g * ex, a * ry + b * dy + g * ey
     a, b, g = w * c[k, p, i1, j0], w * c[k, p, i1, j1], w * c[k, p, i1, j2]
@@ -76,12 +78,13 @@ def _products(w, q, c, k, p, i0, i1, i2, j0, j1, j2):
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, re (4 each), dd, de, ee."""
     s0, s1, s2, s3, s4, s5 = s
-    rr = _products(w, q, c, k, g, 0, 4, 1, 0, 4, 1)
-    rd = _products(w, q, c, k, g, 0, 4, 1, 4, 3, 5)
-    re = _products(w, q, c, k, g, 0, 4, 1, 1, 5, 2)
-    dd = _products(w, q, c, k, g, 4, 3, 5, 4, 3, 5)
-    de = _products(w, q, c, k, g, 4, 3, 5, 1, 5, 2)
-    ee = _products(w, q, c, k, g, 1, 5, 2, 1, 5, 2)
+    on_r, on_d, on_e = (0, 4, 1), (4, 3, 5), (1, 5, 2)
+    rr = _products(w, q, c, k, g, on_r, on_r)
+    rd = _products(w, q, c, k, g, on_r, on_d)
+    re = _products(w, q, c, k, g, on_r, on_e)
+    dd = _products(w, q, c, k, g, on_d, on_d)
+    de = _products(w, q, c, k, g, on_d, on_e)
+    ee = _products(w, q, c, k, g, on_e, on_e)
     return (
         rr[0] + s0,
         rr[1],

@@ -74,5 +74,5 @@ def assemble_point_loads(block, loads, layout, work, values, ck, residual, matri
         for i in range(2 * nv):
             for j in range(2 * nv):
                 k[i, j] *= ck
-        reduce_matrix(nn, vpn, block, element, 0, e, k[0], k[0], (ck, 0.0, 0.0), k)
+        reduce_matrix(nn, vpn, block, element, block.kind[element], e, k[0], k[0], (ck, 0.0, 0.0), k)
         add_matrix(nn, vpn, block, layout, element, rows, k, matrix)

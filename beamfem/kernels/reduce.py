@@ -55,7 +55,7 @@ def add_turning(block, layout, node, row, e, force, ck, matrix):
 @njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def reduce_matrix(nn, vpn, block, element, kind, e, v, a, coefficients, k):
     """Replace k = ck K + ca M (2 nv, 2 nv) by B^T (ck K B + M C); a node's coordinates take its first places."""
-    ck, cv, ca = coefficients[0], coefficients[1], coefficients[2]
+    ck, cv, ca = coefficients
     size, per = 2 * nn * vpn, 2 * vpn
     for n in range(nn):
         node = block.node[element, n]

@@ -25,7 +25,7 @@ def working_space(size: int, unknown: int) -> tuple[np.ndarray, ...]:
 
 @njit(cache=True, _nrt=False, error_model="numpy")
 def predict(state, before, differences, order, held, values, rule):
-    """Start a step from `before` (4, n), held coordinates at `values` (3, nh).
+    """Store the state (4, n) in `before` and start a step from it, held coordinates at `values` (3, nh).
 
     The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on.
     differences (3, n): its backward differences.
@@ -34,11 +34,13 @@ def predict(state, before, differences, order, held, values, rule):
     kept, mean, share = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     first, second, third = min(order, 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
     for i in range(state.shape[1]):
+        p, v, a, mean_a = state[0, i], state[1, i], state[2, i], state[3, i]
+        before[0, i], before[1, i], before[2, i], before[3, i] = p, v, a, mean_a
         ahead = first * differences[0, i] + second * differences[1, i] + third * differences[2, i]
-        new = kept * before[2, i] - mean * before[3, i] + share * ahead
-        state[0, i] = before[0, i] + h * before[1, i] + h * h * ((0.5 - beta) * before[3, i] + beta * new)
-        state[1, i] = before[1, i] + h * ((1.0 - gamma) * before[3, i] + gamma * new)
-        state[2, i] = before[2, i] + ahead
+        new = kept * a - mean * mean_a + share * ahead
+        state[0, i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
+        state[1, i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
+        state[2, i] = a + ahead
     for i in range(held.shape[0]):
         for k in range(3):
             state[k, held[i]] = values[k, i]
@@ -60,11 +62,24 @@ def correct(state, right, free, inverse_scale, coefficients):
     return largest
 
 
+@njit(cache=True, _nrt=False, error_model="numpy")
+def restore(state, before):
+    """Return to the state before the step."""
+    for i in range(state.shape[1]):
+        state[0, i], state[1, i], state[2, i], state[3, i] = before[0, i], before[1, i], before[2, i], before[3, i]
+
+
 @njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
-def remember(state, before, differences, inverse_scale):
-    """Bring the differences of p'' up to date; return the best order of extrapolation and the largest first one."""
+def complete(state, before, differences, inverse_scale, held, rule):
+    """End a step: auxiliary acceleration and differences of p''.
+
+    Return the order of extrapolation that would have been best, and the largest first difference.
+    """
+    alpha_m, alpha_f = rule[1], rule[2]
+    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
     e0, e1, e2, e3 = 0.0, 0.0, 0.0, 0.0
     for i in range(state.shape[1]):
+        state[3, i] = new * state[2, i] + old * before[2, i] - mean * before[3, i]
         d0 = state[2, i] - before[2, i]
         d1 = d0 - differences[0, i]
         d2 = d1 - differences[1, i]
@@ -73,6 +88,8 @@ def remember(state, before, differences, inverse_scale):
         weight = inverse_scale[i]
         e0, e1 = max(e0, abs(d0) * weight), max(e1, abs(d1) * weight)
         e2, e3 = max(e2, abs(d2) * weight), max(e3, abs(d3) * weight)
+    for i in range(held.shape[0]):
+        state[3, held[i]] = state[2, held[i]]
     order, least = 0, e0
     if e1 < least:
         order, least = 1, e1
@@ -135,8 +152,6 @@ def advance(
     keep, predicted, varying = matrix[:0], n < 0, (body.shape[0] > 1, point_values[0].shape[0] > 1)
     for step in range(steps):
         own_body, row = body[step if varying[0] else 0], step if varying[1] else 0
-        for i in range(n):
-            before[0, i], before[1, i], before[2, i], before[3, i] = state[0, i], state[1, i], state[2, i], state[3, i]
         predict(state, before, differences, statistics[6], held, held_values[step], rule)
         rate, size, first_size, iteration = statistics[4], 0.0, 0.0, 0
         full, fresh, done = False, rate < 0.0, False
@@ -180,22 +195,15 @@ def advance(
             if done or (full and not np.isfinite(size)):
                 break
             if not full and not (iteration < _MOST and (iteration < 2 or rate < 0.5)):
+                restore(state, before)
                 predict(state, before, differences, 0.0, held, held_values[step], rule)
                 full, iteration = True, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
         if not done:
-            for i in range(n):
-                state[0, i], state[1, i] = before[0, i], before[1, i]
-                state[2, i], state[3, i] = before[2, i], before[3, i]
+            restore(state, before)
             return step
-        for i in range(n):
-            state[3, i] = ((1.0 - alpha_f) * state[2, i] + alpha_f * before[2, i] - alpha_m * before[3, i]) / (
-                1.0 - alpha_m
-            )
-        for i in range(held.shape[0]):
-            state[3, held[i]] = state[2, held[i]]
-        statistics[6], change = remember(state, before, differences, inverse_scale)
+        statistics[6], change = complete(state, before, differences, inverse_scale, held, rule)
         statistics[7] = change / coefficients[2]
         if (first + step) % every == 0:
             row = (first + step) // every

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.analysis.equations import INERTIA, linearise
+from beamfem.analysis.equations import INERTIA, linearise, residual
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.memory import require_memory
@@ -134,7 +134,7 @@ def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.n
     p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
     free = system.free_dofs
     a[free] = 0.0
-    unbalanced, _ = linearise(system, p, v, a, time, (1.0, 0.0, 1.0))
+    unbalanced = residual(system, p, v, a, time)
     _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
     a[free] = mass.solve(-unbalanced[free], system.turned)
     return a

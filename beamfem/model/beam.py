@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import Literal, cast
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite, function_of_one
+from beamfem.validation import count, finite, fulfils, function_of_one
 
 Tapered = Callable[[float], CrossSection]
 
@@ -42,15 +43,15 @@ class Beam:
             object.__setattr__(self, "elements", count("elements", self.elements))
         if not isinstance(self.element, Element):
             raise InputError(f"element of a Beam must be an Element, got {self.element!r}")
-        if not isinstance(self.curve, Curve):
+        if not fulfils(self.curve, Curve):
             raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
         if self.material is not None and not isinstance(self.material, Material):
             raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
-        if isinstance(self.section, type) or not (isinstance(self.section, CrossSection) or callable(self.section)):
+        if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
             raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
-        if not isinstance(self.section, CrossSection):
+        if not self.prismatic:
             function_of_one("section", self.section, "arc length")
-        for share in (0.0, 0.5, 1.0):
+        for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
             section = self.section_at(share * self.curve.length)
             section.inertia(self.material)
             if self.element.forces.fills_body:
@@ -60,15 +61,20 @@ class Beam:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
         return f"Beam({type(self.curve).__name__} of length {self.curve.length:g}, {count} x {self.element.name})"
 
+    @cached_property
+    def prismatic(self) -> bool:
+        """Whether the section is the same all along."""
+        return fulfils(self.section, CrossSection)
+
     def section_at(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
-        if isinstance(self.section, CrossSection):
-            return self.section
+        if self.prismatic:
+            return cast(CrossSection, self.section)
         try:
-            section = self.section(arc_length)
+            section = cast(Tapered, self.section)(arc_length)
         except InputError as error:
             raise InputError(f"the section at arc length {arc_length:g} m cannot be made: {error}") from error
-        if not isinstance(section, CrossSection):
+        if not fulfils(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
         return section
 

@@ -7,7 +7,7 @@ from typing import Literal, cast
 
 import numpy as np
 
-from beamfem.curves import BSpline, Curve
+from beamfem.curves import BSpline, Curve, Line
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
@@ -109,6 +109,22 @@ class Point:
     def __str__(self) -> str:
         x, y = self.reference
         return f"({x:g}, {y:g}), fraction {self.fraction:g} of its beam"
+
+
+def reference_positions(points: Sequence[Point]) -> np.ndarray:
+    """Return the positions in the reference (n, 2) [m], of points on straight beams all at once."""
+    result = np.empty((len(points), 2))
+    curves = [point.beam.curve for point in points]
+    straight = [(i, curve) for i, curve in enumerate(curves) if isinstance(curve, Line)]
+    for i, curve in enumerate(curves):
+        if not isinstance(curve, Line):
+            result[i] = points[i].reference
+    if straight:
+        own, lines = zip(*straight, strict=True)
+        share = np.array([points[i].fraction for i in own])[:, None]
+        start, end = np.array([line.start for line in lines]), np.array([line.end for line in lines])
+        result[list(own)] = (1.0 - share) * start + share * end
+    return result
 
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:

@@ -8,8 +8,9 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
-from beamfem.model.beam import Beam, Point
-from beamfem.model.grid import Grid, make_grid
+from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.grid import Grid
+from beamfem.model.grids import make_grids
 from beamfem.model.joints import Hinge, Joint, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment
 from beamfem.model.mesh import BeamMesh
@@ -61,7 +62,7 @@ class Model:
         for joint in self.joints:
             self._require(joint, "a", joint.a)
             self._require(joint, "b", joint.b)
-            self._require_touch(joint)
+        self._require_touches()
 
     def _require(self, item: object, name: str, place: object) -> None:
         kind = type(item).__name__
@@ -74,11 +75,18 @@ class Model:
             where = f" at {place}" if isinstance(place, Point) else ""
             raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; add it to beams")
 
-    def _require_touch(self, joint: Joint) -> None:
+    def _require_touches(self) -> None:
+        """Raise InputError for the first joint whose points do not coincide."""
+        a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
+        gaps = np.linalg.norm(a - b, axis=1).tolist()
+        for joint, gap in zip(self.joints, gaps, strict=True):
+            self._require_touch(joint, gap)
+
+    @staticmethod
+    def _require_touch(joint: Joint, gap: float) -> None:
         kind = type(joint).__name__
         if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
             raise InputError(f"{kind} joins the point {joint.a} with itself")
-        gap = float(np.linalg.norm(joint.a.reference - joint.b.reference))
         if gap > 1e-9 * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
             raise InputError(
                 f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide"
@@ -95,7 +103,7 @@ class Model:
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
         for point in places:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
-        grids = [make_grid(beam, own) for beam, own in zip(self.beams, fractions, strict=True)]
+        grids = make_grids(self.beams, fractions)
         angled = [self._place(grids, support.point) for support in self.point_supports if _turns(support)]
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
         rigid = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Rigid)]
@@ -181,4 +189,6 @@ def _turns(support: PointSupport) -> bool:
 
 def _corners(grid: Grid) -> np.ndarray:
     """First of the two nodes at each corner."""
+    if not grid.beam.curve.corners:
+        return np.empty(0, dtype=np.int64)
     return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]

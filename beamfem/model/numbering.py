@@ -73,10 +73,11 @@ def number_nodes(
         dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
 
     frame = _frames(grids, carrier, leader_turns)
-    nodes = []
-    for begin, end in pairwise(first):
-        widest = int(last[begin:end].max()) + 1
-        nodes.append(Nodes(carrier[begin:end], dof[begin:end, :widest], frame[begin:end]))
+    widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
+    nodes = [
+        Nodes(carrier[begin:end], dof[begin:end, :columns], frame[begin:end])
+        for (begin, end), columns in zip(pairwise(first.tolist()), widest, strict=True)
+    ]
     return nodes, int(own.sum())
 
 

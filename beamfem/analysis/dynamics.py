@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.analysis.entangled_motion import EntangledMotion
 from beamfem.analysis.equations import INERTIA, linearise
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
@@ -54,10 +55,6 @@ def simulate(
     system = system_of(model, static=False)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
-    if system.unknowns.pattern is not None:
-        raise InputError(
-            "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"
-        )
     rule = (integrator or GeneralizedAlpha()).rule(step)
     steps = int(np.ceil(duration / step - 1e-9))
     times = step * np.arange(steps + 1)
@@ -77,35 +74,39 @@ def simulate(
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])
     free = system.free_dofs
-    lu = np.zeros((len(free), 2 * system.layouts[0].half_width + 1))
-    memory, space = (lu, lu.reshape(-1), statistics), working_space(n, len(free))
     scale, work, limits = system.scale, system.workspaces(), np.array([_TOLERANCE, _ITERATIONS])
+    band = system.unknowns.pattern is None
+    entangled = None if band else EntangledMotion(system, rule, limits, statistics)
+    lu = np.zeros((len(free) if band else 0, 2 * system.layouts[0].half_width + 1 if band else 1))
+    memory, space = (lu, lu.reshape(-1), statistics), working_space(n, len(free))
     done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
         while done < steps:
             now = min(size, steps - done)
             rows = slice(done + 1, done + now + 1)
-            inputs = (held.values[rows], *_sample_loads(system, times[rows]))
             begun = clock.perf_counter()
-            completed = advance(
-                system.forms,
-                system.blocks,
-                work,
-                system.point_loads,
-                system.springs,
-                system.layouts,
-                free,
-                system.held_dofs,
-                system.turned,
-                state,
-                inputs,
-                rule,
-                limits,
-                scale,
-                memory,
-                space,
-                (states, done + 1, save_every),
-            )
+            if entangled is not None:
+                completed = entangled.advance(state, held.values[rows], times[rows], (states, done + 1, save_every))
+            else:
+                completed = advance(
+                    system.forms,
+                    system.blocks,
+                    work,
+                    system.point_loads,
+                    system.springs,
+                    system.layouts,
+                    free,
+                    system.held_dofs,
+                    system.turned,
+                    state,
+                    (held.values[rows], *_sample_loads(system, times[rows])),
+                    rule,
+                    limits,
+                    scale,
+                    memory,
+                    space,
+                    (states, done + 1, save_every),
+                )
             spent = clock.perf_counter() - begun
             done += completed
             if completed and done % save_every:

@@ -12,7 +12,7 @@ from beamfem.model.system import System
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
-_MOST, _MANY, _SLOW = 16, 8, 0.3
+_MOST, _MANY, _SLOW = 24, 16, 0.5
 _REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
 _SHARE = 1e-8  # of the first correction of a step, so that errors which are left behind do not add up
 
@@ -57,9 +57,11 @@ class EntangledMotion:
         return len(times)
 
     def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:
-        """Iterate for the end of a step; with the last tangent first, then with one of each iterate."""
+        """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate."""
         kept = self.statistics[4] >= 0.0 and self._factors is not None
-        solved = self._iterate(state, before, held, time, full=False, fresh=not kept)
+        if kept and self._iterate(state, before, held, time, full=False, fresh=False):
+            return True
+        solved = self._iterate(state, before, held, time, full=False, fresh=True)
         return solved or self._iterate(state, before, held, time, full=True, fresh=True)
 
     def _iterate(

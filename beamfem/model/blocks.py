@@ -52,8 +52,9 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     """Return what the elements and nodes of beams (number, mesh) have of their own, see `kernels.block.Block`."""
     own = [mesh for _, mesh in meshes]
     elements, nodes = np.array([(mesh.elements, mesh.nodes) for mesh in own]).T
-    node = np.concatenate([mesh.node for mesh in own])
-    node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
+    node = _joined([mesh.node for mesh in own])
+    if len(own) > 1:
+        node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
     home = np.empty((nodes.sum(), 2), dtype=np.int64)
     for place, there in enumerate(node.T):
         home[there, 0], home[there, 1] = np.arange(len(node)), place
@@ -61,11 +62,16 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     return {
         "node": node,
         "beam": np.repeat([number for number, _ in meshes], elements),
-        "carrier": np.concatenate([mesh.carried.carrier for mesh in own]),
-        "frame": np.concatenate([mesh.carried.frame for mesh in own]),
-        "dof": np.concatenate([_widened(mesh.carried.dof, width) for mesh in own]),
+        "carrier": _joined([mesh.carried.carrier for mesh in own]),
+        "frame": _joined([mesh.carried.frame for mesh in own]),
+        "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),
         "home": home,
     }
+
+
+def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Return parts one after the other; a single one as it is, for it may be large."""
+    return np.ascontiguousarray(parts[0]) if len(parts) == 1 else np.concatenate(parts)
 
 
 def _widened(dof: np.ndarray, width: int) -> np.ndarray:

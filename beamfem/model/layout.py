@@ -28,7 +28,15 @@ class Unknowns:
     dofs: np.ndarray
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
-    diagonal: np.ndarray
+
+    def diagonal(self, numbers: np.ndarray) -> np.ndarray:
+        """Return where the diagonal entries of unknowns (k,) stand in the matrix."""
+        if self.pattern is None:
+            half = self.layouts[0].half_width
+            return numbers * (2 * half + 1) + half
+        starts, rows = self.pattern.indptr, self.pattern.indices
+        found = [starts[i] + np.searchsorted(rows[starts[i] : starts[i + 1]], i) for i in numbers.tolist()]
+        return np.array(found, dtype=np.int64)
 
 
 def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined: bool) -> Unknowns:
@@ -46,14 +54,13 @@ def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined:
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-        diagonal = np.arange(len(dofs)) * (2 * half_width + 1) + half_width
-        return Unknowns(free, dofs, layouts, None, diagonal)
+        return Unknowns(free, dofs, layouts, None)
     dofs = _scattered(blocks, size)
     dofs = dofs[mask[dofs]]
     free = _numbers(dofs, size)
-    pattern, slots, diagonal = _pattern(blocks, free, len(dofs))
+    pattern, slots = _pattern(blocks, free, len(dofs))
     layouts = tuple(Layout(free, -1, slot) for slot in slots)
-    return Unknowns(free, dofs, layouts, pattern, diagonal)
+    return Unknowns(free, dofs, layouts, pattern)
 
 
 def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
@@ -124,8 +131,8 @@ def _owners(blocks: Sequence[Block], size: int) -> np.ndarray:
     return np.asarray(owner[owner])
 
 
-def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[csc_array, list[np.ndarray], np.ndarray]:
-    """Return the sparse pattern of all element matrices, the places of each of their entries, and of the diagonal."""
+def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[csc_array, list[np.ndarray]]:
+    """Return the sparse pattern of all element matrices and of the diagonal, and the place of each element's entry."""
     rows, columns, filled = [], [], []
     for block in blocks:
         number = _numbers_of(block, free).astype(np.int32)
@@ -152,7 +159,7 @@ def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[c
         slot[known] = place[begin:end]
         slots.append(slot)
         begin = end
-    return csc_array(entries, shape=(unknown, unknown)), slots, place[begin:]
+    return csc_array(entries, shape=(unknown, unknown)), slots
 
 
 def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:

@@ -73,6 +73,7 @@ def number_nodes(
         dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
 
     frame = _frames(grids, carrier, leader_turns)
+    dof = np.ascontiguousarray(dof[:, : last.max() + 1])
     widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
     nodes = [
         Nodes(carrier[begin:end], dof[begin:end, :columns], frame[begin:end])

@@ -123,7 +123,8 @@ class System:
                         stiffness.append(value)
         where = np.array(dofs, dtype=np.int64)
         free = self.unknowns.free[where]
-        place = np.where(free >= 0, self.unknowns.diagonal[free], -1) if len(self.unknowns.diagonal) else free
+        place = free.copy()
+        place[free >= 0] = self.unknowns.diagonal(free[free >= 0])
         return Springs(where, np.array(stiffness, dtype=float), self.reference[where], place)
 
     def body(self, time: float) -> np.ndarray:

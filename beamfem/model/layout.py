@@ -151,7 +151,7 @@ def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[c
     place = np.empty(len(order), dtype=np.int32)
     place[order] = np.cumsum(new, dtype=np.int32) - 1
     starts = np.concatenate([[0], np.cumsum(np.bincount(column[new], minlength=unknown))])
-    entries = np.ones(int(new.sum())), row[new], starts.astype(np.int32)
+    entries = np.ones(int(new.sum()), dtype=np.int8), row[new], starts.astype(np.int32)
     slots, begin = [], 0
     for known in filled:
         end = begin + int(known.sum())

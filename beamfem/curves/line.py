@@ -9,7 +9,7 @@ from beamfem.errors import InputError
 from beamfem.validation import vector
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Line:
     """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError where they coincide."""
 

@@ -94,7 +94,7 @@ class Beam:
         return Point(self, 1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Point:
     """A point of a beam's axis at a fraction of its arc length."""
 

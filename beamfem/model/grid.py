@@ -60,8 +60,6 @@ class Grid:
 
     def node_at(self, fraction: float) -> int:
         """Return the node at a support or joint; `make_grid` has put one there."""
-        if fraction in (0.0, 1.0):
-            return 0 if fraction == 0.0 else self.nodes - 1
         return int(np.argmin(np.abs(self.arc - fraction * self.vertices[-1])))
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:

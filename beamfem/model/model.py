@@ -104,26 +104,35 @@ class Model:
         for point in places:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
         grids = make_grids(self.beams, fractions)
-        angled = [self._place(grids, support.point) for support in self.point_supports if _turns(support)]
+        angled = self._places(grids, [support.point for support in self.point_supports if _turns(support)])
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        rigid = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Rigid)]
-        hinged = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Hinge)]
-        turning = np.array([*corners, *rigid], dtype=np.int64).reshape(-1, 4)
-        moving = np.array([*corners, *rigid, *hinged], dtype=np.int64).reshape(-1, 4)
-        nodes, size = number_nodes(grids, angled, moving, turning)
+        rigid, hinged = (self._pairs(grids, kind) for kind in (Rigid, Hinge))
+        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
+        nodes, size = number_nodes(grids, angled, np.concatenate([turning, hinged]), turning)
         filled = [0] * len(self.groups)
         block_of = {element: number for number, element in enumerate(self.groups)}
         meshes = []
         for grid, carried in zip(grids, nodes, strict=True):
             block = block_of[grid.beam.element]
-            parts = {name: getattr(grid, name) for name in Grid.__dataclass_fields__}
-            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
+            meshes.append(BeamMesh(**vars(grid), carried=carried, first_element=filled[block], block=block))
             filled[block] += grid.elements
         return tuple(meshes), size
 
-    def _place(self, grids: Sequence[Grid], point: Point) -> tuple[int, int]:
-        number = self._numbers[id(point.beam)]
-        return number, grids[number].node_at(point.fraction)
+    def _pairs(self, grids: Sequence[Grid], kind: type[Joint]) -> np.ndarray:
+        """Return grid and node of both points (n, 4) of the joints of a kind."""
+        joints = [joint for joint in self.joints if isinstance(joint, kind)]
+        a, b = [joint.a for joint in joints], [joint.b for joint in joints]
+        return np.hstack([self._places(grids, a), self._places(grids, b)])
+
+    def _places(self, grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
+        """Return grid and node (n, 2) of points at which there is a node."""
+        number = np.array([self._numbers[id(point.beam)] for point in points], dtype=np.int64)
+        fraction = np.array([point.fraction for point in points])
+        last = np.array([grid.nodes - 1 for grid in grids])
+        node = np.where(fraction == 0.0, 0, last[number])
+        for i in np.flatnonzero((fraction > 0.0) & (fraction < 1.0)).tolist():
+            node[i] = grids[number[i]].node_at(points[i].fraction)
+        return np.column_stack([number, node])
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:

@@ -25,13 +25,13 @@ class Nodes:
 
 def number_nodes(
     grids: Sequence[Grid],
-    angled: Sequence[tuple[int, int]],
+    angled: np.ndarray,
     moving: np.ndarray,
     turning: np.ndarray,
 ) -> tuple[list[Nodes], int]:
     """Return the nodes of each grid and the number of coordinates in all.
 
-    angled: (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
+    angled (m, 2): (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
     moving, turning (n, 4): pairs (grid, node, grid, node) that move alike, and that turn alike.
     """
     first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
@@ -44,7 +44,7 @@ def number_nodes(
     turns = _groups(total, first, turning)
 
     as_angle = np.zeros(total, dtype=bool)
-    as_angle[[first[grid] + node for grid, node in angled]] = True
+    as_angle[first[angled[:, 0]] + angled[:, 1]] = True
     joined = np.bincount(turns, minlength=total)[turns] > 1
     # gradients that are joined with gradients only share r_y as a vector; all others share an angle
     plain = (carrier == GRADIENTS) & ~follows_slope[owner] & ~as_angle

@@ -92,12 +92,13 @@ def test_the_sparse_tangent_has_the_entries_of_the_band(force_sparse):
     model = portal()
     p = disturbed(model, 0.02)
     nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 2))
-    _, band = tangent_at(model, p)
+    narrow, band = tangent_at(model, p)
     force_sparse()
     system, sparse = tangent_at(model, p)
     assert isinstance(system.unknowns, Unknowns)
     assert system.unknowns.pattern is not None
-    a, b = band.sparse(nothing).toarray(), sparse.sparse(nothing).toarray()
+    order = narrow.unknowns.free[system.free_dofs]
+    a, b = band.sparse(nothing).toarray()[np.ix_(order, order)], sparse.sparse(nothing).toarray()
     assert np.abs(a - b).max() < 1e-13 * np.abs(a).max()
     assert np.abs(a - a.T).max() > 1e-6 * np.abs(a).max()  # followers are in it
 
@@ -188,12 +189,6 @@ def test_beams_that_differ_do_not_share_classes():
     joints = [bf.Rigid(one.end, other.start) for one, other in pairwise(beams)]
     (block,) = System(bf.Model(beams, [bf.Clamp(beams[0].start)], joints=joints), static=True).blocks
     assert block.kind.tolist() == [0, 0, 0, 0, 1, 1, 2, 2]
-
-
-def test_dynamics_says_that_a_sparse_model_is_too_wide():
-    model, _ = grid(24, 24)
-    with pytest.raises(bf.InputError, match="too entangled for a motion"):
-        bf.simulate(model, 0.1, 0.01)
 
 
 def test_a_state_turned_inside_out_is_seen(element):

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.analysis.band_motion import BandMotion
+from beamfem.analysis.entangled_motion import EntangledMotion
 from beamfem.analysis.equations import INERTIA, linearise, residual
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.memory import require_memory
 from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.kernels.advance import advance, working_space
 from beamfem.model.model import Model
 from beamfem.model.sampled import Sampled
 from beamfem.model.system import System, system_of
@@ -54,10 +55,6 @@ def simulate(
     system = system_of(model, static=False)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
-    if system.unknowns.pattern is not None:
-        raise InputError(
-            "this model is too entangled for a motion: its tangent is no narrow band. Statics, modes and buckling work"
-        )
     rule = (integrator or GeneralizedAlpha()).rule(step)
     steps = int(np.ceil(duration / step - 1e-9))
     times = step * np.arange(steps + 1)
@@ -76,42 +73,16 @@ def simulate(
     states = np.empty((-(-steps // save_every) + 1, 3, n))
     states[0] = state[:3]
     statistics = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0])
-    free = system.free_dofs
-    work = system.workspaces()
-    lu = np.zeros((len(free), 2 * system.layouts[0].half_width + 1))
-    directions = np.zeros((2, sum(len(one.nodes[0]) for one in work), 2))
-    memory, space = (
-        (lu, lu.reshape(-1), np.zeros((3, n)), *directions, statistics),
-        working_space(n, len(free)),
-    )
-    scale, limits = system.scale, np.array([_TOLERANCE, _ITERATIONS])
+    limits = np.array([_TOLERANCE, _ITERATIONS])
+    kind = BandMotion if system.unknowns.pattern is None else EntangledMotion
+    motion = kind(system, rule, limits, statistics)
     done, size = 0, max(_FIRST_CHUNK // n, 1)
     with progress("time [s]", times[-1]) as report:
         while done < steps:
             now = min(size, steps - done)
             rows = slice(done + 1, done + now + 1)
-            inputs = (held.values[rows], *_sample_loads(system, times[rows]))
             begun = clock.perf_counter()
-            completed = advance(
-                system.forms,
-                system.blocks,
-                work,
-                system.point_loads,
-                system.springs,
-                system.layouts,
-                free,
-                system.held_dofs,
-                system.turned,
-                system.turning,
-                state,
-                inputs,
-                rule,
-                limits,
-                scale,
-                memory,
-                space,
-                (states, done + 1, save_every),
-            )
+            completed = motion.advance(state, held.values[rows], times[rows], (states, done + 1, save_every))
             spent = clock.perf_counter() - begun
             done += completed
             if completed and done % save_every:
@@ -167,15 +138,6 @@ class HeldMotion:
             values[i, 1] = first @ around / (12.0 * width)
             values[i, 2] = second @ around / (12.0 * width**2)
         return cls(values)
-
-
-def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Body forces (steps, beams, 4) and point values of each block (steps, nl, 3); one row where nothing varies."""
-    if not system.varying:
-        times = times[:1]
-    body = np.array([system.body(now) for now in times])
-    values = [system.point_values(now) for now in times]
-    return body, tuple(np.array([value[i] for value in values]) for i in range(len(system.blocks)))
 
 
 def _solution(

@@ -113,7 +113,7 @@ class _Record:
             True,
             np.array(self.load_factors),
             states,
-            np.zeros_like(states),
-            np.zeros_like(states),
+            np.zeros(states.shape),  # unlike zeros_like, no memory until somebody writes to it
+            np.zeros(states.shape),
             statistics,
         )

@@ -136,10 +136,11 @@ class SparseTangent:
 
     def factorised(self, turned: Turned) -> SparseFactors:
         """Return the factors, with diagonal pivots unless tiny, so that their signs count. Raises LinAlgError."""
-        matrix = csc_array(self.sparse(turned))
-        options = {"SymmetricMode": True}
+        matrix = csc_array(self.sparse(turned)) if len(turned[0]) else self.matrix
+        # the unknowns are in an order of little fill; wide panels and relaxed supernodes cost more than they save here
+        settings = {"permc_spec": "NATURAL", "diag_pivot_thresh": 1e-10, "relax": 1, "panel_size": 1}
         try:
-            lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-10, options=options)
+            lu = splu(matrix, **settings, options={"SymmetricMode": True})
         except RuntimeError as error:
             raise LinAlgError("the tangent is singular") from error
         return SparseFactors(lu, turned)

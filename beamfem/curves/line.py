@@ -1,5 +1,6 @@
 """A straight axis."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ from beamfem.errors import InputError
 from beamfem.validation import vector
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Line:
     """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError where they coincide."""
 
@@ -23,7 +24,7 @@ class Line:
 
     @property
     def length(self) -> float:
-        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+        return math.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     @property
     def corners(self) -> tuple[float, ...]:

@@ -82,19 +82,20 @@ def build_frame(
     lines = [[(cell, False)] for cell in range(len(mesh.cells))] if members == "cells" else chains(mesh, hinged)
     owner = np.empty(len(mesh.cells), dtype=np.int64)
     places: list[list[Point]] = [[] for _ in mesh.nodes]
+    points, cells = [(x, y) for x, y in mesh.nodes.tolist()], mesh.cells.tolist()
     beams = []
     for number, line in enumerate(lines):
         first = line[0][0]
         own = {name: values[first] for name, values in given.items()}
-        curve, ends = _axis([_curve(mesh, piece) for piece in line])
+        curve, ends = _axis([_curve(points, cells, piece) for piece in line])
         parts = count("elements", own.pop("elements"))
         beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **own)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
-        for (cell, backwards), fraction in zip(line, ends, strict=False):
-            places[mesh.cells[cell, 1 if backwards else 0]].append(Point(beam, float(fraction)))
+        for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):
+            places[cells[cell][1 if backwards else 0]].append(Point(beam, fraction))
         cell, backwards = line[-1]
-        places[mesh.cells[cell, 0 if backwards else 1]].append(Point(beam, 1.0))
+        places[cells[cell][0 if backwards else 1]].append(Point(beam, 1.0))
     joints = tuple(
         (Hinge if hinged[node] else Rigid)(here[0], other) for node, here in enumerate(places) for other in here[1:]
     )
@@ -129,15 +130,15 @@ def _each(mesh: "LineMesh", what: str, value: Any) -> Sequence[Any]:
     return [choices[number] for number in source]
 
 
-def _curve(mesh: "LineMesh", piece: Piece) -> Curve:
+def _curve(points: Sequence[tuple[float, float]], cells: Sequence[Sequence[int]], piece: Piece) -> Curve:
     """Return the axis of a cell, from its end to its start if it is taken backwards."""
     cell, backwards = piece
-    start, end, middle = mesh.cells[cell]
-    a, b = mesh.nodes[[end, start] if backwards else [start, end]]
-    first, last = tuple(a.tolist()), tuple(b.tolist())
+    start, end, middle = cells[cell]
+    first, last = (points[end], points[start]) if backwards else (points[start], points[end])
     if middle < 0:
         return Line(first, last)
-    chord, inner = b - a, mesh.nodes[middle] - a
+    a, b, between = np.array([first, last, points[middle]])
+    chord, inner = b - a, between - a
     share = inner @ chord / (chord @ chord)
     if abs(inner[0] * chord[1] - inner[1] * chord[0]) <= _STRAIGHT * (chord @ chord):
         if not 0.25 < share < 0.75:
@@ -146,16 +147,16 @@ def _curve(mesh: "LineMesh", piece: Piece) -> Curve:
                 "ends and must be between 0.25 and 0.75"
             )
         return Line(first, last)
-    control = 2.0 * mesh.nodes[middle] - 0.5 * (a + b)
+    control = 2.0 * between - 0.5 * (a + b)
     return BSpline(2, (0.0, 0.0, 0.0, 1.0, 1.0, 1.0), (first, tuple(control.tolist()), last))
 
 
 def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
     """Return one axis through curves that follow each other, and the fractions of its length where they end."""
+    if len(curves) == 1:
+        return curves[0], np.array([0.0, 1.0])
     reach = np.concatenate([[0.0], np.cumsum([curve.length for curve in curves])])
     ends = reach / reach[-1]
-    if len(curves) == 1:
-        return curves[0], ends
     straight = [curve for curve in curves if isinstance(curve, Line)]
     if len(straight) < len(curves):
         return Chain(tuple(curves)), ends

@@ -2,17 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import Literal, cast
 
 import numpy as np
 
-from beamfem.curves import BSpline, Curve
+from beamfem.curves import BSpline, Curve, Line
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite, function_of_one
+from beamfem.validation import count, finite, fulfils, function_of_one
 
 Tapered = Callable[[float], CrossSection]
 
@@ -42,15 +43,15 @@ class Beam:
             object.__setattr__(self, "elements", count("elements", self.elements))
         if not isinstance(self.element, Element):
             raise InputError(f"element of a Beam must be an Element, got {self.element!r}")
-        if not isinstance(self.curve, Curve):
+        if not fulfils(self.curve, Curve):
             raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
         if self.material is not None and not isinstance(self.material, Material):
             raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
-        if isinstance(self.section, type) or not (isinstance(self.section, CrossSection) or callable(self.section)):
+        if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
             raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
-        if not isinstance(self.section, CrossSection):
+        if not self.prismatic:
             function_of_one("section", self.section, "arc length")
-        for share in (0.0, 0.5, 1.0):
+        for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
             section = self.section_at(share * self.curve.length)
             section.inertia(self.material)
             if self.element.forces.fills_body:
@@ -60,15 +61,20 @@ class Beam:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
         return f"Beam({type(self.curve).__name__} of length {self.curve.length:g}, {count} x {self.element.name})"
 
+    @cached_property
+    def prismatic(self) -> bool:
+        """Whether the section is the same all along."""
+        return fulfils(self.section, CrossSection)
+
     def section_at(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
-        if isinstance(self.section, CrossSection):
-            return self.section
+        if self.prismatic:
+            return cast(CrossSection, self.section)
         try:
-            section = self.section(arc_length)
+            section = cast(Tapered, self.section)(arc_length)
         except InputError as error:
             raise InputError(f"the section at arc length {arc_length:g} m cannot be made: {error}") from error
-        if not isinstance(section, CrossSection):
+        if not fulfils(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
         return section
 
@@ -88,7 +94,7 @@ class Beam:
         return Point(self, 1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Point:
     """A point of a beam's axis at a fraction of its arc length."""
 
@@ -103,6 +109,22 @@ class Point:
     def __str__(self) -> str:
         x, y = self.reference
         return f"({x:g}, {y:g}), fraction {self.fraction:g} of its beam"
+
+
+def reference_positions(points: Sequence[Point]) -> np.ndarray:
+    """Return the positions in the reference (n, 2) [m], of points on straight beams all at once."""
+    result = np.empty((len(points), 2))
+    curves = [point.beam.curve for point in points]
+    straight = [(i, curve) for i, curve in enumerate(curves) if isinstance(curve, Line)]
+    for i, curve in enumerate(curves):
+        if not isinstance(curve, Line):
+            result[i] = points[i].reference
+    if straight:
+        own, lines = zip(*straight, strict=True)
+        share = np.array([points[i].fraction for i in own])[:, None]
+        start, end = np.array([line.start for line in lines]), np.array([line.end for line in lines])
+        result[list(own)] = (1.0 - share) * start + share * end
+    return result
 
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:

@@ -7,47 +7,30 @@ import numpy as np
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE, Block, Work
-from beamfem.model.classes import Classes, likeness
+from beamfem.model.classes import Classes, likenesses
 from beamfem.model.mesh import BeamMesh
 
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
-
-_PER_ELEMENT = ("kind", "node", "beam", "carrier", "frame", "dof", "home")
 
 
 def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
     """Return the block of all beams (number, mesh) that share an element."""
     field = element.field
     xi = np.concatenate([rule[0] for rule in element.energy_rules()])
-    width = max(mesh.carried.dof.shape[1] for _, mesh in meshes)
-    first_kind, first_node, first_element = 0, 0, 0
-    known: dict[Hashable, tuple[int, np.ndarray]] = {}  # first class and classes of the elements of like beams
-    parts: dict[str, list[np.ndarray]] = {name: [] for name in (*_PER_CLASS, *_PER_ELEMENT)}
-    for number, mesh in meshes:
-        like = likeness(mesh) or number
+    own = [mesh for _, mesh in meshes]
+    first_kind = 0
+    known: dict[Hashable, np.ndarray] = {}  # classes of the elements of like beams
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in _PER_CLASS}
+    kinds = []
+    for mesh, like in zip(own, likenesses(own), strict=True):
         if like not in known:
-            classes = mesh.classes
             for name in _PER_CLASS:
-                parts[name].append(getattr(classes, name))
-            known[like] = first_kind, classes.kind
-            first_kind += len(classes.scale)
-        first, kind = known[like]
-        parts["kind"].append(first + kind)
-        parts["node"].append(first_node + mesh.node)
-        parts["beam"].append(np.full(mesh.elements, number))
-        parts["carrier"].append(mesh.carried.carrier)
-        parts["frame"].append(mesh.carried.frame)
-        own = mesh.carried.dof
-        if own.shape[1] < width:
-            own = np.pad(own, ((0, 0), (0, width - own.shape[1])), constant_values=-1)
-        parts["dof"].append(own)
-        home = np.empty((mesh.nodes, 2), dtype=np.int64)
-        for place, nodes in enumerate(mesh.node.T):
-            home[nodes, 0], home[nodes, 1] = first_element + np.arange(mesh.elements), place
-        parts["home"].append(home)
-        first_node += mesh.nodes
-        first_element += mesh.elements
+                parts[name].append(getattr(mesh.classes, name))
+            known[like] = first_kind + mesh.classes.kind
+            first_kind += len(mesh.classes.scale)
+        kinds.append(known[like])
     joined = {name: np.ascontiguousarray(np.concatenate(values)) for name, values in parts.items()}
+    joined.update(_numbers(meshes), kind=np.concatenate(kinds))
     table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
     curved = np.zeros_like(table)
     table[:, r_slots(field)], table[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
@@ -63,6 +46,38 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
         director=np.ascontiguousarray(field.director(xi)),
         **joined,
     )
+
+
+def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
+    """Return what the elements and nodes of beams (number, mesh) have of their own, see `kernels.block.Block`."""
+    own = [mesh for _, mesh in meshes]
+    elements, nodes = np.array([(mesh.elements, mesh.nodes) for mesh in own]).T
+    node = _joined([mesh.node for mesh in own])
+    if len(own) > 1:
+        node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
+    home = np.empty((nodes.sum(), 2), dtype=np.int64)
+    for place, there in enumerate(node.T):
+        home[there, 0], home[there, 1] = np.arange(len(node)), place
+    width = max(mesh.carried.dof.shape[1] for mesh in own)
+    return {
+        "node": node,
+        "beam": np.repeat([number for number, _ in meshes], elements),
+        "carrier": _joined([mesh.carried.carrier for mesh in own]),
+        "frame": _joined([mesh.carried.frame for mesh in own]),
+        "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),
+        "home": home,
+    }
+
+
+def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Return parts one after the other; a single one as it is, for it may be large."""
+    return np.ascontiguousarray(parts[0]) if len(parts) == 1 else np.concatenate(parts)
+
+
+def _widened(dof: np.ndarray, width: int) -> np.ndarray:
+    if dof.shape[1] == width:
+        return dof
+    return np.pad(dof, ((0, 0), (0, width - dof.shape[1])), constant_values=-1)
 
 
 def workspace(block: Block, stress: np.ndarray | None = None) -> Work:

@@ -1,6 +1,7 @@
 """Classes of identical elements of a beam, and what the kernels need of each."""
 
-from collections.abc import Hashable
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,6 @@ import numpy as np
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.grid import Grid
 from beamfem.model.reference import energy_points, inertia_points, jacobians, length_points, scales, stiffness_at
-from beamfem.section.protocol import CrossSection
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Classes:
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: elements of equal length of a straight prismatic beam, else each its own."""
-    if grid.straight and isinstance(grid.beam.section, CrossSection):
+    if grid.straight and grid.beam.prismatic:
         _, first, kind = np.unique(
             np.round(grid.lengths / grid.lengths.max(), 9), return_index=True, return_inverse=True
         )
@@ -60,17 +60,25 @@ def element_classes(grid: Grid) -> Classes:
     )
 
 
-def likeness(grid: Grid) -> Hashable:
+def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
     """Return what straight prismatic beams of one element have in common if their classes are the same.
 
-    Lengths count as equal within 1e-12 of themselves. None for a beam that is like no other.
+    Lengths count as equal within 1e-12 of themselves. A beam that is like no other has its number.
     """
-    beam = grid.beam
-    if not (grid.straight and isinstance(beam.section, CrossSection)):
-        return None
-    unit = 2.0 ** np.ceil(np.log2(grid.lengths.max()))
-    lengths = np.round(grid.lengths / unit, 12).tobytes()
-    return unit, lengths, _by_value(beam.section), _by_value(beam.material)
+    found: list[Hashable] = list(range(len(grids)))
+    sized: defaultdict[int, list[int]] = defaultdict(list)
+    for number, grid in enumerate(grids):
+        if grid.straight and grid.beam.prismatic:
+            sized[len(grid.parameter)].append(number)
+    for numbers in sized.values():
+        rate = np.array([grids[i].rate for i in numbers])[:, None]
+        lengths = rate * np.diff(np.array([grids[i].parameter for i in numbers]), axis=1)
+        unit = 2.0 ** np.ceil(np.log2(lengths.max(axis=1)))
+        rounded = np.round(lengths / unit[:, None], 12)
+        for i, size, own in zip(numbers, unit.tolist(), rounded, strict=True):
+            beam = grids[i].beam
+            found[i] = size, own.tobytes(), _by_value(beam.section), _by_value(beam.material)
+    return found
 
 
 def _by_value(item: object) -> Hashable:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from beamfem.model.beam import Point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Rigid:
     """Join two points so that they move and turn alike, at whatever angle the beams meet."""
 
@@ -13,7 +13,7 @@ class Rigid:
     b: Point
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Hinge:
     """Join two points so that they move alike; each turns as it likes."""
 

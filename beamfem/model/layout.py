@@ -1,11 +1,15 @@
-"""The order of the unknown coordinates, and where element matrices go: into a band, or a sparse matrix."""
+"""The order of the unknown coordinates, and where element matrices go: into a band, or a sparse matrix.
+
+A sparse matrix is ordered for little fill once, here, so that each factorisation can take it as it stands.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse import coo_array, csc_array, eye_array
+from scipy.sparse.csgraph import laplacian, reverse_cuthill_mckee
+from scipy.sparse.linalg import spilu
 
 from beamfem.kernels.block import Block, Layout
 
@@ -24,7 +28,15 @@ class Unknowns:
     dofs: np.ndarray
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
-    diagonal: np.ndarray
+
+    def diagonal(self, numbers: np.ndarray) -> np.ndarray:
+        """Return where the diagonal entries of unknowns (k,) stand in the matrix."""
+        if self.pattern is None:
+            half = self.layouts[0].half_width
+            return numbers * (2 * half + 1) + half
+        starts, rows = self.pattern.indptr, self.pattern.indices
+        found = [starts[i] + np.searchsorted(rows[starts[i] : starts[i + 1]], i) for i in numbers.tolist()]
+        return np.array(found, dtype=np.int64)
 
 
 def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined: bool) -> Unknowns:
@@ -39,15 +51,16 @@ def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined:
             dofs = reordered
     free = _numbers(dofs, size)
     half_width = _half_width(blocks, free)
-    none = np.empty((0, 0, 0), dtype=np.int64)
+    none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-        diagonal = np.arange(len(dofs)) * (2 * half_width + 1) + half_width
-        return Unknowns(free, dofs, layouts, None, diagonal)
+        return Unknowns(free, dofs, layouts, None)
+    dofs = _scattered(blocks, size)
+    dofs = dofs[mask[dofs]]
+    free = _numbers(dofs, size)
     pattern, slots = _pattern(blocks, free, len(dofs))
     layouts = tuple(Layout(free, -1, slot) for slot in slots)
-    diagonal = _places(pattern, np.arange(len(dofs)), np.arange(len(dofs)))
-    return Unknowns(free, dofs, layouts, pattern, diagonal)
+    return Unknowns(free, dofs, layouts, pattern)
 
 
 def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
@@ -74,52 +87,83 @@ def _half_width(blocks: Sequence[Block], free: np.ndarray) -> int:
 
 def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
     """Order the coordinates (size,) by reverse Cuthill-McKee on pairs (x, y) and the rest of a node together."""
+    owner = _owners(blocks, size)
     rows, columns = [], []
     for block in blocks:
-        first = block.dof[block.node, 0]
+        first = owner[block.dof[block.node, 0]]
         # neighbours along an element, and its ends, which join it to others
         rows += [first[:, :-1].ravel(), first[:, 0]]
         columns += [first[:, 1:].ravel(), first[:, -1]]
     row, column = np.concatenate(rows), np.concatenate(columns)
-    # x and y of a node stay neighbours: collapse each coordinate onto the first of its node
-    owner = np.arange(size)
-    for block in blocks:
-        for own in block.dof.T[1:]:
-            known = own >= 0
-            owner[own[known]] = np.minimum(owner[own[known]], block.dof[known, 0])
-    owner = owner[owner]
-    graph = coo_array((np.ones(len(row)), (owner[row], owner[column])), shape=(size, size)).tocsr()
+    graph = coo_array((np.ones(len(row)), (row, column)), shape=(size, size)).tocsr()
     order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
     rank = np.empty(size, dtype=np.int64)
     rank[order] = np.arange(size)
     return np.lexsort((np.arange(size), rank[owner]))
 
 
+def _scattered(blocks: Sequence[Block], size: int) -> np.ndarray:
+    """Order the coordinates (size,) by multiple minimum degree on the nodes, for little fill."""
+    owner = _owners(blocks, size)
+    nodes, number = np.unique(owner, return_inverse=True)
+    pairs = []
+    for block in blocks:
+        own = number[block.dof[block.node, 0]]
+        i, j = np.triu_indices(own.shape[1], 1)
+        pairs.append((own[:, i].ravel(), own[:, j].ravel()))
+    ends = np.concatenate(pairs, axis=1)
+    shape = len(nodes), len(nodes)
+    graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
+    # SuperLU orders before it factors: a factorisation that drops everything is all order
+    dominant = csc_array(laplacian(graph + graph.T) + eye_array(len(nodes)))
+    options = {"SymmetricMode": True}
+    order = spilu(dominant, drop_tol=1.0, fill_factor=1.0, permc_spec="MMD_AT_PLUS_A", options=options).perm_c
+    return np.lexsort((np.arange(size), order[number]))
+
+
+def _owners(blocks: Sequence[Block], size: int) -> np.ndarray:
+    """First coordinate (size,) of the node of each: x and y of a node and what turns with it stay neighbours."""
+    owner = np.arange(size)
+    for block in blocks:
+        for own in block.dof.T[1:]:
+            known = own >= 0
+            owner[own[known]] = np.minimum(owner[own[known]], block.dof[known, 0])
+    return np.asarray(owner[owner])
+
+
 def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[csc_array, list[np.ndarray]]:
-    """Return the sparse pattern of all element matrices and the place of each of their entries."""
-    numbers = [_numbers_of(block, free) for block in blocks]
-    rows, columns = [np.arange(unknown)], [np.arange(unknown)]
-    for number in numbers:
+    """Return the sparse pattern of all element matrices and of the diagonal, and the place of each element's entry."""
+    rows, columns, filled = [], [], []
+    for block in blocks:
+        number = _numbers_of(block, free).astype(np.int32)
         i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
         known = (i >= 0) & (j >= 0)
         rows.append(i[known])
         columns.append(j[known])
-    row, column = np.concatenate(rows), np.concatenate(columns)
-    pattern = coo_array((np.ones(len(row)), (row, column)), shape=(unknown, unknown)).tocsc()
-    pattern.sum_duplicates()
-    pattern.sort_indices()
-    slots = []
-    for number in numbers:
-        i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
-        known = (i >= 0) & (j >= 0)
-        slot = np.full(i.shape, -1, dtype=np.int64)
-        slot[known] = _places(pattern, i[known], j[known])
+        filled.append(known)
+    diagonal = np.arange(unknown, dtype=np.int32)
+    row, column = np.concatenate([*rows, diagonal]), np.concatenate([*columns, diagonal])
+    order = _sorted_by(row, unknown)
+    order = order[_sorted_by(column[order], unknown)]
+    row, column = row[order], column[order]
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (row[1:] != row[:-1]) | (column[1:] != column[:-1])
+    place = np.empty(len(order), dtype=np.int32)
+    place[order] = np.cumsum(new, dtype=np.int32) - 1
+    starts = np.concatenate([[0], np.cumsum(np.bincount(column[new], minlength=unknown))])
+    entries = np.ones(int(new.sum()), dtype=np.int8), row[new], starts.astype(np.int32)
+    slots, begin = [], 0
+    for known in filled:
+        end = begin + int(known.sum())
+        slot = np.full(known.shape, -1, dtype=np.int32)
+        slot[known] = place[begin:end]
         slots.append(slot)
-    return pattern, slots
+        begin = end
+    return csc_array(entries, shape=(unknown, unknown)), slots
 
 
-def _places(pattern: csc_array, row: np.ndarray, column: np.ndarray) -> np.ndarray:
-    """Place in the data of each entry (row, column)."""
-    n = pattern.shape[0]
-    keys = np.repeat(np.arange(n), np.diff(pattern.indptr)) * n + pattern.indices
-    return np.searchsorted(keys, column * n + row)
+def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:
+    """Return the stable order of keys (n,) below a count, in linear time."""
+    single = np.arange(len(keys) + 1, dtype=np.int32)
+    # a column for each key: transposing counts the rows
+    return csc_array((np.ones(len(keys), dtype=np.int8), keys, single), shape=(count, len(keys))).tocsr().indices

@@ -8,8 +8,9 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
-from beamfem.model.beam import Beam, Point
-from beamfem.model.grid import Grid, make_grid
+from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.grid import Grid
+from beamfem.model.grids import make_grids
 from beamfem.model.joints import Hinge, Joint, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment
 from beamfem.model.mesh import BeamMesh
@@ -61,7 +62,7 @@ class Model:
         for joint in self.joints:
             self._require(joint, "a", joint.a)
             self._require(joint, "b", joint.b)
-            self._require_touch(joint)
+        self._require_touches()
 
     def _require(self, item: object, name: str, place: object) -> None:
         kind = type(item).__name__
@@ -74,11 +75,18 @@ class Model:
             where = f" at {place}" if isinstance(place, Point) else ""
             raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; add it to beams")
 
-    def _require_touch(self, joint: Joint) -> None:
+    def _require_touches(self) -> None:
+        """Raise InputError for the first joint whose points do not coincide."""
+        a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
+        gaps = np.linalg.norm(a - b, axis=1).tolist()
+        for joint, gap in zip(self.joints, gaps, strict=True):
+            self._require_touch(joint, gap)
+
+    @staticmethod
+    def _require_touch(joint: Joint, gap: float) -> None:
         kind = type(joint).__name__
         if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
             raise InputError(f"{kind} joins the point {joint.a} with itself")
-        gap = float(np.linalg.norm(joint.a.reference - joint.b.reference))
         if gap > 1e-9 * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
             raise InputError(
                 f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide"
@@ -95,27 +103,36 @@ class Model:
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
         for point in places:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
-        grids = [make_grid(beam, own) for beam, own in zip(self.beams, fractions, strict=True)]
-        angled = [self._place(grids, support.point) for support in self.point_supports if _turns(support)]
+        grids = make_grids(self.beams, fractions)
+        angled = self._places(grids, [support.point for support in self.point_supports if _turns(support)])
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        rigid = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Rigid)]
-        hinged = [(*self._place(grids, j.a), *self._place(grids, j.b)) for j in self.joints if isinstance(j, Hinge)]
-        turning = np.array([*corners, *rigid], dtype=np.int64).reshape(-1, 4)
-        moving = np.array([*corners, *rigid, *hinged], dtype=np.int64).reshape(-1, 4)
-        nodes, size = number_nodes(grids, angled, moving, turning)
+        rigid, hinged = (self._pairs(grids, kind) for kind in (Rigid, Hinge))
+        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
+        nodes, size = number_nodes(grids, angled, np.concatenate([turning, hinged]), turning)
         filled = [0] * len(self.groups)
         block_of = {element: number for number, element in enumerate(self.groups)}
         meshes = []
         for grid, carried in zip(grids, nodes, strict=True):
             block = block_of[grid.beam.element]
-            parts = {name: getattr(grid, name) for name in Grid.__dataclass_fields__}
-            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
+            meshes.append(BeamMesh(**vars(grid), carried=carried, first_element=filled[block], block=block))
             filled[block] += grid.elements
         return tuple(meshes), size
 
-    def _place(self, grids: Sequence[Grid], point: Point) -> tuple[int, int]:
-        number = self._numbers[id(point.beam)]
-        return number, grids[number].node_at(point.fraction)
+    def _pairs(self, grids: Sequence[Grid], kind: type[Joint]) -> np.ndarray:
+        """Return grid and node of both points (n, 4) of the joints of a kind."""
+        joints = [joint for joint in self.joints if isinstance(joint, kind)]
+        a, b = [joint.a for joint in joints], [joint.b for joint in joints]
+        return np.hstack([self._places(grids, a), self._places(grids, b)])
+
+    def _places(self, grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
+        """Return grid and node (n, 2) of points at which there is a node."""
+        number = np.array([self._numbers[id(point.beam)] for point in points], dtype=np.int64)
+        fraction = np.array([point.fraction for point in points])
+        last = np.array([grid.nodes - 1 for grid in grids])
+        node = np.where(fraction == 0.0, 0, last[number])
+        for i in np.flatnonzero((fraction > 0.0) & (fraction < 1.0)).tolist():
+            node[i] = grids[number[i]].node_at(points[i].fraction)
+        return np.column_stack([number, node])
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
@@ -181,4 +198,6 @@ def _turns(support: PointSupport) -> bool:
 
 def _corners(grid: Grid) -> np.ndarray:
     """First of the two nodes at each corner."""
+    if not grid.beam.curve.corners:
+        return np.empty(0, dtype=np.int64)
     return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]

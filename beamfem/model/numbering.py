@@ -25,13 +25,13 @@ class Nodes:
 
 def number_nodes(
     grids: Sequence[Grid],
-    angled: Sequence[tuple[int, int]],
+    angled: np.ndarray,
     moving: np.ndarray,
     turning: np.ndarray,
 ) -> tuple[list[Nodes], int]:
     """Return the nodes of each grid and the number of coordinates in all.
 
-    angled: (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
+    angled (m, 2): (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
     moving, turning (n, 4): pairs (grid, node, grid, node) that move alike, and that turn alike.
     """
     first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
@@ -44,7 +44,7 @@ def number_nodes(
     turns = _groups(total, first, turning)
 
     as_angle = np.zeros(total, dtype=bool)
-    as_angle[[first[grid] + node for grid, node in angled]] = True
+    as_angle[first[angled[:, 0]] + angled[:, 1]] = True
     joined = np.bincount(turns, minlength=total)[turns] > 1
     # gradients that are joined with gradients only share r_y as a vector; all others share an angle
     plain = (carrier == GRADIENTS) & ~follows_slope[owner] & ~as_angle
@@ -73,10 +73,12 @@ def number_nodes(
         dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
 
     frame = _frames(grids, carrier, leader_turns)
-    nodes = []
-    for begin, end in pairwise(first):
-        widest = int(last[begin:end].max()) + 1
-        nodes.append(Nodes(carrier[begin:end], dof[begin:end, :widest], frame[begin:end]))
+    dof = np.ascontiguousarray(dof[:, : last.max() + 1])
+    widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
+    nodes = [
+        Nodes(carrier[begin:end], dof[begin:end, :columns], frame[begin:end])
+        for (begin, end), columns in zip(pairwise(first.tolist()), widest, strict=True)
+    ]
     return nodes, int(own.sum())
 
 

@@ -55,11 +55,15 @@ class System:
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
         p = np.zeros(self.model.size)
-        for mesh in self.model.meshes:
-            values = {"r": mesh.position, "r_x": mesh.tangent * mesh.speed[:, None], "r_y": across(mesh.tangent)}
-            for label, nodes, dofs in coordinate_columns(mesh):
+        for number, (element, block) in enumerate(zip(self.model.groups, self.blocks, strict=True)):
+            own = [mesh for mesh in self.model.meshes if mesh.block == number]
+            position, tangent, speed = (
+                np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
+            )
+            values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
+            for label, nodes, dofs in _columns(block.carrier, block.dof, element.field.vectors):
                 if label == "s":
-                    p[dofs] = mesh.speed[nodes]
+                    p[dofs] = speed[nodes]
                 elif label != "theta":
                     name, axis = label.split("^")
                     p[dofs] = values[name][nodes, "xy".index(axis)]
@@ -136,7 +140,8 @@ class System:
                         stiffness.append(value)
         where = np.array(dofs, dtype=np.int64)
         free = self.unknowns.free[where]
-        place = np.where(free >= 0, self.unknowns.diagonal[free], -1) if len(self.unknowns.diagonal) else free
+        place = free.copy()
+        place[free >= 0] = self.unknowns.diagonal(free[free >= 0])
         return Springs(where, np.array(stiffness, dtype=float), self.reference[where], place)
 
     def body(self, time: float) -> np.ndarray:
@@ -236,16 +241,15 @@ class System:
     @cached_property
     def extent(self) -> float:
         """Size of the model [m]: its longest beam, or the largest distance of its points along x or y."""
-        low = np.min([mesh.position.min(axis=0) for mesh in self.model.meshes], axis=0)
-        high = np.max([mesh.position.max(axis=0) for mesh in self.model.meshes], axis=0)
-        return float(max(*(high - low), max(beam.curve.length for beam in self.model.beams)))
+        position = np.concatenate([mesh.position for mesh in self.model.meshes])
+        return float(max(*np.ptp(position, axis=0), max(beam.curve.length for beam in self.model.beams)))
 
     @cached_property
     def scale(self) -> np.ndarray:
         """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest."""
         scale = np.ones(self.model.size)
-        for mesh in self.model.meshes:
-            scale[mesh.carried.dof[:, :2]] = self.extent
+        for block in self.blocks:
+            scale[block.dof[:, :2]] = self.extent
         return scale
 
 
@@ -273,9 +277,16 @@ def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray
 
     A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
     """
+    return _columns(mesh.carried.carrier, mesh.carried.dof, mesh.vectors)
+
+
+def _columns(
+    carriers: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
+) -> list[tuple[str, np.ndarray, np.ndarray]]:
     result = []
-    for carrier, nodes in mesh.carriers:
-        for column, label in enumerate(labels(carrier, mesh.vectors)):
+    for carrier in np.unique(carriers).tolist():
+        nodes = np.flatnonzero(carriers == carrier)
+        for column, label in enumerate(labels(carrier, vectors)):
             if carrier != TURNED_GRADIENTS or not label.startswith("r_y"):
-                result.append((label, nodes, mesh.carried.dof[nodes, column]))
+                result.append((label, nodes, dof[nodes, column]))
     return result

@@ -1,0 +1,46 @@
+"""The grids of all beams of a model: straight ones that are divided alike are made at once."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from beamfem.curves import Line
+from beamfem.element.fields import Field
+from beamfem.model.beam import Beam
+from beamfem.model.grid import Grid, make_grid
+
+_ENDS = {0.0, 1.0}
+
+
+def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> list[Grid]:
+    """Return the grid of each beam with a node at each of its fractions and at each corner of its curve."""
+    alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
+    grids: dict[int, Grid] = {}
+    for number, (beam, own) in enumerate(zip(beams, fractions, strict=True)):
+        if isinstance(beam.curve, Line) and isinstance(beam.elements, int) and _ENDS.issuperset(own):
+            alike[beam.elements, beam.element.field].append(number)
+        else:
+            grids[number] = make_grid(beam, own)
+    for (elements, field), numbers in alike.items():
+        grids.update(zip(numbers, _straight_grids([beams[i] for i in numbers], elements, field), strict=True))
+    return [grids[number] for number in range(len(beams))]
+
+
+def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
+    """Return the grids of straight beams of equal elements of one field, all the same number."""
+    curves = [beam.curve for beam in beams]
+    length = np.array([curve.length for curve in curves])[:, None]
+    start, end = (np.array([getattr(curve, name) for curve in curves])[:, None] for name in ("start", "end"))
+    vertices = np.linspace(0.0, 1.0, elements + 1) * length
+    last = len(field.nodes) - 1
+    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
+    arc = np.empty((len(beams), node[-1, -1] + 1))
+    arc[:, node] = vertices[:, :-1, None] + np.diff(vertices)[:, :, None] * field.nodes
+    arc[:, -1] = vertices[:, -1]
+    share = (arc / length)[:, :, None]
+    position = (1.0 - share) * start + share * end
+    tangent = np.repeat((end - start) / length[:, :, None], arc.shape[1], axis=1)
+    speed = np.ones(arc.shape[1])
+    parts = zip(beams, vertices, arc, position, tangent, strict=True)
+    return [Grid(beam, ends, ends, 1.0, node, own, at, along, speed) for beam, ends, own, at, along in parts]

@@ -1,0 +1,73 @@
+"""What is done for many members at once is what would be done for each; and its cost."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import splu
+from test_sparse import MATERIAL, SECTION, grid, tangent_at
+
+import beamfem as bf
+from beamfem.model.beam import reference_positions
+from beamfem.model.grid import Grid, make_grid
+from beamfem.model.grids import make_grids
+from beamfem.model.system import System
+
+
+def mixed_beams():
+    """Straight beams of several divisions and elements among others, with fractions of joints."""
+    arc = bf.Arc((0.0, 0.0), 2.0, 0.0, 1.5)
+    bent = bf.Polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0)])
+    axes = [bf.Line((i, 0.3 * i), (2.0 * i + 1.0, -0.7)) for i in range(4)]
+    chosen = [
+        (axes[0], 3, bf.CRBF(2), [0.0, 1.0]),
+        (arc, 4, bf.CRBF(2), [1.0]),
+        (axes[1], 3, bf.CRBF(2), []),
+        (axes[2], 3, bf.ANCF(), [0.4]),
+        (bent, 3, bf.ANCF(), [0.0, 0.5]),
+        (axes[3], (0.0, 0.2, 1.0), bf.CRBF(2), [1.0]),
+        (axes[2], 3, bf.ANCF(), [1.0]),
+    ]
+    beams = [bf.Beam(axis, elements, element, SECTION, MATERIAL) for axis, elements, element, _ in chosen]
+    return beams, [fractions for *_, fractions in chosen]
+
+
+def test_grids_made_at_once_are_those_of_each_beam():
+    beams, fractions = mixed_beams()
+    for beam, own, found in zip(beams, fractions, make_grids(beams, fractions), strict=True):
+        alone = make_grid(beam, own)
+        assert found.beam is beam
+        for name in Grid.__dataclass_fields__:
+            if name != "beam":
+                assert np.array_equal(getattr(found, name), getattr(alone, name)), name
+
+
+def test_points_of_straight_and_other_beams_stand_where_they_are():
+    beams, _ = mixed_beams()
+    points = [beam.at(share) for share in (0.0, 0.3, 1.0) for beam in beams]
+    found, each = reference_positions(points), np.array([point.reference for point in points])
+    assert np.abs(found - each).max() < 1e-14
+    assert reference_positions([]).shape == (0, 2)
+
+
+def test_the_order_of_a_lattice_fills_in_no_more_than_that_of_its_coordinates():
+    """Nodes are ordered instead of coordinates; both orders are of minimum degree."""
+    model, _ = grid(30, 30)
+    system, tangent = tangent_at(model, System(model, static=True).reference)
+    factors = tangent.factorised(system.turned)
+    options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    assert factors.lu.nnz < 1.1 * splu(tangent.matrix, **options).nnz
+
+
+@pytest.mark.parametrize("columns", [4, 24])
+def test_springs_stand_on_the_diagonal(columns):
+    model, ends = grid(columns, columns)
+    spring = bf.Spring(ends[columns, columns][0], (3.0, 5.0), 7.0)
+    sprung = bf.Model(model.beams, [*model.supports, spring], model.loads, model.joints)
+    p = System(model, static=True).reference
+    system, before = tangent_at(model, p)
+    assert (system.unknowns.pattern is None) == (columns == 4)
+    after = tangent_at(sprung, p)[1]
+    nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 2))
+    change = (after.sparse(nothing) - before.sparse(nothing)).toarray()
+    places = np.flatnonzero(np.abs(change).max(axis=1) > 1e-6)
+    assert np.allclose(np.sort(change[places, places]), [3.0, 5.0, 7.0], rtol=1e-9)
+    assert np.count_nonzero(np.abs(change) > 1e-6) == 3

@@ -1,5 +1,6 @@
 """Newton's method for an equilibrium at a fixed load factor."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from enum import Enum
 
@@ -7,6 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
+from beamfem.analysis.halves import correct, halves_of, joined, worth_halving
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -75,7 +77,8 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None:
-        result = _solve_band(system, start, load_factor, newton, held_step)
+        solve = _solve_halves if worth_halving(system) else _solve_band
+        result = solve(system, start, load_factor, newton, held_step)
         if result is not None:
             return result
     p, rest = start.copy(), np.zeros(len(start))
@@ -144,6 +147,34 @@ def _solve_band(
             if ended is not None:
                 return NewtonResult(p, iterations, ended, negative)
         change = np.zeros(len(p)), np.zeros(len(p))
+    return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def _solve_halves(
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray
+) -> NewtonResult | None:
+    """Return the same of a long chain, on two threads; None where it needs pivots."""
+    held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
+    halves = halves_of(system, start, load_factor)
+    load, before = _load_size(system, load_factor), np.inf
+    with ThreadPoolExecutor(2) as pool:
+        for iteration in range(1, newton.iterations + 1):
+            change = (held_step, held_force) if iteration == 1 else None
+            try:
+                size, negative = correct(halves, pool, newton.independent_stresses, change)
+            except LinAlgError:
+                return None
+            if _grown(size):
+                return NewtonResult(start, iteration, Ended.DIVERGED, negative)
+            if _small(size, before, iteration, newton):
+                p, unbalanced, jacobian = joined(halves, pool)
+                largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
+                force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
+                ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
+                if ended is not None:
+                    return NewtonResult(p, iteration, ended, negative)
+            before = size
+        p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 

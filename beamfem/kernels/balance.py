@@ -10,7 +10,7 @@ from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.springs import assemble_springs
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@njit(cache=True, nogil=True, forceinline=True, _nrt=False, error_model="numpy")
 def balance(
     forms, blocks, work, loads, springs, layouts, p, v, a, body, values, row, coefficients, predicted, residual, matrix
 ):
@@ -33,7 +33,7 @@ def balance(
         assemble_springs(springs, p, ck, residual, matrix)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
 def smallest_jacobian(forms, blocks, work):
     """Return the smallest r0' x d of all quadrature points, at the nodal vectors in `work`; negative inside out."""
     smallest = 1.0

@@ -17,32 +17,43 @@ def known_width(half_width: int) -> tuple[float, ...]:
     return (0.0,) * half_width if 1 < half_width <= _LARGEST_KNOWN else ANY_WIDTH
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@njit(cache=True, nogil=True, _nrt=False, fastmath=FAST, error_model="numpy")
 def factor(ab, right, original, window):
     """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
     The diagonal holds the inverse pivots then. right (n,) or empty: eliminated on the way, `solve_upper` does the rest.
-    original (n,): space. window: see `known_width`. Pivots are taken in pairs, so that rows pass through memory half as
-    often.
+    original: space, as many pivots as it is long are taken (n at most); the rows below keep what is left of the matrix,
+    their Schur complement. window: see `known_width`. Pivots are taken in pairs, so that rows pass through memory half
+    as often.
     """
-    n = ab.shape[0]
+    n, count = ab.shape[0], min(ab.shape[0], original.shape[0])
     w = len(window) if len(window) > 1 else ab.shape[1] // 2
     eliminates, worst = right.shape[0] > 0, 1.0
-    for i in range(min(n, w)):
+    for i in range(min(count, w)):
         original[i] = abs(ab[i, w])
-    for k in range(0, n, 2):
+    for k in range(0, count, 2):
         top = ab[k]
-        if k + w < n:
+        if k + w < count:
             original[k + w] = abs(ab[k + w, w])
         if top[w] == 0.0 or original[k] == 0.0:
             return 0.0
         worst = min(worst, abs(top[w]) / original[k])
         inverse = 1.0 / top[w]
         top[w] = inverse
-        if k + 1 == n:
+        if k + 1 == count:
+            for i in range(k + 1, min(n, k + w + 1)):
+                row, offset = ab[i], w + k - i
+                first = row[offset] * inverse
+                row[offset] = first
+                for j in range(1, w + 1):
+                    row[offset + j] -= first * top[w + j]
+                if eliminates:
+                    right[i] -= first * right[k]
+            for j in range(1, w + 1):
+                top[w + j] *= inverse
             break
         below = ab[k + 1]
-        if k + 1 + w < n:
+        if k + 1 + w < count:
             original[k + 1 + w] = abs(ab[k + 1 + w, w])
         first = below[w - 1] * inverse
         below[w - 1] = first
@@ -105,11 +116,14 @@ def solve_lower(lu, x, window):
         x[i] = total
 
 
-@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, nogil=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
 def solve_upper(lu, x, window):
-    """Replace what `solve_lower` left in x (n,) by the solution."""
-    last, n, w = window, lu.shape[0], lu.shape[1] // 2
-    for i in range(n - 1, -1, -1):
+    """Replace what `solve_lower` left in x by the solution; what x holds beyond the rows of lu is known already."""
+    last, n, w = window, x.shape[0], lu.shape[1] // 2
+    if len(window) > 1:
+        for i in range(n - 1, lu.shape[0] - 1, -1):
+            last = _push(last, x[i])
+    for i in range(lu.shape[0] - 1, -1, -1):
         row = lu[i]
         if len(window) > 1:
             total = x[i] * row[len(window)]

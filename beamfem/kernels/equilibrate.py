@@ -11,8 +11,8 @@ from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
-def _take(step, p, scale):
+@njit(cache=True, nogil=True, _nrt=False, fastmath=FAST, error_model="numpy")
+def take(step, p, scale):
     """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
     size = 0.0
     for i in range(p.shape[0]):
@@ -65,7 +65,7 @@ def equilibrate(
         if limits[5] > 0.0:
             _predict(forms, blocks, work, p, step)
         found[0] += 1.0
-        found[2], found[1] = found[1], _take(step, p, scale)
+        found[2], found[1] = found[1], take(step, p, scale)
         if not found[1] <= limits[2]:
             return True
         stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]

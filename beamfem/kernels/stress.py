@@ -10,7 +10,7 @@ from beamfem.kernels.measures import rates, resultants, strains
 from beamfem.kernels.reduce import place_nodes
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
 def predict_stress(form, block, work, p, step, stress):
     """Fill stress (ne, nq, ns) with C (eps + (d eps / de) B dp), B and eps at p, dp = step.
 

@@ -7,8 +7,9 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.analysis.cut_chain import halves_of, worth_cutting
 from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
-from beamfem.analysis.halves import correct, halves_of, joined, worth_halving
+from beamfem.analysis.halves import correct, joined
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -77,7 +78,7 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None:
-        solve = _solve_halves if worth_halving(system) else _solve_band
+        solve = _solve_halves if worth_cutting(system) else _solve_band
         result = solve(system, start, load_factor, newton, held_step)
         if result is not None:
             return result

@@ -1,0 +1,164 @@
+"""Two threads find what one finds: equilibria, iterations, how they end, negative pivots, of chains cut in two."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.analysis import cut_chain, newton
+from beamfem.analysis.newton import Ended, Newton
+from beamfem.model.system import system_of
+
+SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
+EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0
+LINE = bf.Line((0.0, 0.0), (1.0, 0.0))
+ELEMENTS = (bf.CRBF(1, integration="reduced"), bf.CRBF(2), bf.ANCF(), bf.CRBF(4))
+NAMES = [element.name for element in ELEMENTS]
+
+
+def cantilever(beam):
+    loads = bf.PointForce(beam.end, (-0.5 * EI, EI)), bf.PointForce(beam.at(0.3), (0.0, -EI)), bf.Gravity((0.0, -9.81))
+    return bf.Model([beam], [bf.Clamp(beam.start)], loads)
+
+
+def between_pin_and_roller(beam):
+    """Its middle, where it is cut, is loaded; the last element as well, between its nodes."""
+    loads = bf.PointForce(beam.at(0.5), (0.0, -EI)), bf.PointMoment(beam.at(0.97), 0.5 * EI)
+    return bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], loads)
+
+
+def on_springs(beam):
+    """One of them stands where it is cut."""
+    springs = [bf.Spring(beam.at(share), (200.0 * EI, 50.0 * EI), EI) for share in (0.0, 0.5, 1.0)]
+    foundation = bf.Foundation(beam, (EI, 10.0 * EI))
+    loads = bf.PointForce(beam.at(0.25), (0.0, EI)), bf.PointForce(beam.end, (EI, EI))
+    return bf.Model([beam], [*springs, foundation], loads)
+
+
+def moved(beam):
+    """Both ends are, and its middle is held where it is cut."""
+    ends = bf.Prescribed(beam.start, 0.0, 0.0, 0.3), bf.Prescribed(beam.end, ux=-0.01, rotation=-0.2)
+    return bf.Model([beam], [*ends, bf.Prescribed(beam.at(0.5), uy=0.02)])
+
+
+def clamped_where_cut(beam):
+    return bf.Model([beam], [bf.Clamp(beam.at(0.5))], [bf.PointForce(beam.end, (0.0, EI))])
+
+
+def followed(beam):
+    loads = bf.DistributedLoad(beam, (0.0, EI), follower=True), bf.PointForce(beam.end, (0.0, EI), follower=True)
+    return bf.Model([beam], [bf.Clamp(beam.start)], loads)
+
+
+CASES = (cantilever, between_pin_and_roller, on_springs, moved, clamped_where_cut, followed)
+
+
+def beam_of(element, elements=9, curve=LINE):
+    return bf.Beam(curve, elements, element, SECTION, MATERIAL)
+
+
+def both(model, settings=None):
+    """What one thread finds, and two."""
+    system = system_of(model, static=True)
+    start, held = system.reference, np.zeros(model.size)
+    held[system.held_dofs] = system.held_values(1.0) - start[system.held_dofs]
+    given = system, start, 1.0, settings or Newton(), held
+    return newton._solve_band(*given), newton._solve_halves(*given)
+
+
+def assert_alike(model, settings=None):
+    one, two = both(model, settings)
+    assert np.abs(one.state - two.state).max() <= 1e-11
+    assert (one.iterations, one.negative_pivots) == (two.iterations, two.negative_pivots)
+    assert one.ended.good == two.ended.good
+    return one, two
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=NAMES)
+@pytest.mark.parametrize("case", CASES)
+def test_two_threads_find_what_one_finds(case, element):
+    model = case(beam_of(element))
+    one, _ = assert_alike(model)
+    assert one.ended.good
+    assert np.abs(one.state - system_of(model, static=True).reference).max() > 0.01
+
+
+@pytest.mark.parametrize("elements", [2, 3, 8])
+def test_odd_and_even_numbers_of_pivots(elements):
+    assert_alike(cantilever(beam_of(bf.CRBF(2), elements)))
+
+
+def test_the_cut_is_in_the_middle():
+    """With a support there nothing is left to solve between the halves, else what the node has unknown."""
+    for case, shared in ((cantilever, 3), (moved, 2), (clamped_where_cut, 0)):
+        system = system_of(case(beam_of(bf.CRBF(2), 10)), static=True)
+        first, second = cut_chain.halves_of(system, system.reference, 1.0)
+        assert [len(half.free) - half.inner for half in (first, second)] == [shared, shared]
+        assert abs(first.inner - second.inner) <= 3
+        assert len(first.p) + len(second.p) == len(system.reference) + 3
+
+
+def test_a_corner_in_the_middle_is_not_cut():
+    bent = bf.Polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])
+    assert_alike(cantilever(beam_of(bf.CRBF(2), 8, bent)))
+
+
+@pytest.mark.parametrize(("load", "negative"), [(0.9, 0), (1.1, 1), (8.9, 1), (9.1, 2), (25.1, 3)])
+def test_negative_pivots_count_the_buckling_loads_below(load, negative):
+    """Euler: (2 k - 1)^2 pi^2 EI / (4 L^2), k = 1, 2, ..., for a slender clamped column."""
+    section = bf.Rectangle(0.001, 0.001)
+    beam = bf.Beam(LINE, 40, bf.CRBF(2), section, MATERIAL)
+    force = load * np.pi**2 / 4.0 * MATERIAL.youngs_modulus * 0.001**4 / 12.0
+    one, two = assert_alike(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-force, 0.0))]))
+    assert (one.negative_pivots, two.negative_pivots) == (negative, negative)
+
+
+def test_iterations_that_run_out_or_lead_nowhere_end_alike():
+    beam = beam_of(bf.CRBF(2))
+    one, two = assert_alike(cantilever(beam), Newton(iterations=3))
+    assert one.ended is two.ended is Ended.EXHAUSTED
+    assert_alike(cantilever(beam), Newton(independent_stresses=False))
+    far = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1e9 * EI))])
+    one, two = assert_alike(far)
+    assert one.ended is two.ended is Ended.DIVERGED
+
+
+def test_a_singular_tangent_is_left_to_pivots():
+    beam = beam_of(bf.CRBF(2))
+    loose = bf.Model([beam], [bf.Roller(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (1.0, 0.0))])
+    assert both(loose) == (None, None)
+
+
+def test_only_long_single_chains_are_cut(monkeypatch):
+    beam = beam_of(bf.CRBF(2))
+    plain, other = cantilever(beam), beam_of(bf.CRBF(2), curve=bf.Line((1.0, 0.0), (2.0, 0.0)))
+    inclined = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end, (1.0, 1.0))])
+    jointed = bf.Model([beam, other], [bf.Clamp(beam.start)], joints=[bf.Rigid(beam.end, other.start)])
+
+    def worth(model, elements):
+        return cut_chain.worth_cutting(system_of(model, static=True), elements)
+
+    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
+    assert worth(plain, 9)
+    assert not worth(plain, 10)
+    assert not worth(inclined, 9)
+    assert not worth(jointed, 9)
+    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 1)
+    assert not worth(plain, 9)
+
+
+def test_workers_with_one_thread_each_keep_to_it(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    assert cut_chain.usable_cores() == 1
+
+
+def test_a_chain_of_20_000_elements_takes_both_threads_and_is_right(monkeypatch):
+    """P L^2 / EI = 5, L / h = 100, structural forces: tip of the Reissner beam, k_s = 5 / 6."""
+    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
+    calls = []
+    solve = newton._solve_halves
+    monkeypatch.setattr(newton, "_solve_halves", lambda *given: calls.append(1) or solve(*given))
+    beam = bf.Beam(LINE, 20_000, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    force = 5.0 * 2e11 * 0.01**4 / 12.0
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))]))
+    assert solution.position(beam.end)[-1] == pytest.approx((1.0 - 0.38764432832607, 0.71385896416489), abs=1e-10)
+    assert len(calls) == solution.statistics.steps == 1

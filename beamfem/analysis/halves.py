@@ -3,7 +3,9 @@
 Each half eliminates its own unknowns; what is left for those of the shared node, a few rows, is added up and solved.
 """
 
+from collections.abc import Callable
 from concurrent.futures import Executor
+from typing import TypeVar
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -16,19 +18,20 @@ from beamfem.kernels.equilibrate import take
 from beamfem.kernels.stress import predict_stress
 
 _NOTHING = np.empty(0)
+T = TypeVar("T")
 
 # a step (n,) of the held coordinates and what it changes in the residual (n,), on the first step only
 Change = tuple[np.ndarray, np.ndarray] | None
 
 
-def correct(halves: tuple[Half, Half], pool: Executor, predicts: bool, change: Change) -> tuple[float, int]:
-    """Take one step of Newton's method; return its relative size and how many pivots were negative.
+def correct(halves: tuple[Half, Half], pool: Executor, predicts: bool, change: Change) -> tuple[float, np.ndarray]:
+    """Take one step of Newton's method; return its relative size and the pivots of the shared unknowns (s,).
 
     predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError where pivots are
     needed.
     """
     predicted = predicts and change is None
-    left = list(pool.map(lambda half: _eliminate(half, predicted, change), halves))
+    left = _both(pool, lambda half: _eliminate(half, predicted, change), halves)
     # in the second half the shared unknowns stand in reversed order
     schur, right, diagonal = (a + np.flip(b) for a, b in zip(*left, strict=True))
     if change is not None:
@@ -39,10 +42,22 @@ def correct(halves: tuple[Half, Half], pool: Executor, predicts: bool, change: C
     if not np.abs(pivots).min(initial=1.0) > SMALLEST_PIVOT:
         raise LinAlgError("the tangent is singular")
     shared = np.linalg.solve(schur, right)
-    sizes = pool.map(lambda half, known: _advance(half, known, predicts, change), halves, (shared, shared[::-1]))
+    for half, known in zip(halves, (shared, shared[::-1]), strict=True):
+        half.right[half.inner :] = known
+    return float(np.max(_both(pool, lambda half: _advance(half, predicts, change), halves))), pivots
+
+
+def negative_pivots(halves: tuple[Half, Half], shared: np.ndarray) -> int:
+    """Return how many pivots of the last step were negative; shared: those of the shared unknowns."""
     # the factorisation keeps the inverse of each pivot on the diagonal
-    of_all = (pivots, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in halves))
-    return float(np.max(list(sizes))), sum(int((values < 0.0).sum()) for values in of_all)
+    of_all = (shared, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in halves))
+    return sum(int((values < 0.0).sum()) for values in of_all)
+
+
+def _both(pool: Executor, call: Callable[[Half], T], halves: tuple[Half, Half]) -> tuple[T, T]:
+    """Return what a call gives for each half; this thread does one of them."""
+    other = pool.submit(call, halves[1])
+    return call(halves[0]), other.result()
 
 
 def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -59,10 +74,9 @@ def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray,
     return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal
 
 
-def _advance(half: Half, shared: np.ndarray, predicts: bool, change: Change) -> float:
-    """Take the step whose shared unknowns are known; return its relative size."""
+def _advance(half: Half, predicts: bool, change: Change) -> float:
+    """Take the step, whose shared unknowns are known; return its relative size."""
     (form,), (block,), (work,) = half.model[:3]
-    half.right[half.inner :] = shared
     solve_upper(half.rows[: half.inner], half.right, form.window)
     half.step[:] = 0.0 if change is None else change[0][half.place]
     half.step[half.free] = half.right
@@ -73,7 +87,7 @@ def _advance(half: Half, shared: np.ndarray, predicts: bool, change: Change) -> 
 
 def joined(halves: tuple[Half, Half], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:
     """Return state (n,), residual (n,) and the smallest r0' x d of the chain."""
-    smallest = min(pool.map(_balanced, halves))
+    smallest = min(_both(pool, _balanced, halves))
     state, residual = np.zeros((2, halves[1].place.stop))
     for half in halves:
         state[half.place] = half.p

@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
 from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
-from beamfem.analysis.halves import correct, joined
+from beamfem.analysis.halves import correct, joined, negative_pivots
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -158,22 +158,22 @@ def _solve_halves(
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
     load, before = _load_size(system, load_factor), np.inf
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
             try:
-                size, negative = correct(halves, pool, newton.independent_stresses, change)
+                size, pivots = correct(halves, pool, newton.independent_stresses, change)
             except LinAlgError:
                 return None
             if _grown(size):
-                return NewtonResult(start, iteration, Ended.DIVERGED, negative)
+                return NewtonResult(start, iteration, Ended.DIVERGED, negative_pivots(halves, pivots))
             if _small(size, before, iteration, newton):
                 p, unbalanced, jacobian = joined(halves, pool)
                 largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
                 force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
                 ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
                 if ended is not None:
-                    return NewtonResult(p, iteration, ended, negative)
+                    return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots))
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)

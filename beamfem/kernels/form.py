@@ -27,7 +27,7 @@ ANY = Form()
 def known_form(nodes: int, vectors: int, measures: int, window: tuple[float, ...]) -> Form:
     """Return the form with these sizes; cubics and parabolas, with structural forces order 4, have one of their own."""
     if nodes > (5 if measures == STRUCTURAL else 3) or (nodes > 2 and vectors > 2):
-        return Form(window=window)
+        return ANY
     return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures), window)
 
 

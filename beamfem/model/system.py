@@ -15,6 +15,7 @@ from beamfem.kernels.block import (
     ROTATION,
     SHEAR_RIGID,
     STRETCH,
+    STRUCTURAL,
     TURNED_GRADIENTS,
     Block,
     Layout,
@@ -88,6 +89,8 @@ class System:
             return (ANY,) * len(self.blocks)
         block = self.blocks[0]
         nodes = block.node.shape[1]
+        if self.model.joints and block.measures != STRUCTURAL:
+            return (ANY,)
         window = ANY_WIDTH if self.model.joints else known_width(self.layouts[0].half_width)
         return (known_form(nodes, block.scale.shape[1] // nodes, block.measures, window),)
 

@@ -41,7 +41,7 @@ from beamfem.path import Bifurcation, Path, PathState
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
-from beamfem.sweep import sweep
+from beamfem.sweeps.sweep import sweep
 
 __all__ = [
     "ANCF",

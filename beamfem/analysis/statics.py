@@ -16,6 +16,7 @@ from beamfem.validation import count
 _SMALLEST_STEP = 1e-6
 _EASY_ITERATIONS = 8
 _STABILITY_STEP = 1.0 / 64.0  # of the load; larger steps must not lose stability
+_AT_REST = "nothing acts at load factor 0"
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 
 
@@ -79,11 +80,14 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
 
 def _unloaded(system: System) -> NewtonResult | None:
     """Return the reference as the equilibrium at load factor 0 where nothing acts yet, else None."""
-    p, rest = system.reference, np.zeros(system.model.size)
-    balanced = np.abs(residual(system, p, rest, rest, 0.0)).max() <= round_off_floor(system, p)
-    if balanced and np.array_equal(system.held_values(0.0), p[system.held_dofs]):
-        return NewtonResult(p, 0, Ended.CONVERGED)
-    return None
+    p = system.reference
+    if _AT_REST not in system.proven:
+        rest = np.zeros(p.shape)
+        balanced = np.abs(residual(system, p, rest, rest, 0.0)).max() <= round_off_floor(system, p)
+        if not balanced or not np.array_equal(system.held_values(0.0), p[system.held_dofs]):
+            return None
+        system.proven.add(_AT_REST)
+    return NewtonResult(p, 0, Ended.CONVERGED)
 
 
 class _Record:

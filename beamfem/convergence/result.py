@@ -10,7 +10,7 @@ import numpy as np
 
 from beamfem import tabulate
 from beamfem.convergence.curve import Curve
-from beamfem.tasks import Failure
+from beamfem.sweeps.tasks import Failure
 
 EXPLANATION = (
     "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "

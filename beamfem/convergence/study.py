@@ -9,11 +9,11 @@ import numpy as np
 from beamfem.convergence.curve import Curve, judge
 from beamfem.convergence.result import Convergence
 from beamfem.errors import InputError
-from beamfem.parameters import assignments, check_call, combinations, labels, split
 from beamfem.progress import progress
-from beamfem.tasks import Failure, TaskRunner
+from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.tasks import Failure, TaskRunner
+from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import finite, positive
-from beamfem.workers import ExecutorFactory, Outcome
 
 MOST_DOUBLINGS = 8
 

@@ -123,17 +123,19 @@ def advance(
 ):
     """March through the steps of `inputs`; return how many were completed.
 
-    turned: numbers (nt,) and normals (nt, 2) of inclined rollers. state: p, p', p'', auxiliary acceleration (4, n),
-    advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams, 4), point values of each block
-    (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of the correction relative to
-    `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last tangent, the same flat,
-    differences of p'' (3, n), and statistics (8,): iterations, most iterations in a step, last correction, worst pivot
-    ratio, rate of convergence of the last step (negative: its tangent is of no use), number of tangents, order of
-    extrapolation, and what the last change of p'' changed in p. space: see `working_space`.
+    turned: numbers (nt,) and normals (nt, 2) of inclined rollers. pairs (np, 3): see `corotate.turn`. state: p, p',
+    p'', auxiliary acceleration (4, n), advanced in place. inputs: held values (steps, 3, nh), body (steps or 1, beams,
+    4), point values of each block (steps or 1, nl, 3). rule: step, alpha_m, alpha_f, gamma, beta. limits: tolerance of
+    the correction relative to `scale` (n,), largest number of iterations. memory: factors (unknown, width) of the last
+    tangent, the same flat, differences of p'' (3, n), vectors d (N, 2) of the nodes when that tangent was formed and
+    how far (N, 2) they have turned since, and statistics (8,): iterations, most iterations in a step, last correction,
+    worst pivot ratio, rate of convergence of the last step (negative: its tangent is of no use), number of tangents,
+    order of extrapolation, and what the last change of p'' changed in p. space: see `working_space`.
     saving: rows (steps, 3, n), number of the first step, and how many steps make a row.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
-    keep the tangent, over steps as well, and stop where the estimated error is small (Hairer and Wanner 1996, IV.8).
+    keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
+    and Wanner 1996, IV.8).
     """
     held_values, body, point_values = inputs
     lu, matrix, differences, kept, turns, statistics = memory

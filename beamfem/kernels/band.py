@@ -9,12 +9,12 @@ from numba import njit
 
 FAST = {"contract", "reassoc", "nsz"}
 ANY_WIDTH = (0.0,)
-_LARGEST_KNOWN = 14
+_KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
 
 
 def known_width(half_width: int) -> tuple[float, ...]:
-    """Return a window of zeros of this half width, a type that has compiled code of its own; one for all beyond 14."""
-    return (0.0,) * half_width if 1 < half_width <= _LARGEST_KNOWN else ANY_WIDTH
+    """Return a window of zeros of this half width, a type that has compiled code of its own, or one for all others."""
+    return (0.0,) * half_width if half_width in _KNOWN else ANY_WIDTH
 
 
 @njit(cache=True, nogil=True, _nrt=False, fastmath=FAST, error_model="numpy")

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 from numba import njit
 
-from beamfem.kernels.band import ANY_WIDTH, known_width
+from beamfem.kernels.band import ANY_WIDTH
+from beamfem.kernels.block import STRUCTURAL
 
 
 class Form(NamedTuple):
@@ -23,11 +24,10 @@ class Form(NamedTuple):
 ANY = Form()
 
 
-def known_form(nodes: int, vectors: int, measures: int, half_width: int) -> Form:
-    """Return the form with these sizes; lines up to fourth order and cubics have one of their own."""
-    window = known_width(half_width)
-    if nodes > 5 or (nodes > 2 and vectors > 2):
-        return Form(window=window)
+def known_form(nodes: int, vectors: int, measures: int, window: tuple[float, ...]) -> Form:
+    """Return the form with these sizes; cubics and parabolas, with structural forces order 4, have one of their own."""
+    if nodes > (5 if measures == STRUCTURAL else 3) or (nodes > 2 and vectors > 2):
+        return ANY
     return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures), window)
 
 

@@ -51,6 +51,9 @@ def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined:
             dofs = reordered
     free = _numbers(dofs, size)
     half_width = _half_width(blocks, free)
+    if not joined:
+        # short beams have the band of long ones, for which there is compiled code
+        half_width = max(half_width, *(int((block.dof >= 0)[block.node[:1]].sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)

@@ -8,12 +8,14 @@ import numpy as np
 
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
+from beamfem.kernels.band import ANY_WIDTH, known_width
 from beamfem.kernels.block import (
     ELASTIC_LINE,
     GRADIENTS,
     ROTATION,
     SHEAR_RIGID,
     STRETCH,
+    STRUCTURAL,
     TURNED_GRADIENTS,
     Block,
     Layout,
@@ -79,13 +81,18 @@ class System:
 
     @cached_property
     def forms(self) -> tuple[Form, ...]:
-        """What compiled code knows in advance of each block; of one block only, so that few kinds are compiled."""
+        """What compiled code knows in advance of each block; so that few kinds are compiled, of one block only.
+
+        The band's width is known of beams that are not joined: it is that of their elements, that of frames may be any.
+        """
         if len(self.blocks) > 1:
             return (ANY,) * len(self.blocks)
         block = self.blocks[0]
         nodes = block.node.shape[1]
-        half_width = self.layouts[0].half_width
-        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures, half_width),)
+        if self.model.joints and block.measures != STRUCTURAL:
+            return (ANY,)
+        window = ANY_WIDTH if self.model.joints else known_width(self.layouts[0].half_width)
+        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures, window),)
 
     def workspaces(self, stresses: Sequence[np.ndarray] | None = None) -> tuple[Work, ...]:
         """Return new space for the kernels, of each block; stresses (ne, nq, ns): for the geometric tangent."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
-from beamfem.workers import ExecutorFactory, Outcome, Point, call, call_all, open_executor, workers
+from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, open_executor, workers
 
 _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from beamfem import tabulate
 from beamfem.errors import InputError
-from beamfem.keys import function_form, point_key
-from beamfem.parameters import assignments, check_call, combinations, labels, split
 from beamfem.progress import progress
-from beamfem.store import Store
-from beamfem.tasks import Failure, TaskRunner
-from beamfem.workers import ExecutorFactory, Outcome
+from beamfem.sweeps.keys import function_form, point_key
+from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.store import Store
+from beamfem.sweeps.tasks import Failure, TaskRunner
+from beamfem.sweeps.workers import ExecutorFactory, Outcome
 
 _ROWS_PRINTED = 40
 

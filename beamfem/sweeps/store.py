@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.workers import Outcome
+from beamfem.sweeps.workers import Outcome
 
 
 class Store:

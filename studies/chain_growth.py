@@ -6,6 +6,7 @@ it beyond that of a small model. Memory counts model, solver and what is kept of
 """
 
 import multiprocessing
+import os
 import resource
 import sys
 import time
@@ -41,6 +42,7 @@ HEADER = (
 
 def measure(analysis: str, name: str, elements: int) -> tuple[object, ...]:
     """Return what a row holds behind the number of elements, without the ratio to the smallest."""
+    os.environ["OMP_NUM_THREADS"] = "1"  # chains this long would take two threads
     with threadpool_limits(1):
         _solve(analysis, _model(analysis, name, 4))
         before = _peak()

@@ -24,7 +24,7 @@ from beamfem.validation import count, positive
 _TOLERANCE = 1e-9
 _ITERATIONS = 25
 _CHUNK_SECONDS = 0.25
-_FIRST_CHUNK = 20_000  # coordinates times steps
+_FIRST_CHUNK = 200_000  # coordinates times steps
 # weights of first and second derivative, times 12; a function of time need not exist before the start
 _CENTRAL = (np.array([1, -8, 0, 8, -1]), np.array([-1, 16, -30, 16, -1]), (-2, -1, 0, 1, 2))
 _FORWARD = (np.array([-25, 48, -36, 16, -3]), np.array([35, -104, 114, -56, 11]), (0, 1, 2, 3, 4))

@@ -14,7 +14,7 @@ from beamfem.model.system import System
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 24, 16, 0.5
-_REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
+_REMAINDER = 1e-5  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
 _SHARE = 1e-8  # of what a change of acceleration changes in a step, so that errors left behind do not add up
 
 

@@ -12,7 +12,7 @@ FAST = {"contract", "reassoc", "nsz"}
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
-_REMAINDER = 1e-3  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
+_REMAINDER = 1e-5  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
 # behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _SHARE = 1e-8

@@ -8,6 +8,7 @@ never were cheaper at an error below 1e-2 m.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from peer_cases import (
@@ -78,7 +79,7 @@ def static_runs() -> list[Run]:
                     count,
                     1,
                     (error, error),
-                    lambda model=model: bf.solve_static(model),
+                    partial(bf.solve_static, model),
                     element,
                 )
             )
@@ -89,7 +90,7 @@ def static_runs() -> list[Run]:
                 for solver in (DENSE, SPARSE) if count <= 16 else (SPARSE,):
                     other.equilibrium(load_steps, solver)
                     error = static_error(other.tip_position())
-                    task = lambda other=other, chosen=(load_steps, solver): other.equilibrium(*chosen)  # noqa: E731
+                    task = partial(other.equilibrium, load_steps, solver)
                     if error < 0.1:  # else it did not converge
                         runs.append(_timed(f"Exudyn, {kind}", count, load_steps, (error, error), task))
     return runs
@@ -104,7 +105,7 @@ def motion_runs(steps: Iterable[int] = STEPS) -> list[Run]:
             model = pendulum(element, count)
             for number in steps:
                 errors = motion_errors(tips_of(swing(model, number)), REISSNER_TIPS)
-                runs.append(_timed(name, count, number, errors, lambda m=model, n=number: swing(m, n), element))
+                runs.append(_timed(name, count, number, errors, partial(swing, model, number), element))
     for kind, meshes in PEER_MOTION_MESHES.items():
         for count in meshes:
             other = peer(kind, count, PENDULUM)
@@ -112,7 +113,7 @@ def motion_runs(steps: Iterable[int] = STEPS) -> list[Run]:
             for number in steps:
                 other.motion(number, 1.0, solver)
                 errors = motion_errors(other.tip_positions(), REISSNER_TIPS)
-                task = lambda p=other, n=number, s=solver: p.motion(n, 1.0, s)  # noqa: E731
+                task = partial(other.motion, number, 1.0, solver)
                 runs.append(_timed(f"Exudyn, {kind}", count, number, errors, task))
     return runs
 

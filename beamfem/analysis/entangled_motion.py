@@ -8,14 +8,12 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import linearise, residual
 from beamfem.analysis.tangent import Factorised
-from beamfem.kernels.advance import complete, correct, predict
+from beamfem.kernels.advance import complete, correct, judge, predict
 from beamfem.model.system import System
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 24, 16, 0.5
-_REMAINDER = 1e-5  # of the tolerance, of the estimated error where the tangent is not that of the last iterate
-_SHARE = 1e-8  # of what a change of acceleration changes in a step, so that errors left behind do not add up
 
 
 class EntangledMotion:
@@ -88,14 +86,7 @@ class EntangledMotion:
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[7])
-            elif last <= self.tolerance and size <= self.tolerance and size > 0.5 * last:
-                # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
-                done = True
-                break
-            else:
-                rate = size / last if last > 0.0 else 0.0
-            bound = min(_REMAINDER * self.tolerance, _SHARE * first_size)
-            done = size <= self.tolerance if full else rate < 1.0 and rate * size <= (1.0 - rate) * bound
+            done, rate = judge(iteration, size, last, rate, first_size, self.tolerance, full)
             if not np.isfinite(size) or (not full and iteration > 1 and rate >= 0.5):
                 break
         statistics[1] = max(statistics[1], iteration)

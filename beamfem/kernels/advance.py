@@ -63,6 +63,23 @@ def correct(state, right, free, inverse_scale, coefficients):
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
+def judge(iteration, size, last, rate, changed, tolerance, full):
+    """Return whether a step is done after a correction, and the rate at which corrections shrink.
+
+    size, last: this correction and the one before; rate: what is known of it so far; changed: what a change of
+    acceleration changes in the step; full: each correction has its own tangent.
+    """
+    if iteration > 1:
+        if last <= tolerance and size <= tolerance and size > 0.5 * last:
+            # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
+            return True, rate
+        rate = size / last if last > 0.0 else 0.0
+    if full:
+        return size <= tolerance, rate
+    return rate < 1.0 and rate * size <= (1.0 - rate) * min(_REMAINDER * tolerance, _SHARE * changed), rate
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
 def restore(state, before):
     """Return to the state before the step."""
     for i in range(state.shape[1]):
@@ -186,14 +203,7 @@ def advance(
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[7])
-            elif last <= limits[0] and size <= limits[0] and size > 0.5 * last:
-                # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
-                done = True
-                break
-            else:
-                rate = size / last if last > 0.0 else 0.0
-            bound = min(_REMAINDER * limits[0], _SHARE * first_size)
-            done = size <= limits[0] if full else rate < 1.0 and rate * size <= (1.0 - rate) * bound
+            done, rate = judge(iteration, size, last, rate, first_size, limits[0], full)
             if done or (full and not np.isfinite(size)):
                 break
             if not full and not (iteration < _MOST and (iteration < 2 or rate < 0.5)):

@@ -25,6 +25,7 @@ from beamfem.validation import positive
 
 _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
+_LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
 _UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
 
@@ -63,6 +64,8 @@ class Buckling:
 
         mode: its row; amplitude [m] of the largest displacement, by default a tenth of the longest beam.
         """
+        if len(self) == 0:
+            raise InputError(f"there is no critical point: {self.ended}")
         if mode not in range(len(self)):
             raise InputError(f"mode must be between 0 and {len(self) - 1}, got {mode!r}")
         if amplitude is None:
@@ -97,13 +100,14 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     path = LoadingPath(system, p, load_factor)
     slope = path.start.tangent[:-1] / path.start.tangent[-1]
     linearised = linearised_loads(system, p, load_factor, slope, count)
+    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
     if not len(linearised):
         raise InputError(
-            "no positive load factor is critical where the path starts, the loads stiffen the model; if they soften it "
-            "later, trace_equilibrium finds where"
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
         )
-    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
-    found, ended = path_criticals(path, count)
+    farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+    found, ended = _criticals(path, count, farthest)
     if not found and path.lost:
         raise ConvergenceError(
             f"the loading path was lost before any load factor was critical: {ended}", path.solution()
@@ -148,7 +152,7 @@ def _stable_start(system: System, about: State | Solution | None) -> tuple[np.nd
     return p, load_factor
 
 
-def path_criticals(path: LoadingPath, count: int) -> tuple[list[Critical], str]:
+def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str]:
     """Return the first `count` critical points of a path up to its first limit point, and why there are no more."""
     found: list[Critical] = []
     here = path.start
@@ -163,7 +167,7 @@ def path_criticals(path: LoadingPath, count: int) -> tuple[list[Critical], str]:
         except ConvergenceError as error:
             path.lost = True
             return found, str(error)
-        path.points.append(here)
+        path.add(here)
         for point in more:
             found.append(point)
             if point.kind == LIMIT_POINT:
@@ -172,4 +176,6 @@ def path_criticals(path: LoadingPath, count: int) -> tuple[list[Critical], str]:
             return found[:count], f"{count} are asked for"
         if path.moved(here) > _LARGEST_MOVEMENT:
             return found, "the model has moved by more than its own length"
+        if here.load_factor > farthest:
+            return found, f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
     return found, f"the {_MOST_POINTS} points of the path are used up"

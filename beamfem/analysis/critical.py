@@ -11,8 +11,7 @@ import numpy as np
 
 from beamfem.analysis.continuation import PathPoint
 from beamfem.analysis.loading_path import LoadingPath, PathLostError
-from beamfem.analysis.newton import round_off_floor
-from beamfem.analysis.window import Window, Zero
+from beamfem.analysis.window import Window, Zero, on_path, smooth
 
 BIFURCATION = "bifurcation"
 LIMIT_POINT = "limit point"
@@ -22,6 +21,8 @@ _CLEAR = 1.2  # times the radius: where the nearest critical point outside may b
 _RADII = 0.2 * 0.3 ** np.arange(8)  # of the step in which a critical point lies
 _RECENTRED = 4
 _IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
+_ROUND_OFF = 30.0  # times the force along a mode that is left: how far round-off may bend a path
+_SMOOTH = 0.03  # of a step: how far its inside may lie from where its ends foretell it
 _EXACT = 1e-12  # of the load: no smaller window is tried
 
 
@@ -42,15 +43,38 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
     """Return the first critical points between two points of a path, those that lie close together, and a point behind
     them up to which there are no others; none and `after` where nothing changes in between. Raises PathLostError.
     """
+    middle = _between(path, before, after)
+    if Search(path, before, middle).changes:
+        after = middle
     while True:
         search = Search(path, before, after)
-        place = search.estimate()
-        if place is None:
+        if not search.changes:
             return [], after
-        found, first, last = search.located(place)
-        if search.distance(first) <= 0.0 or Search(path, before, first).estimate() is None:
+        found, first, last = search.located(search.estimate())
+        if search.distance(first) <= 0.0 or not Search(path, before, first).changes:
             return found, last
         after = first
+
+
+def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoint:
+    """Return a point inside a step, where the load's slope differs most from those at the ends.
+
+    Raises PathLostError where the path is not the smooth one that the ends foretell: they lie on different paths.
+    """
+    normal = path.normal(before, after)
+    reach = path.line.dot(normal, after.y - before.y)
+    slopes = [reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after)]
+    rise = after.load_factor - before.load_factor
+    curvature = slopes[0] + slopes[1] - 2.0 * rise
+    share = 0.5
+    if curvature != 0.0:
+        extreme = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
+        share = extreme if 0.1 < extreme < 0.9 else 0.5
+    foretold = smooth(path, normal, (before, after), share * reach)
+    found = on_path(path, normal, (before, after), share * reach)
+    if path.line.length(found.y - foretold) > _SMOOTH * path.line.length(after.y - before.y):
+        raise PathLostError("the path turns too sharply")
+    return found
 
 
 class Search:
@@ -59,15 +83,20 @@ class Search:
     def __init__(self, path: LoadingPath, before: PathPoint, after: PathPoint) -> None:
         self.path, self.line = path, path.line
         self.before, self.after = before, after
-        chord = after.y - before.y
-        self.normal = self.line.plane(chord / self.line.length(chord))
+        self.normal = path.normal(before, after)
         self.reach = self.distance(after)
 
     def distance(self, point: PathPoint) -> float:
         return self.line.dot(self.normal, point.y - self.before.y)
 
-    def estimate(self) -> float | None:
-        """Return about where the first critical point lies, None where stability and the slope of the load stay."""
+    @property
+    def changes(self) -> bool:
+        """Whether stability or the slope of the load is another at the end."""
+        turns = self.before.tangent[-1] * self.after.tangent[-1] < 0.0
+        return turns or self.before.negative_pivots != self.after.negative_pivots
+
+    def estimate(self) -> float:
+        """Return about where the first critical point lies."""
         ends, places = (self.before, self.after), []
         unstable = sorted(point.negative_pivots for point in ends)
         if unstable[0] < unstable[1]:
@@ -76,7 +105,7 @@ class Search:
         slopes = [point.tangent[-1] for point in ends]
         if slopes[0] * slopes[1] < 0.0:
             places.append(slopes[0] / (slopes[0] - slopes[1]))
-        return self.reach * min(places) if places else None
+        return float(self.reach * min(places))
 
     def located(self, place: float) -> tuple[list[Critical], PathPoint, PathPoint]:
         """Return the critical points next to a place and the ends of the window that they were found in.
@@ -92,7 +121,12 @@ class Search:
             if not inside or len(inside) < len(zeros) or not window.alike:
                 before = []
                 continue
-            found = self._read(window, inside)
+            try:
+                found = self._read(window, inside)
+            except PathLostError:
+                if best is None:
+                    raise
+                break
             if len(found) == len(before):
                 found = [
                     replace(one, uncertainty=abs(one.load_factor / other.load_factor - 1.0))
@@ -148,9 +182,9 @@ class Search:
         largest = float(np.max(np.abs(mode) / system.scale))
         basis = np.column_stack([shares**0, shares, shares**2, shares**3, 1.0 / shares])
         bend = largest * abs(np.linalg.lstsq(basis, window.aside(mode))[0][-1])
-        floor = round_off_floor(system, window.rows[0, :-1]) * float(np.linalg.norm(mode[system.free_dofs]))
+        left = max(abs(float(mode @ self.path.unbalanced(point))) for point in window.points)
         stiffness = min(float(np.abs(soft.values).min()) for soft in window.softest)
-        if bend > max(_IMPERFECT, floor * largest / stiffness):
+        if bend > max(_IMPERFECT, _ROUND_OFF * left * largest / stiffness):
             raise PathLostError("the path bends aside")
 
 

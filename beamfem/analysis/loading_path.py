@@ -19,6 +19,7 @@ _FIRST_STEP = 0.02
 _LARGEST_TURN = 0.3  # [rad] of the path's tangent in a step
 _LARGEST_CORRECTION = 0.3  # of a step
 _GROWTH = 3.0
+_REFUSALS = 12  # of steps from one point in which critical points cannot be told apart
 
 
 class PathLostError(BeamfemError):
@@ -40,8 +41,8 @@ class LoadingPath:
         self.system = system
         self.line, self.start = begin(system, p, load_factor, Newton(iterations=_ITERATIONS))
         self.points = [self.start]
-        self.size = _FIRST_STEP
-        self.lost = False
+        self.size = self._next_size = _FIRST_STEP
+        self.refused, self.lost = 0, False
         self._shift = 0.0
 
     def advance(self, point: PathPoint) -> PathPoint:
@@ -57,7 +58,8 @@ class LoadingPath:
                 aside = self.line.length(following.y - point.y - change)
                 turn = float(np.arccos(np.clip(self.line.dot(following.tangent, point.tangent), -1.0, 1.0)))
                 if aside <= _LARGEST_CORRECTION * size and turn <= _LARGEST_TURN:
-                    self.size = size * min(_GROWTH, 0.5 * _LARGEST_TURN / max(turn, 1e-12))
+                    self.size = size
+                    self._next_size = size * min(_GROWTH, 0.5 * _LARGEST_TURN / max(turn, 1e-12))
                     return following
                 reason = "the path turns too sharply"
             size *= 0.5
@@ -66,9 +68,28 @@ class LoadingPath:
 
     def shorten(self, point: PathPoint) -> bool:
         """Shorten the next step; tell whether it is still worth taking."""
-        self.size = 0.5 * min(self.size, longest_step(self.line, point))
-        self.lost = too_small(self.line, point, self.size)
+        self.size *= 0.5
+        self.refused += 1
+        self.lost = self.refused > _REFUSALS or too_small(self.line, point, self.size)
         return not self.lost
+
+    def add(self, point: PathPoint) -> None:
+        """Add a point up to which all critical points are known."""
+        self.points.append(point)
+        self.refused = 0
+        self.size = self._next_size
+
+    def normal(self, before: PathPoint, after: PathPoint) -> np.ndarray:
+        """Return the direction (n + 1,) that places between two points are measured along."""
+        chord = after.y - before.y
+        return self.line.plane(chord / self.line.length(chord))
+
+    def unbalanced(self, point: PathPoint) -> np.ndarray:
+        """Return the residual (n,) of the unknown coordinates that is left at a point."""
+        result = np.zeros(len(point.y) - 1)
+        left = Pencil(self.system, point.y[:-1], point.load_factor).unbalanced
+        result[self.system.free_dofs] = left
+        return result
 
     def moved(self, point: PathPoint) -> float:
         """Return the largest movement of a node from the start, in lengths of the model."""

@@ -80,7 +80,8 @@ def _alike(squares: np.ndarray) -> list[slice]:
         last = len(squares)
         if len(far):
             inside = np.arange(first + 1, first + int(far[0]) + 1)
-            last = int(inside[np.argmax(squares[inside] / np.maximum(squares[inside - 1], 1e-300))])
+            shares = np.abs(squares[inside - 1]) / squares[inside]
+            last = int(inside[np.argmin(shares)])
         result.append(slice(first, last))
         first = last
     return result

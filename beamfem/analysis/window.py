@@ -52,7 +52,7 @@ class Window:
         Raises PathLostError, ConvergenceError.
         """
         at = centre + radius * _NODES
-        points = [_on_path(path, normal, ends, x) for x in at]
+        points = [on_path(path, normal, ends, x) for x in at]
         count = max(point.negative_pivots for point in points) + _SPARE
         softest = [path.softest(point, count) for point in points]
         slopes = np.array([point.tangent[-1] / path.line.dot(normal, point.tangent) for point in points])
@@ -151,18 +151,22 @@ class Window:
         return np.asarray(self.rows[:, self.free] @ (self.mass @ mode[self.free]))
 
 
-def _on_path(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> PathPoint:
-    """Return the point of a path at a distance from the first of two others. Raises PathLostError."""
+def on_path(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> PathPoint:
+    """Return the point of a path at a distance along a normal from the first of two others. Raises PathLostError."""
+    before, after = (end.y for end in ends)
+    nearest = before if 2.0 * x < path.line.dot(normal, after - before) else after
+    return path.corrected(smooth(path, normal, ends, x), nearest, normal, after - before)
+
+
+def smooth(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> np.ndarray:
+    """Return coordinates and load factor (n + 1,) on the cubic through two points of a path, or its tangents beyond."""
     before, after = (end.y for end in ends)
     slopes = [end.tangent / path.line.dot(normal, end.tangent) for end in ends]
     reach = path.line.dot(normal, after - before)
     if x <= 0.0:
-        start, base = before + x * slopes[0], before
-    elif x >= reach:
-        start, base = after + (x - reach) * slopes[1], after
-    else:
-        t = x / reach
-        start = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * before + t**2 * (3.0 - 2.0 * t) * after
-        start += reach * t * (1.0 - t) * ((1.0 - t) * slopes[0] - t * slopes[1])
-        base = before if t < 0.5 else after
-    return path.corrected(start, base, normal, after - before)
+        return np.asarray(before + x * slopes[0])
+    if x >= reach:
+        return np.asarray(after + (x - reach) * slopes[1])
+    t = x / reach
+    place = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * before + t**2 * (3.0 - 2.0 * t) * after
+    return np.asarray(place + reach * t * (1.0 - t) * ((1.0 - t) * slopes[0] - t * slopes[1]))

@@ -25,7 +25,15 @@ from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
-from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
+from beamfem.errors import (
+    BeamfemError,
+    ConvergenceError,
+    FreeMotionError,
+    InputError,
+    LimitPointError,
+    UnknownPointError,
+    UnstableWarning,
+)
 from beamfem.io.cad import read_dxf
 from beamfem.io.frame import Frame
 from beamfem.io.mesh import LineMesh, read_mesh
@@ -41,6 +49,7 @@ from beamfem.path import Bifurcation, Path, PathState
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
+from beamfem.status import Status
 from beamfem.sweeps.sweep import sweep
 
 __all__ = [
@@ -77,6 +86,7 @@ __all__ = [
     "Lagrange",
     "Layer",
     "Layered",
+    "LimitPointError",
     "Line",
     "LineMesh",
     "Material",
@@ -105,9 +115,11 @@ __all__ = [
     "SplitContinuum",
     "Spring",
     "State",
+    "Status",
     "Structural",
     "Tube",
     "UnknownPointError",
+    "UnstableWarning",
     "converge",
     "elliptic_arc",
     "graded",

@@ -19,16 +19,22 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.postprocess import Fields, SectionForces
+from beamfem.status import Status
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence."""
+    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
+
+    status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
+    """
 
     iterations: int
     steps: int
     cuts: int
     ended: str
+    status: Status = Status.COMPLETED
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +67,8 @@ class Energy:
 class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
-    at (steps,): load factors or times [s]; p, v, a (steps, n).
+    at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
+    equilibrium, where the solver knows it.
     """
 
     model: Model
@@ -71,11 +78,13 @@ class Solution:
     v: np.ndarray
     a: np.ndarray
     statistics: Statistics
+    stability: np.ndarray | None = None
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
-        return f"{type(self).__name__}({len(self.at)} states, {span}, of {self.model!r})"
+        unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r})"
 
     def __len__(self) -> int:
         return len(self.at)
@@ -107,7 +116,33 @@ class Solution:
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
-        return Solution(self.model, self.static, *parts, self.statistics)
+        stability = None if self.stability is None else self.stability[rows]
+        return Solution(self.model, self.static, *parts, self.statistics, stability)
+
+    @property
+    def status(self) -> Status:
+        """How the solve ended."""
+        return self.statistics.status
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what to know before using the numbers; empty where there is nothing to say."""
+        return self.statistics.warnings
+
+    @cached_property
+    def stable(self) -> np.ndarray:
+        """Return whether each row is a stable equilibrium (steps,): no small motion about it grows.
+
+        Without follower loads: the tangent has no negative eigenvalue (Lagrange and Dirichlet). With them, no mode of
+        vibration diverges or flutters. Raises InputError for a motion.
+        """
+        if not self.static:
+            raise InputError("stable is asked of the rows of a static solution; this one is a motion")
+        if self.stability is not None:
+            return self.stability
+        from beamfem.analysis.stability import stable_rows
+
+        return stable_rows(self)
 
     @property
     def time(self) -> np.ndarray:

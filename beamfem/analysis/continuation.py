@@ -40,11 +40,15 @@ class PathPoint:
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """The last y (n + 1,) of an iteration, how many iterations it took and why it ended."""
+    """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
+
+    negative_pivots: fewest and most of the tangents on the way.
+    """
 
     y: np.ndarray
     iterations: int
     ended: Ended
+    negative_pivots: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +114,13 @@ class Continuation:
 
         stresses: of the first geometric tangent, as they were predicted for `start`.
         """
-        y, last = self.hold(start), np.inf
+        y, last, counts = self.hold(start), np.inf, []
         for iteration in range(1, self.newton.iterations + 1):
             try:
-                balance, along, _ = self._solve(y, stresses)
+                balance, along, factors = self._solve(y, stresses)
             except (LinAlgError, ValueError):
                 return Corrected(y, iteration, Ended.SINGULAR)
+            counts.append(factors.negative_pivots)
             reach = self.dot(normal, along)
             if reach == 0.0:
                 return Corrected(y, iteration, Ended.SINGULAR)
@@ -126,7 +131,7 @@ class Continuation:
             y = new
             ended = verdict(self.system, y[:-1], float(y[-1]), self.newton, iteration, (size, last))
             if ended is not None:
-                return Corrected(y, iteration, ended)
+                return Corrected(y, iteration, ended, (min(counts), max(counts)))
             last = size
         return Corrected(y, self.newton.iterations, Ended.EXHAUSTED)
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.bifurcations import Crossing, bifurcations
-from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.continuation import Continuation, Corrected, PathPoint
 from beamfem.analysis.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
@@ -63,6 +63,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
         new = line.linearised(corrected.y, point.tangent)
     except (LinAlgError, ValueError):
         return Refused("the tangent is singular", corrected.iterations)
+    if _crosses_over(line, (point, new), corrected):
+        return Refused("another path lies between the start and the end of the step", corrected.iterations)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
@@ -75,3 +77,16 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))
+
+
+def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:
+    """Tell whether the correction went through states of another count of negative pivots than those of both ends.
+
+    So it does from one side of an imperfect bifurcation to the branch on the other side. Where loads follow, only the
+    sign of the determinant counts, which an odd number of negative pivots makes negative.
+    """
+    counts = [end.negative_pivots for end in ends]
+    fewest, most = corrected.negative_pivots
+    if line.system.symmetric:
+        return fewest < min(counts) or most > max(counts)
+    return fewest == most and counts[0] % 2 == counts[1] % 2 != most % 2

@@ -1,0 +1,88 @@
+"""Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.continuation import Continuation, PathPoint, begin
+from beamfem.analysis.critical_points import Segment, SegmentLostError
+from beamfem.analysis.newton import Newton
+from beamfem.analysis.steps import Step, longest_step, take_step, too_small
+from beamfem.errors import BeamfemError
+from beamfem.model.system import System
+
+_FIRST_STEP = 1e-2  # along the path, see Continuation
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A point of the path, how many iterations it took and how many steps were refused on the way to it."""
+
+    point: PathPoint
+    iterations: int
+    cuts: int
+
+
+class PathLostError(BeamfemError):
+    """The path could not be followed: why, after how many iterations and refused steps."""
+
+    def __init__(self, reason: str, iterations: int, cuts: int) -> None:
+        super().__init__(reason)
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+class TurnsBackError(BeamfemError):
+    """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path behind it."""
+
+    def __init__(self, limit: np.ndarray, beyond: np.ndarray, iterations: int, cuts: int) -> None:
+        super().__init__(f"the path turns back at load factor {limit[-1]:.6g}")
+        self.limit = limit
+        self.beyond = beyond
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+def follow_path(system: System, p: np.ndarray, load_factor: float, target: float, newton: Newton) -> Iterator[Followed]:
+    """Yield the points of the path from the equilibrium p (n,) to a larger load factor, that one last.
+
+    Raises TurnsBackError at a limit point, PathLostError where no step along the path is accepted.
+    """
+    try:
+        line, point = begin(system, p, load_factor, newton)
+    except (LinAlgError, ValueError):
+        raise PathLostError("the tangent is singular there", 0, 0) from None
+    size = _FIRST_STEP
+    while point.load_factor < target:
+        step, iterations, cuts = _step(line, point, size)
+        size = step.next_size
+        if step.limits:
+            raise TurnsBackError(step.segment.at(step.limits[0]).y, step.segment.after.y, iterations, cuts)
+        point = step.segment.after
+        if point.load_factor > target:
+            point = _at_load(step.segment, target, iterations, cuts)
+        yield Followed(point, iterations, cuts)
+
+
+def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:
+    try:
+        return segment.at_load(target)
+    except SegmentLostError as error:
+        raise PathLostError(str(error), iterations, cuts) from error
+
+
+def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int, int]:
+    """Return the longest step up to `size` that is accepted, the iterations of all that were tried, and those cut."""
+    size = min(size, longest_step(line, point))
+    iterations = cuts = 0
+    while True:
+        taken = take_step(line, point, size)
+        iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken, iterations, cuts
+        cuts += 1
+        size *= 0.5
+        if too_small(line, point, size):
+            raise PathLostError(taken.reason, iterations, cuts)

@@ -109,10 +109,13 @@ class Continuation:
         """Return the stress resultants that a step from y predicts, None where Newton is to take those of the state."""
         return predicted_stresses(self.system, y[:-1], step[:-1]) if self.newton.independent_stresses else None
 
-    def correct(self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray) -> Corrected:
+    def correct(
+        self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray, farthest: float = np.inf
+    ) -> Corrected:
         """Return the equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,).
 
-        stresses: of the first geometric tangent, as they were predicted for `start`.
+        stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
+        beyond which no equilibrium is looked for.
         """
         y, last, counts = self.hold(start), np.inf, []
         for iteration in range(1, self.newton.iterations + 1):
@@ -129,6 +132,8 @@ class Continuation:
             stresses = self.stresses(y, new - y)
             size = float(np.max(np.abs(new - y) / self.scale))
             y = new
+            if self.length(y - start) > farthest:
+                return Corrected(y, iteration, Ended.DIVERGED)
             ended = verdict(self.system, y[:-1], float(y[-1]), self.newton, iteration, (size, last))
             if ended is not None:
                 return Corrected(y, iteration, ended, (min(counts), max(counts)))

@@ -45,25 +45,42 @@ class TurnsBackError(BeamfemError):
         self.cuts = cuts
 
 
-def follow_path(system: System, p: np.ndarray, load_factor: float, target: float, newton: Newton) -> Iterator[Followed]:
-    """Yield the points of the path from the equilibrium p (n,) to a larger load factor, that one last.
+class PathFollower:
+    """The path of a system, followed by its length; what was learnt of it serves again where it is followed further."""
 
-    Raises TurnsBackError at a limit point, PathLostError where no step along the path is accepted.
-    """
-    try:
-        line, point = begin(system, p, load_factor, newton)
-    except (LinAlgError, ValueError):
-        raise PathLostError("the tangent is singular there", 0, 0) from None
-    size = _FIRST_STEP
-    while point.load_factor < target:
-        step, iterations, cuts = _step(line, point, size)
-        size = step.next_size
-        if step.limits:
-            raise TurnsBackError(step.segment.at(step.limits[0]).y, step.segment.after.y, iterations, cuts)
-        point = step.segment.after
-        if point.load_factor > target:
-            point = _at_load(step.segment, target, iterations, cuts)
-        yield Followed(point, iterations, cuts)
+    def __init__(self, system: System, newton: Newton) -> None:
+        self.system = system
+        self.newton = newton
+        self.line: Continuation | None = None
+        self.size = _FIRST_STEP
+
+    def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
+        """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
+
+        end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
+        along the path is accepted.
+        """
+        line, point = self._begin(p, load_factor)
+        while point.load_factor < beyond:
+            step, iterations, cuts = _step(line, point, self.size)
+            self.size = step.next_size
+            if step.limits:
+                raise TurnsBackError(step.segment.at(step.limits[0]).y, step.segment.after.y, iterations, cuts)
+            point = step.segment.after
+            if point.load_factor > end:
+                point = _at_load(step.segment, end, iterations, cuts)
+            yield Followed(point, iterations, cuts)
+
+    def _begin(self, p: np.ndarray, load_factor: float) -> tuple[Continuation, PathPoint]:
+        try:
+            if self.line is None:
+                self.line, point = begin(self.system, p, load_factor, self.newton)
+                return self.line, point
+            growing = np.zeros(len(p) + 1)
+            growing[-1] = 1.0
+            return self.line, self.line.linearised(np.append(p, load_factor), growing)
+        except (LinAlgError, ValueError):
+            raise PathLostError("the tangent is singular there", 0, 0) from None
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from beamfem.analysis.load_path import PathLostError, TurnsBackError, follow_path
+from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
 from beamfem.analysis.newton import Ended, Newton, solve_equilibrium
 from beamfem.analysis.snap import rest_state
 from beamfem.analysis.static_record import StaticRecord
@@ -23,7 +23,7 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
 
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
-    cuts = 0
+    follower, cuts, allowed = PathFollower(system, newton), 0, _CUTS
     with progress("load factor", 1.0) as report:
         while done.reached < 1.0:
             step = _within_a_turn(system, done, step)
@@ -32,16 +32,18 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
             done.iterations += result.iterations
             if result.ended.good:
                 done.add(target, result.state, result.negative_pivots, result.ended)
-                cuts = 0
+                cuts, allowed = 0, _CUTS
                 if result.iterations <= _EASY_ITERATIONS:
                     step *= 2.0
-            else:
+            elif cuts < allowed:
                 cuts += 1
                 done.cuts += 1
                 step *= 0.5
-                if cuts > _CUTS:
-                    _follow(system, done, newton, snap)
-                    cuts = 0
+            else:
+                # behind what the load step could not pass, a longer one is tried once
+                _follow(done, follower, target, snap)
+                cuts, allowed = 0, 0
+                step *= 2.0
             report(done.reached)
 
 
@@ -58,10 +60,10 @@ def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
     return step
 
 
-def _follow(system: System, done: StaticRecord, newton: Newton, snap: Snap) -> None:
-    """Add the rows along the path to load factor 1 or, where the path turns back, to the state behind the jump."""
+def _follow(done: StaticRecord, follower: PathFollower, beyond: float, snap: Snap) -> None:
+    """Add the rows along the path to a load factor or, where the path turns back, to the state behind the jump."""
     try:
-        for followed in follow_path(system, done.state, done.reached, 1.0, newton):
+        for followed in follower.follow(done.state, done.reached, beyond, 1.0):
             done.iterations += followed.iterations
             done.cuts += followed.cuts
             point = followed.point
@@ -69,7 +71,7 @@ def _follow(system: System, done: StaticRecord, newton: Newton, snap: Snap) -> N
     except TurnsBackError as turn:
         done.iterations += turn.iterations
         done.cuts += turn.cuts
-        _jump(system, done, turn, newton, snap)
+        _jump(follower, done, turn, snap)
     except PathLostError as lost:
         done.iterations += lost.iterations
         done.cuts += lost.cuts
@@ -80,7 +82,7 @@ def _follow(system: System, done: StaticRecord, newton: Newton, snap: Snap) -> N
         ) from lost
 
 
-def _jump(system: System, done: StaticRecord, turn: TurnsBackError, newton: Newton, snap: Snap) -> None:
+def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
     """Add the state of rest behind a limit point. Raises LimitPointError where no jump is wanted."""
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
@@ -91,7 +93,7 @@ def _jump(system: System, done: StaticRecord, turn: TurnsBackError, newton: Newt
             load_factor,
             done.solution(),
         )
-    found = rest_state(system, turn.limit, turn.beyond, newton)
+    found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += found.iterations
     if not found.ended.good:
         raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())

@@ -15,6 +15,7 @@ _LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_CORRECTION = 0.5  # of the step
+_FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
 
@@ -54,7 +55,8 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
 def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
     """Return the step of a length from a point with what lies in it, or why it is refused."""
     change = size * point.tangent
-    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent))
+    farthest = _FARTHEST * size
+    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent), farthest)
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)
     if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:

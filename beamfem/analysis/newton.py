@@ -79,7 +79,8 @@ def solve_equilibrium(
 ) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,).
 
-    guarded: stop where the tangent of an iterate has another count of negative pivots than the first one.
+    guarded: stop where the tangent has another count of negative pivots than at the start, from the third iteration on:
+    the second tangent takes the stresses of a linear step, which may be far too large.
     """
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
@@ -107,7 +108,7 @@ def solve_equilibrium(
         if guarded:
             if iteration == 1:
                 begun_with = factors.negative_pivots
-            elif factors.negative_pivots != begun_with:
+            elif iteration > 2 and factors.negative_pivots != begun_with:
                 return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
         if newton.independent_stresses:
             stresses = predicted_stresses(system, p, step)
@@ -115,7 +116,9 @@ def solve_equilibrium(
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
         if ended is not None:
-            state = start if ended is Ended.DIVERGED else p
+            if guarded and factors.negative_pivots != begun_with:
+                ended = Ended.LOST
+            state = p if ended.good else start
             return NewtonResult(state, iteration, ended, factors.negative_pivots)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
@@ -178,9 +181,9 @@ def _solve_halves(
             except LinAlgError:
                 return None
             negative = negative_pivots(halves, pivots) if guarded or _grown(size) else 0
-            if guarded and iteration > 1 and negative != begun_with:
+            begun_with = negative if iteration == 1 else begun_with
+            if guarded and iteration > 2 and negative != begun_with:
                 return NewtonResult(start, iteration, Ended.LOST, negative)
-            begun_with = negative
             if _grown(size):
                 return NewtonResult(start, iteration, Ended.DIVERGED, negative)
             if _small(size, before, iteration, newton):
@@ -189,7 +192,9 @@ def _solve_halves(
                 force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
                 ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
                 if ended is not None:
-                    return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots))
+                    negative = negative_pivots(halves, pivots)
+                    lost = guarded and negative != begun_with
+                    return NewtonResult(start if lost else p, iteration, Ended.LOST if lost else ended, negative)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)

@@ -40,10 +40,11 @@ def equilibrate(
 
     held_change: first step (n,) of the held coordinates and what it changes in the residual (n,), zero to go on.
     limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
-    iterations, 1 to take predicted stresses for the geometric tangent, 1 to stop where the count of negative pivots
-    changes. rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then
-    largest residual of the unknown, of all coordinates and the smallest r0' x d of the state reached; negative pivots
-    of the first tangent, -1 before, and of the last. Stops where corrections are small or stagnant, or have grown.
+    iterations, 1 to take predicted stresses for the geometric tangent, 1 to stop where the count of negative pivots is
+    another one from the third tangent on (the stresses of the second are those of a whole linear step).
+    rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then largest
+    residual of the unknown, of all coordinates and the smallest r0' x d of the state reached; negative pivots of the
+    first tangent, -1 before, and of the last. Stops where corrections are small or stagnant, or have grown.
     """
     n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
@@ -68,7 +69,7 @@ def equilibrate(
         found[7] = negative_diagonal(rows)
         if found[6] < 0.0:
             found[6] = found[7]
-        elif limits[6] > 0.0 and found[7] != found[6]:
+        elif limits[6] > 0.0 and found[7] != found[6] and found[0] > 1.0:
             found[0] += 1.0
             return True
         solve_upper(rows, right, window)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -46,13 +47,18 @@ class TurnsBackError(BeamfemError):
 
 
 class PathFollower:
-    """The path of a system, followed by its length; what was learnt of it serves again where it is followed further."""
+    """The path of a system from the equilibrium p (n,), followed by its length; steps go on as long as they were."""
 
-    def __init__(self, system: System, newton: Newton) -> None:
+    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float) -> None:
         self.system = system
         self.newton = newton
-        self.line: Continuation | None = None
+        self.start = p, load_factor
         self.size = _FIRST_STEP
+
+    @cached_property
+    def line(self) -> Continuation:
+        """How lengths along the path are measured: by what the loads do at its start."""
+        return begin(self.system, *self.start, self.newton)[0]
 
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
@@ -60,7 +66,12 @@ class PathFollower:
         end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
         along the path is accepted.
         """
-        line, point = self._begin(p, load_factor)
+        growing = np.zeros(len(p) + 1)
+        growing[-1] = 1.0
+        try:
+            line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
+        except (LinAlgError, ValueError):
+            raise PathLostError("the tangent is singular there", 0, 0) from None
         while point.load_factor < beyond:
             step, iterations, cuts = _step(line, point, self.size)
             self.size = step.next_size
@@ -70,17 +81,6 @@ class PathFollower:
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
-
-    def _begin(self, p: np.ndarray, load_factor: float) -> tuple[Continuation, PathPoint]:
-        try:
-            if self.line is None:
-                self.line, point = begin(self.system, p, load_factor, self.newton)
-                return self.line, point
-            growing = np.zeros(len(p) + 1)
-            growing[-1] = 1.0
-            return self.line, self.line.linearised(np.append(p, load_factor), growing)
-        except (LinAlgError, ValueError):
-            raise PathLostError("the tangent is singular there", 0, 0) from None
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

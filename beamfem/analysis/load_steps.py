@@ -12,7 +12,7 @@ from beamfem.progress import progress
 
 Snap = Literal["error", "jump"]
 
-_CUTS = 3  # in succession, before the path is followed by its length
+_CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 _SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
@@ -23,7 +23,8 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
 
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
-    follower, cuts, allowed = PathFollower(system, newton), 0, _CUTS
+    follower = PathFollower(system, newton, done.state, done.reached)
+    cuts, refused = 0, done.reached
     with progress("load factor", 1.0) as report:
         while done.reached < 1.0:
             step = _within_a_turn(system, done, step)
@@ -32,17 +33,19 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
             done.iterations += result.iterations
             if result.ended.good:
                 done.add(target, result.state, result.negative_pivots, result.ended)
-                cuts, allowed = 0, _CUTS
+                if target >= refused:
+                    cuts = 0
                 if result.iterations <= _EASY_ITERATIONS:
                     step *= 2.0
-            elif cuts < allowed:
+            elif cuts < _CUTS:
                 cuts += 1
                 done.cuts += 1
+                refused = max(refused, target)
                 step *= 0.5
             else:
                 # behind what the load step could not pass, a longer one is tried once
                 _follow(done, follower, target, snap)
-                cuts, allowed = 0, 0
+                refused = 1.0
                 step *= 2.0
             report(done.reached)
 

@@ -8,9 +8,9 @@ from beamfem.analysis.unresolved import Course
 
 _NEAR = 1e-4  # of a step: a kink so near to the end of a step is at it
 SIDE = 1e-9  # of a step: how far from a kink a load is taken on either side of it
-_JUMP = 1e-6  # of the values on both sides: a larger difference over a kink is a jump
-_STRAIGHT = 1e-3  # of the values of a load: how well steps follow one in a step that is divided for it
-_MOST_PARTS = 64
+_JUMP = 1e-6  # of the values of a load: a larger difference over a kink is a jump
+_STRAIGHT = 1e-4  # of the values of a load: how well steps follow one in a step that is divided for it
+_MOST_PARTS = 128
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,16 @@ def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]
     nearest = np.minimum(np.round(kinks / step).astype(int), len(grid) - 1)
     inside = np.abs(kinks - grid[nearest]) > _NEAR * step
     places = np.where(inside, kinks, grid[nearest])
+    looks = [course.look(grid, SIDE * step) for course in declaring]
+    sizes = [size for _, size in looks]
     jumps = {
         at: kink
         for at, kink in zip(places.tolist(), kinks.tolist(), strict=True)
-        if any(_jumps(course, kink, SIDE * step, end_time) for course in declaring)
+        if any(
+            _jump(course, kink, SIDE * step, end_time) > _JUMP * size
+            for course, size in zip(declaring, sizes, strict=True)
+        )
     }
-    looks = [course.look(grid, SIDE * step) for course in declaring]
     bulging = np.flatnonzero(np.any([steps for steps, _ in looks], axis=0))
     divided = np.union1d(np.searchsorted(grid, kinks[inside]) - 1, bulging)
     bounds = np.unique(np.concatenate([grid[[0, -1]], kinks[inside], grid[divided], grid[divided + 1], list(jumps)]))
@@ -59,7 +63,7 @@ def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]
         if whole:
             times, size = grid[np.searchsorted(grid, begin) : np.searchsorted(grid, end) + 1], step
         else:
-            parts = _parts(declaring, [size for _, size in looks], begin, end)
+            parts = _parts(declaring, sizes, begin, end)
             times, size = np.linspace(begin, end, parts + 1), (end - begin) / parts
         loads_from = jumps[begin] + SIDE * step if begin in jumps else begin
         loads_to = jumps[end] - SIDE * step if end in jumps else end
@@ -76,10 +80,9 @@ def _apart(kinks: np.ndarray, near: float, end_time: float) -> np.ndarray:
     return np.array(kept)
 
 
-def _jumps(course: Course, kink: float, side: float, end_time: float) -> bool:
-    """Tell whether a load has different values on both sides of a kink; nothing is asked before or after the motion."""
-    before, after = course.at(max(kink - side, 0.0)), course.at(min(kink + side, end_time))
-    return abs(after - before) > _JUMP * max(abs(after), abs(before))
+def _jump(course: Course, kink: float, side: float, end_time: float) -> float:
+    """Return how far a load is apart on both sides of a kink; nothing is asked before or after the motion."""
+    return abs(course.at(min(kink + side, end_time)) - course.at(max(kink - side, 0.0)))
 
 
 def _parts(declaring: list[Course], sizes: list[float], begin: float, end: float) -> int:

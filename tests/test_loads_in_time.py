@@ -115,3 +115,21 @@ def test_the_weight_follows_its_amplitude():
 def test_kinks_that_are_no_increasing_times_are_refused(kinks):
     with pytest.raises(bf.InputError, match="kinks"):
         bf.Piecewise(np.sin, kinks)
+
+
+@pytest.mark.parametrize("save_every", [1, 3, 100])
+def test_a_failed_step_is_undone_whatever_is_kept(save_every):
+    """Found by mutation: the last state was that of the failed step where save_every does not divide."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), bf.Rectangle(0.01, 0.01), STEEL)
+
+    def run(size, duration):
+        amplitude = lambda t: 1.0 if t < 0.0095 else size  # noqa: E731
+        model = bf.Model([one], loads=[bf.PointForce(one.end, (0.0, 1.0), amplitude=amplitude)])
+        return bf.simulate(model, duration, 2e-3, save_every=save_every)
+
+    with pytest.raises(bf.ConvergenceError, match=r"the step from 0\.008 s to 0\.01 s did not converge") as caught:
+        run(1e15, 0.02)
+    kept, good = caught.value.solution, run(1.0, 0.008)
+    assert kept.time == pytest.approx(good.time)
+    assert np.array_equal(kept.p, good.p)
+    assert np.array_equal(kept.a, good.a)

@@ -40,17 +40,26 @@ class Course:
         side [s]: how far inside a step the value at its end is taken where kinks are declared, at which it may jump.
         """
         inset = side if self.kinks else 0.0
-        low = high = np.array([self.at(time) for time in times])
+        low = high = self._values(times)
         if inset:
-            low = np.array([self.at(time) for time in times[:-1] + inset] + [high[-1]])
-            high = np.array([high[0]] + [self.at(time) for time in times[1:] - inset])
-        places = times[:-1, None] + np.diff(times)[:, None] * _SHARES
-        inner = np.array([[self.at(time) for time in row] for row in places])
+            low = np.append(self._values(times[:-1] + inset), high[-1])
+            high = np.append(high[0], self._values(times[1:] - inset))
+        inner = self._values((times[:-1, None] + np.diff(times)[:, None] * _SHARES).ravel()).reshape(-1, len(_SHARES))
         above = inner.max(axis=1) - np.maximum(low[:-1], high[1:])
         below = np.minimum(low[:-1], high[1:]) - inner.min(axis=1)
         every = np.concatenate([low, high, inner.ravel()])
         size = float(np.abs(every).max() if self.amplitude else np.ptp(every))
         return np.maximum(above, below) > _BULGE * size, size
+
+    def _values(self, times: np.ndarray) -> np.ndarray:
+        """Return its values at times (n,) [s], without the care for each that `at` takes unless one asks for it."""
+        try:
+            values = np.array([self.function(time) for time in times.tolist()], dtype=float)
+        except (TypeError, ValueError):
+            values = np.full(len(times), np.nan)
+        if values.shape == times.shape and np.isfinite(values).all():
+            return values
+        return np.array([self.at(time) for time in times.tolist()])
 
     def bend(self, begin: float, end: float) -> float:
         """Return how far it leaves the straight line between two times [s]."""

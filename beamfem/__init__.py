@@ -45,6 +45,7 @@ from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.model.time_functions import Interpolated, Piecewise
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
@@ -83,6 +84,7 @@ __all__ = [
     "Gravity",
     "Hinge",
     "InputError",
+    "Interpolated",
     "Lagrange",
     "Layer",
     "Layered",
@@ -96,6 +98,7 @@ __all__ = [
     "Parametric",
     "Path",
     "PathState",
+    "Piecewise",
     "Pin",
     "Point",
     "PointForce",

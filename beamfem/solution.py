@@ -6,7 +6,7 @@ from functools import cached_property
 from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from beamfem.model.model import Model
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.status import Status
+
+if TYPE_CHECKING:
+    from beamfem.energy_drift import EnergyDrift
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,8 @@ class Solution:
         what = "load factor" if self.static else "time"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
         unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
-        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r})"
+        drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift})"
 
     def __len__(self) -> int:
         return len(self.at)
@@ -222,6 +226,13 @@ class Solution:
         kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
         strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
         return Energy(kinetic, strain, self._potential())
+
+    @cached_property
+    def energy_drift(self) -> "EnergyDrift | None":
+        """Error of the energy over a motion that nothing drives; None elsewhere. See `energy_drift.EnergyDrift`."""
+        from beamfem.energy_drift import energy_drift
+
+        return energy_drift(self) if len(self) else None
 
     def _potential(self) -> np.ndarray:
         result = np.zeros(len(self))

@@ -1,7 +1,7 @@
 """Newton's method for an equilibrium at a fixed load factor."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -10,6 +10,7 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
 from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
+from beamfem.analysis.round_off import load_size, remainder, round_off_floor, row_floors
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -19,6 +20,7 @@ from beamfem.model.system import System
 from beamfem.validation import count, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
+_SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
 _LARGEST = 1e3  # of the model; larger corrections lead nowhere
 
 
@@ -41,13 +43,15 @@ class Ended(Enum):
 class NewtonResult:
     """The last state (n,) of an iteration, how many iterations it took and why it ended.
 
-    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable.
+    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
+    digits: how many of the forces are sure at least.
     """
 
     state: np.ndarray
     iterations: int
     ended: Ended
     negative_pivots: int = 0
+    digits: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,15 @@ class Newton:
 
 def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
+    result = _solve(system, start, load_factor, newton)
+    if result.ended is Ended.CONVERGED:
+        return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
+    if result.ended is Ended.ROUND_OFF:
+        return replace(result, digits=remainder(system, result.state, load_factor).digits)
+    return result
+
+
+def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None:
@@ -117,7 +130,7 @@ def _solve_band(
     p, held_force = start.copy(), np.zeros(len(start))
     if held_step.any():
         held_force = _held_force(system, start, held_step, load_factor)
-    rows = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1))
+    rows, unbalanced = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1)), np.empty(len(p))
     values = point_rows(system, load_factor)
     model = (
         system.forms,
@@ -134,9 +147,9 @@ def _solve_band(
     settings = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT, newton.iterations, newton.independent_stresses
     limits = np.array(settings, dtype=float)
     change = held_step, held_force
-    load = max((float(np.abs(forces).max(initial=0.0)) for forces in values), default=0.0)
+    load = load_size(system, load_factor)
     while found[0] < newton.iterations:
-        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found):
+        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found, unbalanced):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
         # the factorisation keeps the inverse of each pivot on the diagonal
@@ -144,7 +157,8 @@ def _solve_band(
         if _grown(size):
             return NewtonResult(start, iterations, Ended.DIVERGED, negative)
         if _small(size, before, iterations, newton):
-            ended = _judge(system, p, newton, size, found[3], max(found[4], load), found[5] <= 0.0)
+            left = _Left(unbalanced, found[3], max(found[4], load))
+            ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
                 return NewtonResult(p, iterations, ended, negative)
         change = np.zeros(len(p)), np.zeros(len(p))
@@ -157,7 +171,7 @@ def _solve_halves(
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before = _load_size(system, load_factor), np.inf
+    load, before = load_size(system, load_factor), np.inf
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -169,9 +183,8 @@ def _solve_halves(
                 return NewtonResult(start, iteration, Ended.DIVERGED, negative_pivots(halves, pivots))
             if _small(size, before, iteration, newton):
                 p, unbalanced, jacobian = joined(halves, pool)
-                largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
-                force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
-                ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
+                left = _left(system, unbalanced, load)
+                ended = _judge(system, p, newton, (size, before, iteration), left, jacobian <= 0.0)
                 if ended is not None:
                     return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots))
             before = size
@@ -189,10 +202,8 @@ def verdict(
     if not _small(size, before, iteration, newton):
         return None
     rest = np.zeros(len(p))
-    unbalanced = residual(system, p, rest, rest, load_factor)
-    largest = float(np.max(np.abs(system.along_free(unbalanced)), initial=0.0))
-    force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
-    return _judge(system, p, newton, size, largest, force, inverted(system, p))
+    left = _left(system, residual(system, p, rest, rest, load_factor), load_size(system, load_factor))
+    return _judge(system, p, newton, (size, before, iteration), left, inverted(system, p))
 
 
 def _grown(size: float) -> bool:
@@ -200,23 +211,61 @@ def _grown(size: float) -> bool:
 
 
 def _small(size: float, before: float, iteration: int, newton: Newton) -> bool:
-    return size <= newton.tolerance or (iteration > 2 and size > 0.25 * before and size < _STAGNANT)
+    return size <= newton.tolerance or _stagnant(size, before, iteration)
+
+
+def _stagnant(size: float, before: float, iteration: int) -> bool:
+    return iteration > 2 and size > 0.25 * before and size < _STAGNANT
+
+
+@dataclass(frozen=True, eq=False)
+class _Left:
+    """What is left of the balance: residual (n,), its largest of the unknown, and the largest force.
+
+    Forces are multiplied by what their coordinate is measured by, so that they compare with moments [N m].
+    """
+
+    residual: np.ndarray
+    largest: float
+    force: float
+
+
+def _left(system: System, unbalanced: np.ndarray, load: float) -> _Left:
+    """Return the same of a residual (n,); load: largest that acts, so that the scale is above zero if nothing reacts."""
+    largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
+    return _Left(unbalanced, largest, max(float(np.max(np.abs(unbalanced) * system.scale, initial=0.0)), load))
 
 
 def _judge(
-    system: System, p: np.ndarray, newton: Newton, size: float, largest: float, force: float, inside_out: bool
+    system: System, p: np.ndarray, newton: Newton, sizes: tuple[float, float, int], left: _Left, inside_out: bool
 ) -> Ended | None:
     """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
 
-    largest: residual of the unknown directions [N, N m]; force: largest force that acts or reacts.
+    sizes: of the last correction and the one before, and the number of the iteration. Where the residual is above the
+    tolerance, each row must have come to its own floor, and what the next correction would be must be lost in the
+    digits of the movement.
     """
-    if size <= newton.tolerance and largest <= newton.residual_tolerance * force:
+    size, before, iteration = sizes
+    if size <= newton.tolerance and left.largest <= newton.residual_tolerance * left.force:
         ended = Ended.CONVERGED
-    elif largest <= round_off_floor(system, p):
+    elif _settled(system, p, sizes) and np.all(
+        np.abs(system.along_free(left.residual)) <= row_floors(system, p)[system.free_dofs]
+    ):
         ended = Ended.ROUND_OFF
     else:
         return None
     return Ended.INVERTED if inside_out else ended
+
+
+def _settled(system: System, p: np.ndarray, sizes: tuple[float, float, int]) -> bool:
+    """Tell whether a further correction, if they shrink as before, is small against the movement or below a digit."""
+    size, before, iteration = sizes
+    if _stagnant(size, before, iteration):
+        return True
+    following = size * min(size / before, 1.0) if iteration > 1 else size
+    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
+    last_digit = np.finfo(float).eps * float(np.max(np.abs(p) / system.scale, initial=1.0))
+    return following <= max(_SURE * moved, last_digit)
 
 
 def inverted(system: System, p: np.ndarray) -> bool:
@@ -225,22 +274,6 @@ def inverted(system: System, p: np.ndarray) -> bool:
     for block, own in zip(system.blocks, work, strict=True):
         place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
     return bool(smallest_jacobian(system.forms, system.blocks, work) <= 0.0)
-
-
-def round_off_floor(system: System, p: np.ndarray) -> float:
-    """Return the residual [N] that is left by cancellation when strains are formed from positions.
-
-    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l times
-    the slopes of the shape functions; the section answers with its largest axial stiffness, again times slopes.
-    """
-    reach = max(float(np.max(np.abs(p))), system.extent)
-    return 4.0 * np.finfo(float).eps * system.strain_error * reach
-
-
-def _load_size(system: System, load_factor: float) -> float:
-    """Largest force or moment that acts; keeps the residual's scale above zero where nothing reacts."""
-    values = [np.abs(forces).max(initial=0.0) for forces in system.point_values(load_factor)]
-    return float(max(values, default=0.0))
 
 
 def _held_force(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:

@@ -23,12 +23,16 @@ from beamfem.postprocess import Fields, SectionForces
 
 @dataclass(frozen=True)
 class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence."""
+    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
+
+    digits: of the forces of the last equilibrium that the balance of loads and reactions makes sure, nan if not known.
+    """
 
     iterations: int
     steps: int
     cuts: int
     ended: str
+    digits: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +174,13 @@ class Solution:
         from beamfem.reactions import support_forces
 
         return support_forces(self)
+
+    @cached_property
+    def remainders(self) -> np.ndarray:
+        """What the coordinates of a static solution lack below their last digit (steps, n), see `last_digits`."""
+        from beamfem.last_digits import remainders
+
+        return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
+from beamfem.analysis.mixed_tangent import mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.balance import balance
 from beamfem.kernels.block import Block, PointLoads, Springs
@@ -12,6 +13,7 @@ from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
+MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
 
 
@@ -71,9 +73,17 @@ def linearise(
     model = system.forms, blocks or system.blocks, system.workspaces(stresses), loads, system.springs, system.layouts
     actions = system.body(time), point_rows(system, time), 0
     balance(*model, p, v, a, *actions, np.array(coefficients), stresses is not None, result, matrix)
+    tangent: Tangent
     if pattern is None:
-        return result, BandTangent(matrix.reshape(unknown, width))
-    return result, SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+        tangent = BandTangent(matrix.reshape(unknown, width))
+    else:
+        tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
+        known = stresses or predicted_stresses(system, p, np.zeros(len(p)))
+        state = p, v, a, time, coefficients
+        rest = linearise(system, *state, known, without_stiffness(system.blocks))[1]
+        tangent = mixed(system, p, coefficients[0], rest, tangent)
+    return result, tangent
 
 
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -14,7 +14,7 @@ _EPSILON = float(np.finfo(float).eps)
 _ERRORS = 4.0  # of a coordinate's last digit: each term is rounded, and so is their sum
 _CORRECTIONS = 12
 _LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
-_DIFFERENCE = 1e-6  # of the model: how far a difference reaches that tells what the last digits do
+DIFFERENCE = 1e-6  # of the model: how far a difference reaches that tells what the last digits do
 _MOST_DIGITS = 15.0
 
 
@@ -47,10 +47,17 @@ def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) 
     size = float(np.max(np.abs(step) / system.scale, initial=0.0))
     if size == 0.0:
         return np.zeros(len(p))
-    rest, width = np.zeros(len(p)), _DIFFERENCE / size
+    rest, width = np.zeros(len(p)), DIFFERENCE / size
     ahead = residual(system, p + width * step, rest, rest, load_factor)
     behind = residual(system, p - width * step, rest, rest, load_factor)
     return np.asarray((ahead - behind) / (2.0 * width))
+
+
+def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return how many digits of the forces are sure in a state p (n,) as it stands; all where nothing acts."""
+    rest = np.zeros(len(p))
+    found = residual(system, p, rest, rest, load_factor)
+    return _digits(system, p, found, _acting(system, p, found, load_factor))
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float, factors: Factorised | None = None) -> Remainder:

@@ -40,7 +40,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
     done.add(0.0, first.state)
-    done.ended = first.ended
+    done.ended, done.digits = first.ended, first.digits
     done.unstable = first.negative_pivots if system.symmetric else 0
     reached, step = 0.0, 1.0 / steps
     with progress("load factor", 1.0) as report:
@@ -56,7 +56,7 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
             if result.ended.good and not jumped:
                 reached = target
                 done.add(reached, result.state)
-                done.ended = result.ended
+                done.ended, done.digits = result.ended, result.digits
                 done.unstable = result.negative_pivots if system.symmetric else 0
                 report(reached)
                 if result.iterations <= _EASY_ITERATIONS:
@@ -100,6 +100,7 @@ class _Record:
         self.iterations = 0
         self.cuts = 0
         self.ended = Ended.CONVERGED
+        self.digits = np.nan
         self.unstable = 0
 
     def add(self, load_factor: float, state: np.ndarray) -> None:
@@ -111,7 +112,7 @@ class _Record:
         ended = self.ended.value
         if self.unstable:
             ended += f"; the equilibrium is unstable, {self.unstable} eigenvalues of its tangent are negative"
-        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended)
+        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, self.digits)
         return Solution(
             self.model,
             True,

@@ -151,19 +151,24 @@ class SparseTangent:
 
     def sparse(self, turned: Turned) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        first, normal = turned
+        first, _ = turned
         if not len(first):
             return csr_array(self.matrix)
-        turn = eye_array(self.matrix.shape[0], format="lil")
-        for i, (c, s) in zip(first, normal, strict=True):
-            turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
-        turn = csr_array(turn)
+        turn = turning(self.matrix.shape[0], turned)
         rotated = csr_array(turn @ self.matrix @ turn.T)
         kept = np.ones(rotated.shape[0])
         kept[first] = 0.0
         keep = dia_array((kept[None], [0]), shape=rotated.shape)
         held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
         return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
+
+
+def turning(size: int, turned: Turned) -> csr_array:
+    """Return the matrix (n, n) that turns each pair of an inclined roller to (normal, tangent)."""
+    turn = eye_array(size, format="lil")
+    for i, (c, s) in zip(*turned, strict=True):
+        turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
+    return csr_array(turn)
 
 
 def _diagonals(rows: np.ndarray) -> np.ndarray:

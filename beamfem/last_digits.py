@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.analysis.round_off import DIFFERENCE, digits_of, remainder
+from beamfem.analysis.round_off import differentiated, digits_of, remainder
 from beamfem.model.system import system_of
 
 if TYPE_CHECKING:
@@ -32,12 +32,8 @@ def remainders(solution: "Solution") -> np.ndarray:
 
 def exactly(solution: "Solution", values: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """Return a function (steps, ...) of the coordinates (steps, n), the digits below their last one included."""
-    found = values(solution.p)
-    steps = solution.remainders
-    sizes = np.abs(steps / system_of(solution.model, solution.static).scale).max(axis=1, initial=0.0)
-    if not sizes.any():
+    found, steps = values(solution.p), solution.remainders
+    if not steps.any():
         return found
-    width = np.where(sizes > 0.0, DIFFERENCE / np.where(sizes > 0.0, sizes, 1.0), 1.0)
-    moved = width[:, None] * steps
-    changes = values(solution.p + moved) - values(solution.p - moved)
-    return np.asarray(found + changes / (2.0 * width.reshape(-1, *np.ones(changes.ndim - 1, dtype=int))))
+    system = system_of(solution.model, solution.static)
+    return found + differentiated(system, values, solution.p, steps)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.analysis.mixed_tangent import mixed, without_stiffness
+from beamfem.analysis.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.balance import balance
 from beamfem.kernels.block import Block, PointLoads, Springs
@@ -79,11 +79,23 @@ def linearise(
     else:
         tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
     if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
-        known = stresses or predicted_stresses(system, p, np.zeros(len(p)))
-        state = p, v, a, time, coefficients
-        rest = linearise(system, *state, known, without_stiffness(system.blocks))[1]
-        tangent = mixed(system, p, coefficients[0], rest, tangent)
+        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
+
+
+def with_stresses(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    plain: Tangent,
+) -> MixedTangent:
+    """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
+    p = state[0]
+    known = stresses or predicted_stresses(system, p, np.zeros(len(p)))
+    loads, rest = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
+    return mixed(system, p, coefficients[0], loads, rest, plain)
 
 
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
-from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
+from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
-from beamfem.analysis.round_off import load_size, remainder, round_off_floor, row_floors
+from beamfem.analysis.round_off import load_size, loses_digits, remainder, round_off_floor, row_floors
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -79,18 +79,29 @@ class Newton:
 
 def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
-    result = _solve(system, start, load_factor, newton)
+    mixed = MIXED in system.proven
+    result = _judged(system, load_factor, newton, _solve(system, start, load_factor, newton))
+    if not result.ended.good:
+        loses_digits(system, start, load_factor)
+    if MIXED in system.proven and not mixed:
+        return _judged(system, load_factor, newton, _solve(system, start, load_factor, newton))
+    return result
+
+
+def _judged(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
+    """Return a result with the digits that are sure of its forces, and what its state lacked to balance them."""
     if result.ended is Ended.CONVERGED:
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Ended.ROUND_OFF:
-        return replace(result, digits=remainder(system, result.state, load_factor).digits)
+        missing = remainder(system, result.state, load_factor)
+        return replace(result, state=result.state + missing.step, digits=missing.digits)
     return result
 
 
 def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
-    if system.unknowns.pattern is None:
+    if system.unknowns.pattern is None and MIXED not in system.proven:
         solve = _solve_halves if worth_cutting(system) else _solve_band
         result = solve(system, start, load_factor, newton, held_step)
         if result is not None:
@@ -103,16 +114,16 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
         step = held_step if iteration == 1 else np.zeros(len(p))
-        right = -unbalanced[free]
-        if iteration == 1 and np.any(held_step):
-            right -= _held_force(system, p, held_step, load_factor)[free]
         try:
             factors = tangent.factorised(system.turned)
-            step[free] = factors.solve(right)
+            step[free], after = factors.correction(unbalanced[free])
+            if iteration == 1 and np.any(held_step):
+                step[free] -= factors.solve(_held_force(system, p, held_step, load_factor)[free])
+                after = None
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if newton.independent_stresses:
-            stresses = predicted_stresses(system, p, step)
+            stresses = after or predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))

@@ -1,20 +1,25 @@
 """What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.analysis.equations import STATICS, linearise, residual
+from beamfem.analysis.equations import MIXED, STATICS, linearise, residual, with_stresses
 from beamfem.analysis.initial import RigidVelocity, start_velocity
-from beamfem.analysis.tangent import Factorised
 from beamfem.model.system import System
 
 _EPSILON = float(np.finfo(float).eps)
 _ERRORS = 4.0  # of a coordinate's last digit: each term is rounded, and so is their sum
 _CORRECTIONS = 12
 _LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
-DIFFERENCE = 1e-6  # of the model: how far a difference reaches that tells what the last digits do
+_STRAIN = 1e-3
+_DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
+_ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
+_PLENTY = 12.0  # digits that no further correction improves on
+_LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
+_KEEPS = "the tangent keeps its digits"
 _MOST_DIGITS = 15.0
 
 
@@ -42,15 +47,26 @@ class Remainder:
     digits: float
 
 
+def differentiated(
+    system: System, values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray
+) -> np.ndarray:
+    """Return the change of a function of p (..., n) with a step (..., n) that may be below the last digit of p.
+
+    A central difference of fourth order, so wide that the strains it gives are of size 1e-3.
+    """
+    size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
+    width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
+    result = 0.0
+    for at, weight in _DIFFERENCE:
+        found = values(p + at * width[..., None] * step)
+        result = result + weight * found / width.reshape(width.shape + (1,) * (found.ndim - width.ndim))
+    return np.asarray(result)
+
+
 def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
     """Return the change of the residual (n,) with a step (n,) that may be below the last digit of p."""
-    size = float(np.max(np.abs(step) / system.scale, initial=0.0))
-    if size == 0.0:
-        return np.zeros(len(p))
-    rest, width = np.zeros(len(p)), DIFFERENCE / size
-    ahead = residual(system, p + width * step, rest, rest, load_factor)
-    behind = residual(system, p - width * step, rest, rest, load_factor)
-    return np.asarray((ahead - behind) / (2.0 * width))
+    rest = np.zeros(len(p))
+    return differentiated(system, lambda q: residual(system, q, rest, rest, load_factor), p, step)
 
 
 def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
@@ -60,36 +76,59 @@ def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
     return _digits(system, p, found, _acting(system, p, found, load_factor))
 
 
-def remainder(system: System, p: np.ndarray, load_factor: float, factors: Factorised | None = None) -> Remainder:
+def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     """Return what balances a state p (n,) that is an equilibrium but for its last digits.
 
     Newton's method goes on with p in two parts: steps below its last digit are added up apart, and what they change is
     taken from wider differences. Elements balance themselves whatever their strains, so that the balance regains all
     digits as long as the tangent has some.
     """
+    best = _refined(system, p, load_factor)
+    if best.digits < _ENOUGH and loses_digits(system, p, load_factor):
+        again = _refined(system, p, load_factor)
+        return again if again.digits > best.digits else best
+    return best
+
+
+def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     rest, free = np.zeros(len(p)), system.free_dofs
     found = residual(system, p, rest, rest, load_factor)
-    acting = _acting(system, p, found, load_factor)
-    best = Remainder(np.zeros(len(p)), _digits(system, p, found, acting))
-    if factors is None:
-        try:
-            factors = linearise(system, p, rest, rest, load_factor, STATICS)[1].factorised(system.turned)
-        except (LinAlgError, ValueError):
-            return best
+    best = Remainder(np.zeros(len(p)), _digits(system, p, found, _acting(system, p, found, load_factor)))
     step, unbalanced = np.zeros(len(p)), found
-    for _ in range(_CORRECTIONS):
-        try:
+    try:
+        factors = linearise(system, p, rest, rest, load_factor, STATICS)[1].factorised(system.turned)
+        _, stresses = factors.correction(found[free])
+        if stresses is not None:
+            # those of the state itself are as wrong as its last digits are
+            factors = linearise(system, p, rest, rest, load_factor, STATICS, stresses)[1].factorised(system.turned)
+        for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
-        except (LinAlgError, ValueError):
-            break
-        if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
-            break
-        unbalanced = found + change(system, p, step, load_factor)
-        digits = _digits(system, p, unbalanced, _acting(system, p, unbalanced, load_factor))
-        if digits <= best.digits + 0.3:
-            break
-        best = Remainder(step.copy(), digits)
+            if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
+                break
+            unbalanced = found + change(system, p, step, load_factor)
+            digits = _digits(system, p, unbalanced, _acting(system, p, unbalanced, load_factor))
+            if digits <= best.digits:
+                break
+            best = Remainder(step.copy(), digits)
+            if digits > _PLENTY:
+                break
+    except (LinAlgError, ValueError):
+        pass
     return best
+
+
+def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
+    if MIXED in system.proven or _KEEPS in system.proven:
+        return False
+    state, rest = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
+    try:
+        plain = linearise(system, p, rest, rest, load_factor, STATICS)[1]
+        lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.turned)
+    except (LinAlgError, ValueError):
+        return False
+    system.proven.add(_KEEPS if lost <= _LOSES else MIXED)
+    return bool(lost > _LOSES)
 
 
 def load_size(system: System, load_factor: float) -> float:

@@ -16,6 +16,7 @@ _NOTHING = np.empty(0)
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
 Turned = tuple[np.ndarray, np.ndarray]
+Stresses = tuple[np.ndarray, ...]
 
 
 class Factorised(Protocol):
@@ -28,6 +29,13 @@ class Factorised(Protocol):
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        ...
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
         ...
 
 
@@ -79,6 +87,13 @@ class BandFactors:
         turn_back(x, *self.turned)
         return x
 
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
+
 
 @dataclass(frozen=True)
 class BandTangent:
@@ -126,6 +141,13 @@ class SparseFactors:
             raise LinAlgError("the tangent is singular")
         turn_back(x, *self.turned)
         return np.asarray(x)
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
 
 
 @dataclass(frozen=True)

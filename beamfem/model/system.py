@@ -260,6 +260,12 @@ class System:
         """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest."""
         return np.where(self.positions, self.extent, 1.0)
 
+    @cached_property
+    def strain_scale(self) -> np.ndarray:
+        """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
+        length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)
+        return np.where(self.positions, length, 1.0)
+
 
 def system_of(model: Model, static: bool) -> System:
     """Return the system of a model, the same one every time: a model does not change. Raises InputError."""

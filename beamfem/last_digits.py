@@ -15,7 +15,7 @@ from beamfem.model.system import system_of
 if TYPE_CHECKING:
     from beamfem.solution import Solution
 
-_ENOUGH = 9.0  # digits of the forces that a state has by itself
+_ENOUGH = 7.0  # digits of the forces that a state has by itself
 
 
 def remainders(solution: "Solution") -> np.ndarray:

@@ -86,8 +86,8 @@ class MixedTangent:
     """A tangent whose elastic part is in factors.
 
     rest (n, n): all but the elastic part; slopes (m, n): strains by coordinates; flexibility (m, m): weights times
-    inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places: shape (ne, nq, ns) of
-    each block's stress resultants and which of them resist; plain: the same tangent as one matrix.
+    inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places: shape (ne, nq, ns)
+    of each block's stress resultants and which of them resist; plain: the same tangent as one matrix.
     """
 
     rest: csr_array
@@ -169,7 +169,9 @@ def resisting(block: Block) -> np.ndarray:
     return np.flatnonzero(np.abs(block.stiffness).max(axis=(0, 1, 3)) > 0.0)
 
 
-def _elastic(system: System, form: Form, block: Block, p: np.ndarray) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
+def _elastic(
+    system: System, form: Form, block: Block, p: np.ndarray
+) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
     """Return strains by coordinates (m, n), weights times inverse stiffness (m, m), weights and strains (m,)."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
     points, strains = block.reference.shape[1:]

@@ -10,7 +10,15 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
 from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
-from beamfem.analysis.round_off import load_size, loses_digits, remainder, round_off_floor, row_floors
+from beamfem.analysis.round_off import (
+    ENOUGH,
+    digits_of,
+    load_size,
+    loses_digits,
+    remainder,
+    row_floors,
+)
+from beamfem.analysis.round_off import round_off_floor as round_off_floor
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -32,6 +40,7 @@ class Ended(Enum):
     DIVERGED = "the corrections grew beyond the size of the model"
     EXHAUSTED = "the iterations ran out before the corrections became small"
     SINGULAR = "the tangent is singular"
+    LOST = "round-off leaves no digit of the forces: stiffnesses and loads of this model are too far apart"
     INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
 
     @property
@@ -93,8 +102,12 @@ def _judged(system: System, load_factor: float, newton: Newton, result: NewtonRe
     if result.ended is Ended.CONVERGED:
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Ended.ROUND_OFF:
+        digits = digits_of(system, result.state, load_factor) if np.isnan(result.digits) else result.digits
+        if digits >= ENOUGH:
+            return replace(result, digits=digits)
         missing = remainder(system, result.state, load_factor)
-        return replace(result, state=result.state + missing.step, digits=missing.digits)
+        ended = Ended.ROUND_OFF if missing.digits >= 1.0 else Ended.LOST
+        return replace(result, state=result.state + missing.step, ended=ended, digits=missing.digits)
     return result
 
 
@@ -171,7 +184,7 @@ def _solve_band(
             left = _Left(unbalanced, found[3], max(found[4], load))
             ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
-                return NewtonResult(p, iterations, ended, negative)
+                return NewtonResult(p, iterations, ended, negative, left.digits)
         change = np.zeros(len(p)), np.zeros(len(p))
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
@@ -197,7 +210,7 @@ def _solve_halves(
                 left = _left(system, unbalanced, load)
                 ended = _judge(system, p, newton, (size, before, iteration), left, jacobian <= 0.0)
                 if ended is not None:
-                    return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots))
+                    return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots), left.digits)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
@@ -240,9 +253,14 @@ class _Left:
     largest: float
     force: float
 
+    @property
+    def digits(self) -> float:
+        """How many digits of the largest force every row leaves."""
+        return float(np.log10(self.force / self.largest)) if self.largest > 0.0 else np.inf
+
 
 def _left(system: System, unbalanced: np.ndarray, load: float) -> _Left:
-    """Return the same of a residual (n,); load: largest that acts, so that the scale is above zero if nothing reacts."""
+    """Return the same of a residual (n,); load: largest that acts, for where nothing reacts."""
     largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
     return _Left(unbalanced, largest, max(float(np.max(np.abs(unbalanced) * system.scale, initial=0.0)), load))
 
@@ -256,8 +274,7 @@ def _judge(
     tolerance, each row must have come to its own floor, and what the next correction would be must be lost in the
     digits of the movement.
     """
-    size, before, iteration = sizes
-    if size <= newton.tolerance and left.largest <= newton.residual_tolerance * left.force:
+    if sizes[0] <= newton.tolerance and left.largest <= newton.residual_tolerance * left.force:
         ended = Ended.CONVERGED
     elif _settled(system, p, sizes) and np.all(
         np.abs(system.along_free(left.residual)) <= row_floors(system, p)[system.free_dofs]

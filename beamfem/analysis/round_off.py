@@ -16,11 +16,13 @@ _CORRECTIONS = 12
 _LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
 _STRAIN = 1e-3
 _DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
-_ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
+ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
 _PLENTY = 12.0  # digits that no further correction improves on
 _LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
 _KEEPS = "the tangent keeps its digits"
 _MOST_DIGITS = 15.0
+_NOTHING = 1e-10  # of the round-off of a state as it stands: forces below are none
+FEW_DIGITS = 4.0  # of the forces: users are told
 
 
 def row_floors(system: System, p: np.ndarray) -> np.ndarray:
@@ -56,11 +58,11 @@ def differentiated(
     """
     size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
     width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
-    result = 0.0
+    result = np.zeros(1)
     for at, weight in _DIFFERENCE:
         found = values(p + at * width[..., None] * step)
         result = result + weight * found / width.reshape(width.shape + (1,) * (found.ndim - width.ndim))
-    return np.asarray(result)
+    return result
 
 
 def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
@@ -73,7 +75,7 @@ def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return how many digits of the forces are sure in a state p (n,) as it stands; all where nothing acts."""
     rest = np.zeros(len(p))
     found = residual(system, p, rest, rest, load_factor)
-    return _digits(system, p, found, _acting(system, p, found, load_factor))
+    return _digits(system, p, found, load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
@@ -84,16 +86,17 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     digits as long as the tangent has some.
     """
     best = _refined(system, p, load_factor)
-    if best.digits < _ENOUGH and loses_digits(system, p, load_factor):
+    if best.digits < ENOUGH and loses_digits(system, p, load_factor):
         again = _refined(system, p, load_factor)
         return again if again.digits > best.digits else best
     return best
 
 
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
+    """Return the best that further corrections by the present kind of tangent give."""
     rest, free = np.zeros(len(p)), system.free_dofs
     found = residual(system, p, rest, rest, load_factor)
-    best = Remainder(np.zeros(len(p)), _digits(system, p, found, _acting(system, p, found, load_factor)))
+    best = Remainder(np.zeros(len(p)), _digits(system, p, found, load_factor))
     step, unbalanced = np.zeros(len(p)), found
     try:
         factors = linearise(system, p, rest, rest, load_factor, STATICS)[1].factorised(system.turned)
@@ -106,7 +109,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
             if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
                 break
             unbalanced = found + change(system, p, step, load_factor)
-            digits = _digits(system, p, unbalanced, _acting(system, p, unbalanced, load_factor))
+            digits = _digits(system, p, unbalanced, load_factor)
             if digits <= best.digits:
                 break
             best = Remainder(step.copy(), digits)
@@ -150,9 +153,12 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     return max(load_size(system, load_factor), reactions, float(sprung.max(initial=0.0)))
 
 
-def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, acting: float) -> float:
-    """Return how many digits of the largest force that acts are sure, by each row and by the balance of the whole."""
-    free = system.free_dofs
+def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
+    """Return how many digits of the largest force that acts are sure, by each row and by the balance of the whole.
+
+    All, where nothing acts.
+    """
+    free, acting = system.free_dofs, _acting(system, p, unbalanced, load_factor)
     left = np.zeros(len(p))
     left[free] = system.along_free(unbalanced)
     worst = float(np.max(np.abs(left) * system.scale, initial=0.0))
@@ -161,6 +167,9 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, acting: float
         size = 1.0 if motion.angular else system.extent
         worst = max(worst, size * abs(float(start_velocity(system, p, motion, None) @ left)))
     if worst == 0.0:
+        return _MOST_DIGITS
+    loaded = load_size(system, load_factor) > 0.0 or bool(system.body(load_factor).any())
+    if not loaded and acting <= _NOTHING * float(np.max(row_floors(system, p) * system.scale)):
         return _MOST_DIGITS
     return min(max(float(np.log10(acting / worst)), 0.0), _MOST_DIGITS) if acting > 0.0 else 0.0
 

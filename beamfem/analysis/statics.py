@@ -1,10 +1,13 @@
 """Static equilibrium under loads that grow with a load factor from 0 to 1."""
 
+import warnings
+
 import numpy as np
 
-from beamfem.analysis.equations import residual
+from beamfem.analysis.equations import MIXED, residual
 from beamfem.analysis.free_motion import require_support
-from beamfem.analysis.newton import Ended, Newton, NewtonResult, round_off_floor, solve_equilibrium
+from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
+from beamfem.analysis.round_off import FEW_DIGITS, row_floors
 from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
@@ -64,13 +67,25 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None) -> 
                 continue
             done.cuts += 1
             step *= 0.5
-            if step < _SMALLEST_STEP:
+            # what round-off takes of a load it takes of a smaller one as well
+            if step < _SMALLEST_STEP or result.ended is Ended.LOST:
                 raise ConvergenceError(
                     f"no equilibrium found beyond load factor {reached:.6g}: {result.ended.value}, "
-                    f"with load steps down to {_SMALLEST_STEP:g}. A limit point or a bifurcation may lie here",
+                    f"with load steps down to {step:.0e}. {_reason(system, result)}",
                     done.solution(),
                 )
+    if done.lost_digits:
+        warnings.warn(f"solve_static: {done.solution().statistics.ended}", stacklevel=2)
     return done.solution()
+
+
+def _reason(system: System, result: NewtonResult) -> str:
+    """Say what may keep a solve from going on."""
+    if result.ended is Ended.LOST:
+        return "Stiffnesses closer to each other, or larger loads, would leave some"
+    if MIXED in system.proven:
+        return "The stiffnesses of this model are so far apart that its tangent loses digits; bring them closer"
+    return "A limit point or a bifurcation may lie here"
 
 
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
@@ -83,7 +98,7 @@ def _unloaded(system: System) -> NewtonResult | None:
     p = system.reference
     if _AT_REST not in system.proven:
         rest = np.zeros(p.shape)
-        balanced = np.abs(residual(system, p, rest, rest, 0.0)).max() <= round_off_floor(system, p)
+        balanced = np.all(np.abs(residual(system, p, rest, rest, 0.0)) <= row_floors(system, p))
         if not balanced or not np.array_equal(system.held_values(0.0), p[system.held_dofs]):
             return None
         system.proven.add(_AT_REST)
@@ -107,11 +122,17 @@ class _Record:
         self.load_factors.append(load_factor)
         self.states.append(state)
 
+    @property
+    def lost_digits(self) -> str:
+        """What to say where round-off leaves few digits."""
+        return f"; round-off leaves {self.digits:.0f} digits of the forces" if self.digits < FEW_DIGITS else ""
+
     def solution(self) -> Solution:
         states = np.array(self.states)
         ended = self.ended.value
         if self.unstable:
             ended += f"; the equilibrium is unstable, {self.unstable} eigenvalues of its tangent are negative"
+        ended += self.lost_digits
         statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, self.digits)
         return Solution(
             self.model,

@@ -25,7 +25,22 @@ def take(step, p, scale):
 
 @njit(cache=True, error_model="numpy")
 def equilibrate(
-    forms, blocks, work, loads, springs, layouts, free, turned, p, body, values, held_change, scale, limits, rows, found,
+    forms,
+    blocks,
+    work,
+    loads,
+    springs,
+    layouts,
+    free,
+    turned,
+    p,
+    body,
+    values,
+    held_change,
+    scale,
+    limits,
+    rows,
+    found,
     residual,
 ):
     """Iterate from p (n,), changed in place; return whether every tangent could be factorised without pivots.

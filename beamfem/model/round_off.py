@@ -58,7 +58,7 @@ def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarr
     along, across = slot < per_node - 1, slot == per_node - 1
     slope = np.abs(block.slope)
     of_r = slope[:, :, erring].sum(axis=2)
-    of_d = 0.0 if positions else np.abs(block.director).sum(axis=1)[None]
+    of_d = np.zeros_like(of_r) if positions else np.abs(block.director).sum(axis=1) + np.zeros_like(of_r)
     of_e = np.zeros_like(of_r) if positions else slope[:, :, across].sum(axis=2)
     if block.measures == ELASTIC_LINE:
         of_e = np.abs(block.second)[:, :, erring].sum(axis=2)
@@ -80,10 +80,10 @@ def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarr
 def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:
     """Errors of the strain measures with those of r0', d and the third argument, where these are of size one."""
     if measures == STRUCTURAL:
-        return of_r + of_d, of_r + of_d, of_e, of_d + 0.0 * of_r
+        return of_r + of_d, of_r + of_d, of_e, of_d
     if measures == ELASTIC_LINE:
-        return of_r, of_e, of_r + of_d, of_d + 0.0 * of_r
-    return of_r, of_e, 0.0 * of_r, of_d + 0.0 * of_r, of_r + of_d, of_e
+        return of_r, of_e, of_r + of_d, of_d
+    return of_r, of_e, np.zeros_like(of_r), of_d, of_r + of_d, of_e
 
 
 def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,5 +1,6 @@
 """Newton's method for an equilibrium at a fixed load factor."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -12,6 +13,7 @@ from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, pr
 from beamfem.analysis.halves import correct, joined, negative_pivots
 from beamfem.analysis.round_off import (
     ENOUGH,
+    MOST_DIGITS,
     digits_of,
     load_size,
     loses_digits,
@@ -99,10 +101,10 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
 
 def _judged(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
     """Return a result with the digits that are sure of its forces, and what its state lacked to balance them."""
-    if result.ended is Ended.CONVERGED:
+    if result.ended is Ended.CONVERGED and math.isnan(result.digits):
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Ended.ROUND_OFF:
-        digits = digits_of(system, result.state, load_factor) if np.isnan(result.digits) else result.digits
+        digits = digits_of(system, result.state, load_factor) if math.isnan(result.digits) else result.digits
         if digits >= ENOUGH:
             return replace(result, digits=digits)
         missing = remainder(system, result.state, load_factor)
@@ -171,7 +173,7 @@ def _solve_band(
     settings = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT, newton.iterations, newton.independent_stresses
     limits = np.array(settings, dtype=float)
     change = held_step, held_force
-    load = load_size(system, load_factor)
+    load = load_size(system, values)
     while found[0] < newton.iterations:
         if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found, unbalanced):
             return None
@@ -195,7 +197,7 @@ def _solve_halves(
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before = load_size(system, load_factor), np.inf
+    load, before = load_size(system, system.point_values(load_factor)), np.inf
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -226,7 +228,9 @@ def verdict(
     if not _small(size, before, iteration, newton):
         return None
     rest = np.zeros(len(p))
-    left = _left(system, residual(system, p, rest, rest, load_factor), load_size(system, load_factor))
+    left = _left(
+        system, residual(system, p, rest, rest, load_factor), load_size(system, system.point_values(load_factor))
+    )
     return _judge(system, p, newton, (size, before, iteration), left, inverted(system, p))
 
 
@@ -256,7 +260,7 @@ class _Left:
     @property
     def digits(self) -> float:
         """How many digits of the largest force every row leaves."""
-        return float(np.log10(self.force / self.largest)) if self.largest > 0.0 else np.inf
+        return min(math.log10(self.force / self.largest), MOST_DIGITS) if self.largest > 0.0 else MOST_DIGITS
 
 
 def _left(system: System, unbalanced: np.ndarray, load: float) -> _Left:

@@ -1,6 +1,6 @@
 """What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is w
 _PLENTY = 12.0  # digits that no further correction improves on
 _LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
 _KEEPS = "the tangent keeps its digits"
-_MOST_DIGITS = 15.0
+MOST_DIGITS = 15.0
 _NOTHING = 1e-10  # of the round-off of a state as it stands: forces below are none
 FEW_DIGITS = 4.0  # of the forces: users are told
 
@@ -134,12 +134,13 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     return bool(lost > _LOSES)
 
 
-def load_size(system: System, load_factor: float) -> float:
-    """Return the largest force at a point, times the size of the model, or moment [N m]."""
+def load_size(system: System, values: Sequence[np.ndarray]) -> float:
+    """Return the largest of forces and moments (..., 3) at points, forces times the size of the model [N m]."""
     largest = 0.0
-    for values in system.point_values(load_factor):
-        size = np.abs(values)
-        largest = max(largest, system.extent * float(size[:, :2].max(initial=0.0)), float(size[:, 2:].max(initial=0.0)))
+    for own in values:
+        if own.size:
+            size = np.abs(own)
+            largest = max(largest, system.extent * float(size[..., :2].max()), float(size[..., 2].max()))
     return largest
 
 
@@ -150,7 +151,7 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     for dof, normal in system.inclined:
         reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))
     sprung = np.abs(springs.stiffness * (p[springs.dof] - springs.rest)) * system.scale[springs.dof]
-    return max(load_size(system, load_factor), reactions, float(sprung.max(initial=0.0)))
+    return max(load_size(system, system.point_values(load_factor)), reactions, float(sprung.max(initial=0.0)))
 
 
 def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
@@ -167,11 +168,11 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
         size = 1.0 if motion.angular else system.extent
         worst = max(worst, size * abs(float(start_velocity(system, p, motion, None) @ left)))
     if worst == 0.0:
-        return _MOST_DIGITS
-    loaded = load_size(system, load_factor) > 0.0 or bool(system.body(load_factor).any())
+        return MOST_DIGITS
+    loaded = load_size(system, system.point_values(load_factor)) > 0.0 or bool(system.body(load_factor).any())
     if not loaded and acting <= _NOTHING * float(np.max(row_floors(system, p) * system.scale)):
-        return _MOST_DIGITS
-    return min(max(float(np.log10(acting / worst)), 0.0), _MOST_DIGITS) if acting > 0.0 else 0.0
+        return MOST_DIGITS
+    return min(max(float(np.log10(acting / worst)), 0.0), MOST_DIGITS) if acting > 0.0 else 0.0
 
 
 def _centre(system: System, p: np.ndarray) -> tuple[float, float]:

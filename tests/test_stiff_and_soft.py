@@ -171,7 +171,7 @@ def test_round_off_is_named_where_it_takes_all_digits():
 
 def test_few_digits_are_said():
     model, *_ = chain("hsh", 1e11, 1e-7, bf.CRBF(2), 0.7)
-    with pytest.warns(UserWarning, match="round-off leaves [123] digits of the forces"):
+    with pytest.warns(bf.RoundOffWarning, match="round-off leaves [123] digits of the forces"):
         solution = bf.solve_static(model)
     assert solution.statistics.digits < 4.0
     assert "round-off leaves" in solution.statistics.ended

@@ -54,11 +54,11 @@ class PathRecord:
         ended = self.ended
         if digits < FEW_DIGITS:
             ended += f"; round-off leaves {digits:.0f} digits of the forces"
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, digits)
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, digits=digits)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
         critical = tuple(self.limit_points), tuple(self.bifurcations)
-        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
+        return Path(self.model, True, rows[:, -1], *states, statistics, None, *critical)
 
 
 @contextmanager

@@ -8,8 +8,8 @@ from beamfem.analysis.equations import residual
 from beamfem.analysis.free_motion import describe
 from beamfem.analysis.initial import RigidVelocity, start_velocity
 from beamfem.analysis.mode_stiffness import stresses_of, weak_stiffness
-from beamfem.analysis.newton import round_off_floor
 from beamfem.analysis.pencil import Pencil
+from beamfem.analysis.round_off import round_off_floor
 from beamfem.analysis.shapes import nodal_motion
 
 _SMALL = 1e-5  # of a motion

@@ -12,9 +12,10 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.condensed import Condensed, condensed
 from beamfem.analysis.critical_points import Segment, SegmentLostError, interpolation_weights
-from beamfem.analysis.crossings import Crossing, Samples, crossings, turning
+from beamfem.analysis.crossings import Crossing, Samples, crossings, turning, without_limit
 
 _BESIDE = 1e-3  # of a segment: how far from a limit point signs of pivots and positions are trusted
+_WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
 _JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
 _DISTANCE = 5e-3  # of the part of a segment that is searched: samples are no closer to a bifurcation
 _TOGETHER = 4.0  # of the distance: bifurcations closer than this are found together
@@ -30,21 +31,27 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
     limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
-    starts = [0.0, *(min(x + _BESIDE, 1.0) for x in extrema)]
-    ends = [*(max(x - _BESIDE, 0.0) for x in extrema), 1.0]
     found = [turning(segment, x) for x in segment.turned]
-    for x, end, start in zip(extrema, ends, starts[1:], strict=False):
-        if end < x < start and abs(_change(segment, end, start)) != (x in limits):
-            raise SegmentLostError("a limit point and a bifurcation cannot be told apart")
-    for start, end in zip(starts, ends, strict=True):
-        if start < end:
-            found += _search(segment, start, end)
+    start = 0.0
+    for i, x in enumerate(extrema):
+        low, high = max(x - _BESIDE, start), min(x + _BESIDE, 1.0)
+        if abs(segment.change(low, high)) != (x in limits):
+            if x not in limits:
+                raise SegmentLostError("several paths cross where the load factor turns")
+            low = max(x - _WINDOW, start)
+            high = min(x + _WINDOW, 0.5 * (x + extrema[i + 1]) if i + 1 < len(extrema) else 1.0)
+            found += without_limit(segment, x, list(_search(segment, low, high)))
+        if start < low:
+            found += _search(segment, start, low)
+        start = high
+    if start < 1.0:
+        found += _search(segment, start, 1.0)
     return sorted(found, key=lambda one: one.share)
 
 
 def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
     _require_one_path(segment, start, end)
-    change = _change(segment, start, end)
+    change = segment.change(start, end)
     if change == 0:
         return
     try:
@@ -58,15 +65,6 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
     else:
         yield from _search(segment, start, found)
         yield from _search(segment, found, end)
-
-
-def _change(segment: Segment, start: float, end: float) -> int:
-    """Return how many eigenvalues of the tangent more are negative at one share than at another.
-
-    Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 where it differs.
-    """
-    change = segment.change(start, end)
-    return change if _symmetric(segment) else change % 2
 
 
 def _require_one_path(segment: Segment, start: float, end: float) -> None:
@@ -95,10 +93,10 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
         before, roots = roots, _roots(known, shares, (start, end))
         if len(roots) == len(before) and np.abs(roots - before).max() < 0.1 * distance:
             left, right = max(shares[shares < roots[0]], default=start), min(shares[shares > roots[-1]], default=end)
-            if _change(segment, start, left) or _change(segment, right, end):
+            if segment.change(start, left) or segment.change(right, end):
                 return middle
             samples = Samples(segment, shares, [known[x] for x in shares.tolist()], left, change, distance)
-            return crossings(samples, roots, _symmetric(segment))
+            return crossings(samples, roots)
     return middle
 
 
@@ -135,14 +133,3 @@ def _roots(known: dict[float, Condensed], shares: np.ndarray, within: tuple[floa
             i = changes[np.argmin(np.abs(changes - len(grid) // 2))]
             found.append(brentq(lambda x, j=number: eigenvalues(x)[j], grid[i], grid[i + 1], xtol=1e-15))
     return np.sort(found)
-
-
-def _symmetric(segment: Segment) -> bool:
-    """Tell whether the tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
-    line, factors = segment.line, segment.before.factors
-    if line.system.symmetric:
-        return True
-    weights = line.weights[line.system.free_dofs]
-    a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
-    one, other = a @ factors.solve(b), b @ factors.solve(a)
-    return bool(abs(one - other) < 1e-6 * max(abs(one), abs(other)))

@@ -1,6 +1,7 @@
 """The path between two of its points, and the limit points there."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -13,6 +14,7 @@ _SHARPNESS = 1e-12  # of a segment: where its critical points are sought no clos
 _LEVEL = 1e-4  # slope of the load factor at a limit point, at most
 _DISTANCE = 5e-3  # of a part of a segment: samples are no closer to where another path crosses
 _TRIALS = 12
+_EVEN = 1e-6  # of products with a tangent from both sides: what they may differ by if it is symmetric
 
 
 class SegmentLostError(Exception):
@@ -61,6 +63,16 @@ class Segment:
             self.found[x] = point
         return point
 
+    def critical(self, x: float) -> np.ndarray:
+        """Return y (n + 1,) at the share of a limit point. Raises SegmentLostError.
+
+        Interpolated where more than the load factor is critical and no equilibrium can be solved for.
+        """
+        if x in self.found:
+            return self.found[x].y
+        shares = self.beside(x, x, _DISTANCE, 0.0, 1.0)
+        return np.asarray(interpolation_weights(shares, x) @ [self.at(at).y for at in shares.tolist()])
+
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
         from scipy.optimize import brentq  # slow to import, and seldom needed
@@ -107,9 +119,23 @@ class Segment:
                 found.append(end)
         return found
 
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
+        if self.line.system.symmetric:
+            return True
+        weights, factors = self.line.weights[self.line.system.free_dofs], self.before.factors
+        a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
+        one, other = a @ factors.solve(b), b @ factors.solve(a)
+        return bool(abs(one - other) < _EVEN * max(abs(one), abs(other)))
+
     def change(self, start: float, end: float) -> int:
-        """Return how many pivots more are negative at one share than at another."""
-        return self.at(end).negative_pivots - self.at(start).negative_pivots
+        """Return how many eigenvalues of the tangent more are negative at one share than at another.
+
+        Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 where it differs.
+        """
+        change = self.at(end).negative_pivots - self.at(start).negative_pivots
+        return change if self.symmetric else change % 2
 
     def beside(self, low: float, high: float, distance: float, start: float, end: float) -> np.ndarray:
         """Return shares in [start, end] that keep a distance from [low, high], two on each side if there is room."""
@@ -127,11 +153,11 @@ class Segment:
         """
         from scipy.optimize import brentq  # slow to import, and seldom needed
 
-        if self.change(start, end) % 2 == 0:
+        if abs(self.change(start, end)) != 1:
             x, samples = self._extremum_between(start, end)
             start, end = max(samples[samples < x], default=start), min(samples[samples > x], default=end)
             changed = self.change(start, end)
-            if changed % 2 == 0:
+            if abs(changed) != 1:
                 return x, changed == 0
         x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
         if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:

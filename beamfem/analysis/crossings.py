@@ -1,5 +1,6 @@
 """Bifurcations that lie close together, interpolated between samples around them and proved by counts of pivots."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -14,6 +15,7 @@ from beamfem.analysis.equations import STATICS, linearise, residual
 _IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
 _LEFT = 4.0  # how much more than what is left unbalanced may have bent it
 _WIDTH = 1e-3  # of the distance of samples: for slopes of interpolated values
+_ALONG = 1e-3  # of a path: what may lie outside of the modes it goes along
 _BESIDE = 5e-3  # of a segment: samples around a turning point
 
 
@@ -63,7 +65,7 @@ class Samples:
         return np.tensordot(interpolation_weights(self.shares, x), values, axes=1)
 
 
-def crossings(samples: Samples, roots: np.ndarray, symmetric: bool) -> list[Crossing]:
+def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
     """Return the bifurcations at shares (k,), ascending, where condensed tangents are singular.
 
     Between any two of them the count of negative pivots must have changed by as many as lie before; where round-off
@@ -71,7 +73,7 @@ def crossings(samples: Samples, roots: np.ndarray, symmetric: bool) -> list[Cros
     """
     groups = [[float(roots[0])]]
     for number, (left, right) in enumerate(pairwise(roots.tolist()), 1):
-        if symmetric and not _apart(samples, 0.5 * (left + right), number):
+        if samples.segment.symmetric and not _apart(samples, 0.5 * (left + right), number):
             groups[-1].append(right)
         else:
             groups.append([right])
@@ -111,7 +113,7 @@ def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
     return [Crossing(x, y, tangent, mode) for mode in modes]
 
 
-def _orthonormal(line: Continuation, modes: np.ndarray) -> np.ndarray:
+def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.ndarray]:
     """Return modes (k, n + 1) of length 1, orthogonal to those before, their largest coordinates positive."""
     result: list[np.ndarray] = []
     for mode in modes:
@@ -119,7 +121,7 @@ def _orthonormal(line: Continuation, modes: np.ndarray) -> np.ndarray:
             mode = mode - line.dot(mode, other) * other
         largest = mode[np.argmax(np.abs(mode) / line.scale)]
         result.append(mode / np.copysign(line.length(mode), largest))
-    return np.array(result)
+    return result
 
 
 def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float) -> None:
@@ -151,3 +153,23 @@ def turning(segment: Segment, x: float) -> Crossing:
     mode = np.append(tangent[:-1], 0.0)
     largest = mode[np.argmax(np.abs(mode) / segment.line.scale)]
     return Crossing(x, weights @ [point.y for point in points], tangent, mode / np.copysign(1.0, largest))
+
+
+def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:
+    """Return the bifurcations around a limit point at a share x, of which one or one mode is the limit point itself.
+
+    There the path goes along the mode. Raises SegmentLostError.
+    """
+    line = segment.line
+    shares = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    along = interpolation_weights(shares, x) @ [segment.at(at).tangent for at in shares.tolist()]
+    along[-1] = 0.0
+    nearest = sorted(found, key=lambda one: abs(one.share - x))
+    for count in range(1, len(nearest) + 1):
+        modes = np.array(_orthonormal(line, [one.mode for one in nearest[:count]]))
+        parts = modes @ (line.weights * along)
+        if line.length(along - parts @ modes) < _ALONG * line.length(along):
+            others = _orthonormal(line, np.linalg.svd(parts[None])[2][1:] @ modes)
+            y, tangent = segment.critical(x), nearest[0].tangent
+            return [*nearest[count:], *(Crossing(x, y, tangent, mode) for mode in others)]
+    raise SegmentLostError("the path does not go along a mode at a limit point")

@@ -34,7 +34,7 @@ class PathRecord:
         share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
         for x in step.limits:
             if x <= share:
-                self.limit_points.append(self.state(segment.at(x).y))
+                self.limit_points.append(self.state(segment.critical(x)))
         for crossing in step.crossings:
             if crossing.share <= share:
                 state = vars(self.state(crossing.y))

@@ -33,16 +33,19 @@ def trace_equilibrium(
     until: Until = None,
     *,
     start: Bifurcation | None = None,
-    direction: int = 1,
+    direction: int | None = None,
     step: float | None = None,
     points: int = 500,
     newton: Newton | None = None,
 ) -> Path:
-    """Return the equilibria along the path that leaves load factor 0 towards larger ones, past limit points.
+    """Return the equilibria along the path that leaves load factor 0, past limit points.
 
     until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
-    path ends after so many `points`. start: a bifurcation of a path of this model, to follow the branch that crosses
-    there to the side of its mode (direction 1) or to the other (-1). step: load factor of the second point.
+    path ends after so many `points`. direction: 1 to leave towards larger load factors, -1 towards negative ones, by
+    default towards `until`. start: a bifurcation of a path of this model, to follow the branch that crosses there to
+    the side of its mode (direction 1, the default) or to the other (-1); a branch that comes back has the mode along
+    it, and is left towards larger load factors (1) or smaller ones (-1). step: how far the load factor of the second
+    point is from 0.
     Steps are cut and grown as the iterations and the turning of the path need.
     Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
     cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
@@ -55,8 +58,10 @@ def trace_equilibrium(
         if start is not None:
             raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
     count("points", points)
-    if direction not in (1, -1):
+    if direction not in (None, 1, -1):
         raise InputError(f"direction must be 1 or -1, got {direction!r}")
+    if direction is None:
+        direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     system = system_of(model, static=True)
     require_support(system)
     _require_load(system)
@@ -66,6 +71,7 @@ def trace_equilibrium(
         line, point = _first(system, newton or Newton(iterations=_ITERATIONS), record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
+            point = replace(point, tangent=direction * point.tangent)
             record.add(point.y)
         else:
             record.add(np.append(start.p, start.at))
@@ -156,7 +162,7 @@ def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord)
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
     """Return the first point of a step with the load factor, None where it does not come to it."""
-    shares = [0.0, *step.limits, 1.0]
+    shares = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
     stops = [step.segment.at(x) for x in shares]
     for before, after in pairwise(stops):
         low, high = before.load_factor - load_factor, after.load_factor - load_factor

@@ -1,11 +1,12 @@
 """An equilibrium path: its states, its limit points and its bifurcations."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, overload
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
@@ -13,7 +14,12 @@ from beamfem.solution import Solution, State, Statistics
 
 @dataclass(frozen=True, eq=False)
 class PathState(State):
-    """One state of a path, with what a Solution offers but without its axis of steps."""
+    """One state of a path, with what a Solution offers but without its axis of steps.
+
+    stable: whether no pivot of the tangent is negative, see `Path`; False where it is singular.
+    """
+
+    stable: bool = field(default=False, kw_only=True)
 
     @property
     def load_factor(self) -> float:
@@ -72,8 +78,12 @@ class Path(Solution):
     """The equilibria along a path, in order; load factors may fall.
 
     Row i is the state `path[i]`; limit points and bifurcations lie between the rows. `save` keeps the rows only.
+    stability (steps,): whether no pivot of the tangent is negative in a row, False at the bifurcation that a branch
+    starts from. Without loads that follow the sections the state is stable then; with them it does not diverge, but may
+    flutter, which `solve_modes` shows.
     """
 
+    stability: np.ndarray | None = None
     limit_points: tuple[PathState, ...] = ()
     bifurcations: tuple[Bifurcation, ...] = ()
 
@@ -86,7 +96,15 @@ class Path(Solution):
         return self._state(row) if isinstance(row, int) else super().__getitem__(row)
 
     def _state(self, row: int) -> PathState:
-        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+        stable = self.stability is not None and bool(self.stability[row])
+        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stable=stable)
+
+    @property
+    def stable(self) -> np.ndarray:
+        """Whether each row is stable (steps,) bool. Raises InputError where that is not known."""
+        if self.stability is None:
+            raise InputError("whether its rows are stable is not known of this path")
+        return self.stability
 
 
 def _first(value: Any) -> Any:

@@ -37,6 +37,11 @@ class PathPoint:
     def negative_pivots(self) -> int:
         return self.factors.negative_pivots
 
+    @property
+    def stable(self) -> bool:
+        """Whether all eigenvalues of a symmetric tangent are positive; of any other, whether it does not diverge."""
+        return self.negative_pivots == 0
+
 
 @dataclass(frozen=True, eq=False)
 class Corrected:

@@ -19,14 +19,20 @@ class PathRecord:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.points: list[np.ndarray] = []
+        self.stable: list[bool] = []
         self.limit_points: list[PathState] = []
         self.bifurcations: list[Bifurcation] = []
         self.iterations = 0
         self.cuts = 0
         self.ended = "the path was not followed to its end"
 
-    def add(self, y: np.ndarray) -> None:
+    def add(self, y: np.ndarray, stable: bool) -> None:
         self.points.append(y)
+        self.stable.append(stable)
+
+    @property
+    def last(self) -> PathState:
+        return self.state(self.points[-1], self.stable[-1])
 
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
@@ -40,18 +46,26 @@ class PathRecord:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
-    def state(self, y: np.ndarray) -> PathState:
+    def state(self, y: np.ndarray, stable: bool = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor."""
         rest = np.zeros(self.model.size)
-        return PathState(y[:-1], rest, rest, float(y[-1]), self.model)
+        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stable=stable)
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)
         statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
-        critical = tuple(self.limit_points), tuple(self.bifurcations)
-        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
+        return Path(
+            self.model,
+            True,
+            rows[:, -1],
+            *states,
+            statistics,
+            stability=np.array(self.stable, dtype=bool),
+            limit_points=tuple(self.limit_points),
+            bifurcations=tuple(self.bifurcations),
+        )
 
 
 @contextmanager

@@ -72,13 +72,13 @@ def trace_equilibrium(
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
-            record.add(point.y)
+            record.add(point.y, point.stable)
         else:
-            record.add(np.append(start.p, start.at))
+            record.add(np.append(start.p, start.at), stable=False)
             if points > 1:
                 point, size = _branch(line, start, direction, record)
         landed = False
-        while not (landed or _met(until, record.state(record.points[-1]))):
+        while not (landed or _met(until, record.last)):
             if len(record.points) >= points:
                 record.ended = f"the {points} points are used up"
                 break
@@ -87,7 +87,7 @@ def trace_equilibrium(
             landing = _landing(line, taken, until) if isinstance(until, float) else None
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
-            record.add(point.y)
+            record.add(point.y, point.stable)
             record.add_critical(line, taken, point)
             report(len(record.points))
         else:
@@ -122,7 +122,7 @@ def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continua
     first = first_equilibrium(system, newton)
     record.iterations += first.iterations
     if not first.ended.good:
-        record.add(np.append(system.reference, 0.0))
+        record.add(np.append(system.reference, 0.0), stable=False)
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
         return begin(system, first.state, 0.0, newton)
@@ -135,7 +135,7 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
     found = leave(line, start, direction)
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
-    record.add(found.y)
+    record.add(found.y, found.stable)
     return found, line.length(found.y - record.points[0])
 
 

@@ -14,6 +14,7 @@ from beamfem.analysis.equations import STATICS, linearise, residual
 
 _IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
 _LEFT = 4.0  # how much more than what is left unbalanced may have bent it
+_RESOLVED = 1e-2  # of the distance of samples: bifurcations that are closer may be one
 _WIDTH = 1e-3  # of the distance of samples: for slopes of interpolated values
 _ALONG = 1e-3  # of a path: what may lie outside of the modes it goes along
 _BESIDE = 5e-3  # of a segment: samples around a turning point
@@ -68,31 +69,31 @@ class Samples:
 def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
     """Return the bifurcations at shares (k,), ascending, where condensed tangents are singular.
 
-    Between any two of them the count of negative pivots must have changed by as many as lie before; where round-off
-    decides on it, they are one place with as many modes. Raises SegmentLostError.
+    Between any two of them the count of negative pivots must have changed by as many as lie before; where they are too
+    close for that, they are one place with as many modes. Raises SegmentLostError.
     """
     groups = [[float(roots[0])]]
     for number, (left, right) in enumerate(pairwise(roots.tolist()), 1):
-        if samples.segment.symmetric and not _apart(samples, 0.5 * (left + right), number):
+        if samples.segment.symmetric and not _apart(samples, left, right, number):
             groups[-1].append(right)
         else:
             groups.append([right])
     return [found for group in groups for found in _at_one_place(samples, float(np.mean(group)), len(group))]
 
 
-def _apart(samples: Samples, x: float, passed: int) -> bool:
-    """Tell whether counts at a share show that so many eigenvalues have changed sign; False if that is round-off."""
+def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
+    """Tell whether the count between two shares shows that so many eigenvalues have changed their sign before.
+
+    False where it does not because they are too close to be told apart. Raises SegmentLostError.
+    """
+    x, apart = 0.5 * (left + right), right - left
     line, y = samples.segment.line, samples.at(x, samples.y)
     rest = np.zeros(len(y) - 1)
     tangent = linearise(line.system, y[:-1], rest, rest, float(y[-1]), STATICS)[1]
     count = tangent.factorised(line.system.turned).negative_pivots
     if count == samples.segment.at(samples.before).negative_pivots + passed * np.sign(samples.change):
         return True
-    values, vectors = np.linalg.eigh(samples.stiffness(x))
-    nearest = np.argmin(np.abs(values))
-    shape = (vectors[:, nearest] @ samples.at(x, samples.shapes))[line.system.free_dofs]
-    stretched = float(np.abs(tangent.sparse(line.system.turned).diagonal()) @ shape**2)
-    if abs(values[nearest]) > 4.0 * np.finfo(float).eps * stretched:
+    if apart > _RESOLVED * samples.distance:
         raise SegmentLostError("the tangent is not singular where its modes lose their stiffness")
     return False
 

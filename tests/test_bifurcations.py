@@ -120,10 +120,12 @@ def test_the_tangent_loses_an_eigenvalue_at_each_bifurcation(gap):
     assert counts == [0, 1, 1, 2]
 
 
-def test_a_double_bifurcation_is_listed_once_for_each_of_its_modes():
-    beams, model = clamped((1.0, 1.0))
+@pytest.mark.parametrize("angle", [0.0, 0.3])
+def test_a_double_bifurcation_is_listed_once_for_each_of_its_modes(angle):
+    beams, model = clamped((1.0, 1.0), angle)
     path = trace_equilibrium(model, 3.0)
     assert loads_of(path) == pytest.approx([buckling_load(0.5 * np.pi)] * 2, rel=1e-8)
+    assert loads_of(path)[0] == loads_of(path)[1]
     one, other = (found.mode for found in path.bifurcations)
     assert abs(one @ other) < 1e-6 * (one @ one)
     for found in path.bifurcations:

@@ -119,13 +119,13 @@ def _roots(known: dict[float, Condensed], shares: np.ndarray, within: tuple[floa
 
     stiffness = np.array([known[x].stiffness for x in shares.tolist()])
 
-    def eigenvalues(x: float) -> np.ndarray:
+    def eigenvalues(x: float | np.ndarray) -> np.ndarray:
         return np.asarray(np.linalg.eigvalsh(np.tensordot(interpolation_weights(shares, x), stiffness, axes=1)))
 
     centre = 0.5 * (shares[0] + shares[-1])
     reach = np.where(_GRID < 0.0, centre - within[0], within[1] - centre)
     grid = centre + _GRID * reach
-    signs = np.sign([eigenvalues(x) for x in grid])
+    signs = np.sign(eigenvalues(grid))
     found = []
     for number, row in enumerate(signs.T):
         changes = np.flatnonzero(row[1:] != row[:-1])

@@ -197,9 +197,11 @@ def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:
     return y * y * (1.0 + 2.0 * x) * a + x * x * (3.0 - 2.0 * x) * b + x * y * (y * a_slope - x * b_slope)
 
 
-def interpolation_weights(at: np.ndarray, x: float) -> np.ndarray:
-    """Return the weights of the values at `at` (k,) that make up the value at x of the polynomial through them."""
-    return np.array([np.prod((x - np.delete(at, i)) / (one - np.delete(at, i))) for i, one in enumerate(at)])
+def interpolation_weights(at: np.ndarray, x: float | np.ndarray) -> np.ndarray:
+    """Return the weights (..., k) of the values at `at` (k,) that make up the values at x (...) of their polynomial."""
+    itself = np.eye(len(at), dtype=bool)
+    above = np.where(itself, 1.0, np.asarray(x)[..., None, None] - at)
+    return np.asarray(np.prod(above / np.where(itself, 1.0, at[:, None] - at), axis=-1))
 
 
 def _zero(values: list[float], at: np.ndarray) -> float:

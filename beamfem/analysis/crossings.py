@@ -15,6 +15,7 @@ from beamfem.analysis.equations import STATICS, linearise, residual
 _IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
 _LEFT = 4.0  # how much more than what is left unbalanced may have bent it
 _RESOLVED = 1e-2  # of the distance of samples: bifurcations that are closer may be one
+_ONE = 1e-7  # of the distance of samples: bifurcations that are closer are one, whatever counts say
 _WIDTH = 1e-3  # of the distance of samples: for slopes of interpolated values
 _ALONG = 1e-3  # of a path: what may lie outside of the modes it goes along
 _BESIDE = 5e-3  # of a segment: samples around a turning point
@@ -58,8 +59,7 @@ class Samples:
 
     def stiffness(self, x: float) -> np.ndarray:
         """Return the condensed tangent (k, k) at a share."""
-        values = np.array([one.stiffness for one in self.condensed])
-        return np.tensordot(interpolation_weights(self.shares, x), values, axes=1)
+        return self.at(x, np.array([one.stiffness for one in self.condensed]))
 
     def at(self, x: float, values: np.ndarray) -> np.ndarray:
         """Return values (s, ...) at the samples, interpolated at a share."""
@@ -87,6 +87,8 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
     False where it does not because they are too close to be told apart. Raises SegmentLostError.
     """
     x, apart = 0.5 * (left + right), right - left
+    if apart < _ONE * samples.distance:
+        return False
     line, y = samples.segment.line, samples.at(x, samples.y)
     rest = np.zeros(len(y) - 1)
     tangent = linearise(line.system, y[:-1], rest, rest, float(y[-1]), STATICS)[1]

@@ -6,7 +6,6 @@ from typing import Any, overload
 
 import numpy as np
 
-from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
@@ -16,10 +15,10 @@ from beamfem.solution import Solution, State, Statistics
 class PathState(State):
     """One state of a path, with what a Solution offers but without its axis of steps.
 
-    stable: whether no pivot of the tangent is negative, see `Path`; False where it is singular.
+    stability: whether it is a stable equilibrium, where that is known; critical points are not.
     """
 
-    stable: bool = field(default=False, kw_only=True)
+    stability: bool | None = field(default=None, kw_only=True)
 
     @property
     def load_factor(self) -> float:
@@ -29,6 +28,11 @@ class PathState(State):
     def _alone(self) -> Solution:
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
         return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"))
+
+    @property
+    def stable(self) -> bool:
+        """Whether it is a stable equilibrium, see `Solution.stable`."""
+        return bool(self._alone.stable[0]) if self.stability is None else self.stability
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point (2,) [m]."""
@@ -78,12 +82,9 @@ class Path(Solution):
     """The equilibria along a path, in order; load factors may fall.
 
     Row i is the state `path[i]`; limit points and bifurcations lie between the rows. `save` keeps the rows only.
-    stability (steps,): whether no pivot of the tangent is negative in a row, False at the bifurcation that a branch
-    starts from. Without loads that follow the sections the state is stable then; with them it does not diverge, but may
-    flutter, which `solve_modes` shows.
+    The bifurcation that a branch starts from is no stable row.
     """
 
-    stability: np.ndarray | None = None
     limit_points: tuple[PathState, ...] = ()
     bifurcations: tuple[Bifurcation, ...] = ()
 
@@ -96,15 +97,8 @@ class Path(Solution):
         return self._state(row) if isinstance(row, int) else super().__getitem__(row)
 
     def _state(self, row: int) -> PathState:
-        stable = self.stability is not None and bool(self.stability[row])
-        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stable=stable)
-
-    @property
-    def stable(self) -> np.ndarray:
-        """Whether each row is stable (steps,) bool. Raises InputError where that is not known."""
-        if self.stability is None:
-            raise InputError("whether its rows are stable is not known of this path")
-        return self.stability
+        stability = None if self.stability is None else bool(self.stability[row])
+        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stability=stability)
 
 
 def _first(value: Any) -> Any:

@@ -9,6 +9,7 @@ from beamfem.analysis.continuation import Continuation, PathPoint
 from beamfem.analysis.steps import Step
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
+from beamfem.model.system import system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Statistics
 
@@ -18,6 +19,8 @@ class PathRecord:
 
     def __init__(self, model: Model) -> None:
         self.model = model
+        # of other tangents the signs of pivots do not tell what is stable
+        self.symmetric = system_of(model, static=True).symmetric
         self.points: list[np.ndarray] = []
         self.stable: list[bool] = []
         self.limit_points: list[PathState] = []
@@ -32,7 +35,7 @@ class PathRecord:
 
     @property
     def last(self) -> PathState:
-        return self.state(self.points[-1], self.stable[-1])
+        return self.state(self.points[-1], self.stable[-1] if self.symmetric else None)
 
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
@@ -46,10 +49,10 @@ class PathRecord:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
-    def state(self, y: np.ndarray, stable: bool = False) -> PathState:
-        """Return the state of y (n + 1,), coordinates and load factor."""
+    def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
+        """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
         rest = np.zeros(self.model.size)
-        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stable=stable)
+        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stability=stability)
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)
@@ -62,7 +65,7 @@ class PathRecord:
             rows[:, -1],
             *states,
             statistics,
-            stability=np.array(self.stable, dtype=bool),
+            stability=np.array(self.stable, dtype=bool) if self.symmetric else None,
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )

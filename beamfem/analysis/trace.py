@@ -13,7 +13,7 @@ from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.path_record import PathRecord, kept
-from beamfem.analysis.statics import first_equilibrium
+from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
@@ -72,7 +72,7 @@ def trace_equilibrium(
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
-            record.add(point.y, point.stable)
+            record.add(point.y, point.negative_pivots == 0)
         else:
             record.add(np.append(start.p, start.at), stable=False)
             if points > 1:
@@ -87,7 +87,7 @@ def trace_equilibrium(
             landing = _landing(line, taken, until) if isinstance(until, float) else None
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
-            record.add(point.y, point.stable)
+            record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
             report(len(record.points))
         else:
@@ -135,27 +135,30 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
     found = leave(line, start, direction)
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
-    record.add(found.y, found.stable)
+    record.add(found.y, found.negative_pivots == 0)
     return found, line.length(found.y - record.points[0])
 
 
 def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
-    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
+    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError.
+
+    It names what most lengths were refused for: of the shortest ones, round-off decides.
+    """
     size = min(size, longest_step(line, point))
-    whole = True
+    reasons: list[str] = []
     while True:
         taken = take_step(line, point, size)
         record.iterations += taken.iterations
         if isinstance(taken, Step):
-            return taken if whole else replace(taken, next_size=min(taken.next_size, size))
+            return taken if not reasons else replace(taken, next_size=min(taken.next_size, size))
         record.cuts += 1
-        whole = False
+        reasons.append(taken.reason)
         size *= 0.5
         if too_small(line, point, size):
-            record.ended = taken.reason
+            record.ended = max(reasons, key=reasons.count)
             raise ConvergenceError(
                 f"the path ends at load factor {point.load_factor:.6g} after {len(record.points)} points: "
-                f"{taken.reason}, with steps along it down to {size:.1e}",
+                f"{record.ended}, with steps along it down to {size:.1e}",
                 record.path(),
             )
 

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import LinearOperator, eigs
 
 from beamfem.analysis.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
 from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.mode_stiffness import mode_stiffnesses
+from beamfem.analysis.mode_stiffness import stiffness_of_modes
 from beamfem.analysis.pencil import UNTURNED, is_symmetric
 from beamfem.analysis.tangent import Factorised, Tangent
 from beamfem.errors import InputError
@@ -47,7 +47,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     left = linearise(system, p, rest, rest, load_factor, STATICS)[0]
     correction[system.free_dofs] = -factors.solve(left[system.free_dofs])
     rates = eigh(
-        -shapes.T @ (rate @ shapes), mode_stiffnesses(system, p, load_factor, modes, correction), eigvals_only=True
+        -shapes.T @ (rate @ shapes), stiffness_of_modes(system, p, load_factor, modes, correction), eigvals_only=True
     )[::-1]
     return np.asarray(load_factor + 1.0 / rates[rates > _NONE * moved][:count])
 

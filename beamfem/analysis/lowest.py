@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, eigh
 
 from beamfem.analysis.eigenpairs import Pairs, largest_pairs, nothing_known
-from beamfem.analysis.mode_stiffness import mode_stiffnesses
+from beamfem.analysis.mode_stiffness import stiffness_of_modes
 from beamfem.analysis.pencil import Pencil
 from beamfem.errors import ConvergenceError
 
@@ -58,7 +58,7 @@ def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correctio
     """
     modes = np.zeros((len(squares), len(pencil.p)))
     modes[:, pencil.system.free_dofs] = vectors.T
-    stiffness = mode_stiffnesses(pencil.system, pencil.p, pencil.load_factor, modes, correction)
+    stiffness = stiffness_of_modes(pencil.system, pencil.p, pencil.load_factor, modes, correction)
     mass = vectors.T @ (pencil.mass @ vectors)
     parts = []
     for part in _alike(squares):

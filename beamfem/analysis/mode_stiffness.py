@@ -15,18 +15,13 @@ from beamfem.kernels.stress import predict_stress
 from beamfem.model.system import System
 
 
-def mode_stiffness(system: System, p: np.ndarray, load_factor: float, mode: np.ndarray) -> float:
-    """Return mode . K mode of the tangent K in the state p (n,) for a change (n,) of the coordinates."""
-    return float(mode_stiffnesses(system, p, load_factor, mode[None], np.zeros_like(p))[0, 0])
-
-
-def mode_stiffnesses(
-    system: System, p: np.ndarray, load_factor: float, modes: np.ndarray, correction: np.ndarray
+def stiffness_of_modes(
+    system: System, p: np.ndarray, load_factor: float, modes: np.ndarray, correction: np.ndarray | None = None
 ) -> np.ndarray:
-    """Return modes K modes^T (m, m) of the tangent K in the state p (n,) for changes (m, n) of the coordinates.
+    """Return the symmetric part (m, m) of modes K modes^T for changes (m, n) of the coordinates.
 
-    K = sum B^T C B over the quadrature points, and what stresses, springs and loads add; correction (n,): what is still
-    missing of the state.
+    K: tangent in the state p (n,), sum B^T C B over the quadrature points and what stresses, springs and loads add;
+    correction (n,): what is still missing of the state.
     """
     rest, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
@@ -38,13 +33,14 @@ def mode_stiffnesses(
         predict_stress(form, plain, work, p, rest, before)
         strains = np.empty((count, *before.shape))
         for mode, strain in zip(modes, strains, strict=True):
-            predict_stress(form, plain, work, p, mode, after)
+            predict_stress(form, plain, work, p, np.ascontiguousarray(mode), after)
             np.subtract(after, before, out=strain)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
-    weak = weak_stiffness(system, p, load_factor, stresses_of(system, p, correction))
+    stresses = stresses_of(system, p, rest if correction is None else correction)
     free = modes[:, system.free_dofs]
-    return np.asarray(result + free @ (weak @ free.T))
+    result += free @ (weak_stiffness(system, p, load_factor, stresses) @ free.T)
+    return np.asarray(0.5 * (result + result.T))
 
 
 def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[np.ndarray, ...]:

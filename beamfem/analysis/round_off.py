@@ -6,12 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.analysis.equations import MIXED, STATICS, linearise, residual, with_stresses
+from beamfem.analysis.equations import MIXED, ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
 from beamfem.analysis.initial import RigidVelocity, start_velocity
 from beamfem.model.system import System
 
-_EPSILON = float(np.finfo(float).eps)
-_ERRORS = 4.0  # of a coordinate's last digit: each term is rounded, and so is their sum
 _CORRECTIONS = 12
 _LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
 _STRAIN = 1e-3
@@ -27,10 +25,9 @@ FEW_DIGITS = 4.0  # of the forces: users are told
 
 def row_floors(system: System, p: np.ndarray) -> np.ndarray:
     """Return the residual (n,) [N, N m] that rounded coordinates leave in each row, see `model.round_off`."""
-    reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
-    turn = max(float(np.max(np.abs(p[~system.positions]), initial=0.0)), 1.0)
+    reach, turn = sizes(system, p)
     positions, directions = system.residual_errors
-    return np.asarray(_ERRORS * _EPSILON * (reach * positions + turn * directions))
+    return np.asarray(ROUND_OFF * (reach * positions + turn * directions))
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:

@@ -50,13 +50,12 @@ def _slot(label: str, names: tuple[str, ...]) -> int:
     return 1 if label == "s" else names.index(label.split("^")[0])
 
 
-def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the force (nc, nv) on nodal vectors that unit errors leave, of positions or of all other vectors."""
+def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
+    """Return the stress resultants (nc, nq, ns) that unit errors leave, of positions or of all other vectors."""
     per_node = len(names)
     slot = np.arange(block.scale.shape[1]) % per_node
     erring = slot == 0 if positions else (slot > 0) & (slot < per_node - 1)
-    along, across = slot < per_node - 1, slot == per_node - 1
-    slope = np.abs(block.slope)
+    across, slope = slot == per_node - 1, np.abs(block.slope)
     of_r = slope[:, :, erring].sum(axis=2)
     of_d = np.zeros_like(of_r) if positions else np.abs(block.director).sum(axis=1) + np.zeros_like(of_r)
     of_e = np.zeros_like(of_r) if positions else slope[:, :, across].sum(axis=2)
@@ -65,7 +64,15 @@ def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarr
     strain = np.zeros(block.reference.shape)
     for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
         strain[:, :, measure] = error
-    stress = np.einsum("cqij,cqj->iqc", np.abs(block.stiffness), strain).transpose(0, 2, 1)
+    return np.einsum("cqij,cqj->cqi", np.abs(block.stiffness), strain)
+
+
+def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
+    """Return the force (nc, nv) on nodal vectors that unit errors leave, of positions or of all other vectors."""
+    per_node = len(names)
+    slot = np.arange(block.scale.shape[1]) % per_node
+    along, across = slot < per_node - 1, slot == per_node - 1
+    slope, stress = np.abs(block.slope), np.moveaxis(stress_errors(block, names, positions), 2, 0)
     on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
     result = np.zeros(block.scale.shape)
     result[:, along] = np.einsum("cq,cqi->ci", on_r, slope[:, :, along])

@@ -30,7 +30,7 @@ from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.round_off import residual_errors
+from beamfem.model.round_off import residual_errors, stress_errors
 from beamfem.model.supports import Spring
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
@@ -109,6 +109,15 @@ class System:
         """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
         return residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+
+    @cached_property
+    def stress_errors(self) -> tuple[np.ndarray, ...]:
+        """Stress resultants (2, nc, nq, ns) of each block that a relative error of one leaves, likewise."""
+        vectors = [element.field.vectors for element in self.model.groups]
+        return tuple(
+            np.array([stress_errors(block, names, part) for part in (True, False)])
+            for block, names in zip(self.blocks, vectors, strict=True)
+        )
 
     @cached_property
     def positions(self) -> np.ndarray:

@@ -11,6 +11,7 @@ ELEMENTS = {"CRBF(1)": 16, "CRBF(2)": 8, "CRBF(2) plane stress": 8, "CRBF(3)": 6
 MODULI = (2e11, 7e10, 2e9, 5e6)
 DENSITY = 2000.0
 LARGEST_LOAD = 40.0  # E I / L^2
+SNAPPING = 160.0  # the same for half the span
 Random = np.random.Generator
 
 
@@ -46,7 +47,7 @@ def led(rng: Random) -> Recipe:
     modulus = _modulus(rng)
     aside = rng.uniform(0.05, 0.6) * _direction(rng, 0.6 * np.pi, 1.4 * np.pi)
     turn = rng.choice([0.0, 0.0, rng.uniform(-np.pi, np.pi)])
-    start = Support(rng.choice(["clamp", "pin"]), (0, 0.0))
+    start = Support(_one(rng, "clamp", "pin"), (0, 0.0))
     how = rng.integers(3)
     end = (
         Support("lead", (0, 1.0), _pair(aside), float(turn)),
@@ -91,8 +92,8 @@ def arch(rng: Random) -> Recipe:
         axis = Axis("arc", ((0.5, rise - radius), (radius, 0.0), _pair(angles)))
     bar = _bar(rng, axis, 2.0)
     modulus = _modulus(rng)
-    supports = [Support(rng.choice(["clamp", "pin"]), (0, share)) for share in (0.0, 1.0)]
-    loads = _loads(rng, [bar], modulus, [(0, float(rng.choice([0.25, 0.45, 0.5, 0.7])))], down=True)
+    supports = [Support(_one(rng, "clamp", "pin"), (0, share)) for share in (0.0, 1.0)]
+    loads = _loads(rng, [bar], modulus, [(0, float(rng.choice([0.25, 0.45, 0.5, 0.7])))], SNAPPING, down=True)
     if rng.random() < 0.3:
         supports.append(Support("lead", (0, 0.4), (0.0, -float(rng.uniform(0.5, 2.0) * rise))))
         loads = ()
@@ -102,11 +103,11 @@ def arch(rng: Random) -> Recipe:
 def portal(rng: Random) -> Recipe:
     height, width = rng.uniform(0.4, 1.2), 1.0
     corners = [(0.0, 0.0), (0.0, height), (width, height * rng.uniform(0.7, 1.3)), (width, 0.0)]
-    bases, joints = rng.choice(["clamp", "clamp", "pin"], 2), rng.choice(["rigid", "rigid", "hinge"], 2)
-    while sum(bases == "pin") + sum(joints == "hinge") > 3:  # a mechanism
-        joints = rng.choice(["rigid", "hinge"], 2)
+    bases, joints = ([_one(rng, *kinds) for _ in range(2)] for kinds in (("clamp", "clamp", "pin"), ("rigid", "hinge")))
+    if bases == ["pin", "pin"] and joints == ["hinge", "hinge"]:  # a mechanism
+        joints[0] = "rigid"
     bars, modulus = _frame(rng, corners)
-    loads = _loads(rng, bars, modulus, [(1, float(rng.uniform(0.0, 1.0)))], 20.0, down=True)
+    loads = _loads(rng, bars, modulus, [(1, float(rng.uniform(0.0, 1.0)))], down=True)
     supports = Support(bases[0], (0, 0.0)), Support(bases[1], (2, 1.0))
     return Recipe("", bars, supports, loads, _chained(joints), modulus)
 
@@ -114,9 +115,9 @@ def portal(rng: Random) -> Recipe:
 def toggle(rng: Random) -> Recipe:
     crown = (rng.uniform(0.3, 0.7), rng.uniform(0.05, 0.4))
     bars, modulus = _frame(rng, [(0.0, 0.0), crown, (1.0, 0.0)])
-    supports = tuple(Support(rng.choice(["clamp", "pin"]), place) for place in ((0, 0.0), (1, 1.0)))
-    loads = _loads(rng, bars, modulus, [(0, 1.0)], down=True)
-    return Recipe("", bars, supports, loads, _chained([rng.choice(["rigid", "hinge"])]), modulus)
+    supports = tuple(Support(_one(rng, "clamp", "pin"), place) for place in ((0, 0.0), (1, 1.0)))
+    loads = _loads(rng, bars, modulus, [(0, 1.0)], SNAPPING, down=True)
+    return Recipe("", bars, supports, loads, _chained([_one(rng, "rigid", "hinge")]), modulus)
 
 
 def chain(rng: Random) -> Recipe:
@@ -129,7 +130,7 @@ def chain(rng: Random) -> Recipe:
     bars, modulus = _frame(rng, corners)
     end = (count - 1, 1.0)
     supports, kinds = [Support("clamp", (0, 0.0))], ["rigid"] * (count - 1)
-    held = rng.choice(["free", "clamp", "pin", "roller", "spring", "lead"])
+    held = _one(rng, "free", "clamp", "pin", "roller", "spring", "lead")
     if held in ("clamp", "pin") and rng.random() < 0.6:
         kinds[rng.integers(count - 1)] = "hinge"
     if held == "roller":
@@ -153,7 +154,7 @@ FAMILIES: dict[str, Callable[[Random], Recipe]] = {
 
 def _axis(rng: Random, start, end) -> Axis:
     """A line, an arc over it or a wave."""
-    kind = rng.choice(["line", "line", "arc", "wave"])
+    kind = _one(rng, "line", "line", "arc", "wave")
     if kind == "line":
         return Axis("line", (start, end))
     if kind == "wave":
@@ -169,7 +170,7 @@ def _axis(rng: Random, start, end) -> Axis:
 
 
 def _bar(rng: Random, axis: Axis, finer: float = 1.0, kind: str | None = None, height: float | None = None) -> Bar:
-    kind = kind or str(rng.choice(sorted(KINDS)))
+    kind = kind or _one(rng, *sorted(KINDS))
     height = height or 10.0 ** -rng.uniform(1.0, 2.7)
     count = 2 * round(0.5 * finer * ELEMENTS.get(kind, 12))
     return Bar(axis, count, kind, float(height * rng.uniform(1.0, 10.0)), float(height))
@@ -177,21 +178,21 @@ def _bar(rng: Random, axis: Axis, finer: float = 1.0, kind: str | None = None, h
 
 def _frame(rng: Random, corners) -> tuple[tuple[Bar, ...], float]:
     """Bars from corner to corner, in half of the frames all of one kind and height."""
-    kind, height = str(rng.choice(sorted(KINDS))), 10.0 ** -rng.uniform(1.2, 2.5)
+    kind, height = _one(rng, *sorted(KINDS)), 10.0 ** -rng.uniform(1.2, 2.5)
     alike = rng.random() < 0.5
     bars = []
     for start, end in pairwise(corners):
         axis = Axis("line", (_pair(start), _pair(end)))
         if rng.random() < 0.15:
             axis = _axis(rng, _pair(start), _pair(end))
-        other = str(rng.choice(sorted(KINDS))) if rng.random() < 0.3 else kind
+        other = _one(rng, *sorted(KINDS)) if rng.random() < 0.3 else kind
         own = (kind, height) if alike else (other, height * rng.uniform(0.5, 2.0))
         bars.append(_bar(rng, axis, 1.0, *own))
     return tuple(bars), _modulus(rng)
 
 
 def _chained(kinds) -> tuple[tuple[str, Place, Place], ...]:
-    return tuple((str(kind), (number, 1.0), (number + 1, 0.0)) for number, kind in enumerate(kinds))
+    return tuple((kind, (number, 1.0), (number + 1, 0.0)) for number, kind in enumerate(kinds))
 
 
 def _loads(rng: Random, bars, modulus, places, largest=LARGEST_LOAD, down=False) -> tuple[Load, ...]:
@@ -203,7 +204,7 @@ def _loads(rng: Random, bars, modulus, places, largest=LARGEST_LOAD, down=False)
         size = 10.0 ** rng.uniform(-0.5, np.log10(largest)) * unit * (1.0 if number == 0 else 0.3)
         away = _direction(rng, 1.3 * np.pi, 1.7 * np.pi) if down else _direction(rng)
         follower = bool(rng.random() < 0.35)
-        kind = rng.choice(["force", "force", "moment", "line"] + ["gravity"] * (number > 0))
+        kind = _one(rng, "force", "force", "moment", "line", *["gravity"] * (number > 0))
         standing = number > 0 and rng.random() < 0.3
         if kind == "gravity":
             weight = (0.05 if standing else 0.3) * size / (DENSITY * bars[where].width * bars[where].height)
@@ -214,7 +215,7 @@ def _loads(rng: Random, bars, modulus, places, largest=LARGEST_LOAD, down=False)
         else:
             reduced = 0.05 * size if standing else size
             at = (where, 0.0 if kind == "line" else fraction)
-            found.append(Load(str(kind), at, _pair(reduced * away), follower, not standing))
+            found.append(Load(kind, at, _pair(reduced * away), follower, not standing))
     if not any(load.scale for load in found):
         found[0] = replace(found[0], scale=True)
     return tuple(found)
@@ -232,6 +233,10 @@ def _modulus(rng: Random) -> float:
 def _direction(rng: Random, low: float = 0.0, high: float = 2.0 * np.pi) -> np.ndarray:
     angle = rng.uniform(low, high)
     return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _one(rng: Random, *choices: str) -> str:
+    return choices[rng.integers(len(choices))]
 
 
 def _pair(values) -> tuple[float, float]:

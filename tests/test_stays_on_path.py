@@ -1,5 +1,7 @@
 """Everyday models whose static solve once left the path from the reference; values by shooting, without any element."""
 
+import signal
+from contextlib import contextmanager
 from functools import cache
 
 import numpy as np
@@ -15,6 +17,22 @@ pytestmark = pytest.mark.skipif(
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STEPS = (1, 10, 100, 1000)
+
+
+@contextmanager
+def within(seconds):
+    """Fail where a block does not end in time."""
+
+    def late(*_):
+        pytest.fail(f"it did not end within {seconds} s")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def member(length, angle, section, material=STEEL):
@@ -272,3 +290,14 @@ def test_a_portal_under_a_follower_load_ends_at_its_limit_point(elements, steps)
         bf.solve_static(model, steps)
     assert caught.value.load_factor == pytest.approx(follower_limit(), rel=1e-4 if elements == 8 else 5e-6)
     assert caught.value.solution.load_factor[-1] <= caught.value.load_factor
+
+
+@pytest.mark.parametrize("steps", [1, 10])
+@pytest.mark.parametrize("element", [bf.CRBF(3), bf.ANCF()], ids=["CRBF-3", "ANCF"])
+def test_a_prescribed_rotation_that_jumps_is_named_and_does_not_run_for_ever(element, steps):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, element, bf.Rectangle(0.02, 0.002), STEEL)
+    turn = bf.Prescribed(beam.end, rotation=lambda load: 1.5 if load > 0.3 else 0.0)
+    model = bf.Model([beam], [bf.Clamp(beam.start), turn])
+    with within(60.0), pytest.raises(bf.ConvergenceError, match="rotation") as caught:
+        bf.solve_static(model, steps)
+    assert caught.value.solution.load_factor[-1] == pytest.approx(0.3, abs=1e-3)

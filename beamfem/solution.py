@@ -6,29 +6,37 @@ from functools import cached_property
 from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from beamfem import postprocess
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
+from beamfem.energies import Energy, potential
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.loads import PointForce, factor
-from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
+from beamfem.model.reference import reference_position
 from beamfem.postprocess import Fields, SectionForces
+from beamfem.status import Status
+
+if TYPE_CHECKING:
+    from beamfem.energy_drift import EnergyDrift
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence."""
+    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
+
+    status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
+    """
 
     iterations: int
     steps: int
     cuts: int
     ended: str
+    status: Status = Status.COMPLETED
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,26 +50,12 @@ class State:
     model: Model
 
 
-@dataclass(frozen=True)
-class Energy:
-    """Energies (steps,) [J]; potential is that of gravity and of the other constant dead forces.
-
-    Forces that follow have none; springs and foundations are not counted."""
-
-    kinetic: np.ndarray
-    strain: np.ndarray
-    potential: np.ndarray
-
-    @property
-    def total(self) -> np.ndarray:
-        return self.kinetic + self.strain + self.potential
-
-
 @dataclass(frozen=True, eq=False)
 class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
-    at (steps,): load factors or times [s]; p, v, a (steps, n).
+    at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
+    equilibrium, where the solver knows it.
     """
 
     model: Model
@@ -71,11 +65,14 @@ class Solution:
     v: np.ndarray
     a: np.ndarray
     statistics: Statistics
+    stability: np.ndarray | None = None
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
-        return f"{type(self).__name__}({len(self.at)} states, {span}, of {self.model!r})"
+        unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
+        drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift})"
 
     def __len__(self) -> int:
         return len(self.at)
@@ -107,7 +104,33 @@ class Solution:
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
-        return Solution(self.model, self.static, *parts, self.statistics)
+        stability = None if self.stability is None else self.stability[rows]
+        return Solution(self.model, self.static, *parts, self.statistics, stability)
+
+    @property
+    def status(self) -> Status:
+        """How the solve ended."""
+        return self.statistics.status
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what to know before using the numbers; empty where there is nothing to say."""
+        return self.statistics.warnings
+
+    @cached_property
+    def stable(self) -> np.ndarray:
+        """Return whether each row is a stable equilibrium (steps,): no small motion about it grows.
+
+        Without follower loads: the tangent has no negative eigenvalue (Lagrange and Dirichlet). With them, no mode of
+        vibration diverges or flutters. Raises InputError for a motion.
+        """
+        if not self.static:
+            raise InputError("stable is asked of the rows of a static solution; this one is a motion")
+        if self.stability is not None:
+            return self.stability
+        from beamfem.analysis.stability import stable_rows
+
+        return stable_rows(self)
 
     @property
     def time(self) -> np.ndarray:
@@ -186,32 +209,14 @@ class Solution:
         """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
         kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
         strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
-        return Energy(kinetic, strain, self._potential())
+        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
 
-    def _potential(self) -> np.ndarray:
-        result = np.zeros(len(self))
-        for load in self.model.gravity:
-            weights = np.array([factor(load, at, self.static) for at in self.at])
-            for mesh, carried in zip(self.model.meshes, self._momenta, strict=True):
-                result -= weights * ((carried.first_moment - _reference_moment(mesh)) @ np.array(load.vector))
-        for acting in self.model.point_loads:
-            if acting.follower and isinstance(acting, PointForce):
-                continue
-            weights = np.array([factor(acting, at, self.static) for at in self.at])
-            fx, fy, moment = acting.value
-            result -= weights * (self.displacement(acting.point) @ np.array([fx, fy]))
-            if moment:
-                result -= weights * moment * self.rotation(acting.point)
-        for spread in self.model.distributed:
-            if spread.follower:
-                continue
-            weights = np.array([factor(spread, at, self.static) for at in self.at])
-            mesh = self.model.mesh_of(spread.beam.start)
-            element, xi, weight = length_points(mesh)
-            now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.p), element, xi).r
-            start = reference_position(mesh, element, xi)
-            result -= weights * (np.einsum("sqc,c->sq", now - start, np.array(spread.vector)) @ weight)
-        return result
+    @cached_property
+    def energy_drift(self) -> "EnergyDrift | None":
+        """Error of the energy over a motion that nothing drives; None elsewhere. See `energy_drift.EnergyDrift`."""
+        from beamfem.energy_drift import energy_drift
+
+        return energy_drift(self) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum (steps, 2) [kg m/s]."""
@@ -305,14 +310,6 @@ class Solution:
         from beamfem.io.results import save
 
         save(self, path)
-
-
-def _reference_moment(mesh: BeamMesh) -> np.ndarray:
-    """Integral of the reference position over the mass (2,) [kg m]."""
-    element, xi, inertia = inertia_points(mesh)
-    return np.asarray(
-        inertia[:, 0] @ reference_position(mesh, element, xi) + inertia[:, 1] @ reference_axis(mesh, element, xi).d
-    )
 
 
 def _single(value: Any) -> Any:

@@ -8,12 +8,6 @@ import pytest
 from judged import NoReference, judged
 from random_models import FAMILIES, random_recipe
 
-import beamfem as bf
-
-pytestmark = pytest.mark.skipif(
-    not hasattr(bf, "LimitPointError"), reason="statics that follows the path and names limit points"
-)
-
 STEPS = (1, 10, 100)
 # once off the path: silently under follower loads, onto unstable states, over limit points, and given up without one
 HARD = (41, 69, 75, 77, 84, 88, 103, 111, 120, 162, 165, 218, 237, 238, 241, 258, 277, 281, 318, 346, 360, 395, 490)

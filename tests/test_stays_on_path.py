@@ -11,10 +11,6 @@ from shooting import Member, solved
 
 import beamfem as bf
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(bf, "LimitPointError"), reason="statics that follows the path and names limit points"
-)
-
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STEPS = (1, 10, 100, 1000)
 

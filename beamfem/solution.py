@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 class Statistics:
     """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
 
+    digits: of the forces of the last equilibrium that the balance of loads and reactions makes sure, nan if not known.
     status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
     """
 
@@ -37,6 +38,7 @@ class Statistics:
     ended: str
     status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
+    digits: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,6 +195,13 @@ class Solution:
         from beamfem.reactions import support_forces
 
         return support_forces(self)
+
+    @cached_property
+    def remainders(self) -> np.ndarray:
+        """What the coordinates of a static solution lack below their last digit (steps, n), see `last_digits`."""
+        from beamfem.last_digits import remainders
+
+        return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""

@@ -239,9 +239,7 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     return Momenta(kinetic, linear, angular, moment)
 
 
-def _resultants(
-    mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray
-) -> np.ndarray:
+def _resultants(mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Stress resultants (steps, stations, ns) of nodal vectors (steps, nodes, vectors, 2), axis `now` at stations."""
     own = mesh.beam.element
     stiffness, reference = stiffness_at(mesh, element, xi)

@@ -23,12 +23,16 @@ from beamfem.postprocess import Fields, SectionForces
 
 @dataclass(frozen=True)
 class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence."""
+    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
+
+    warnings: sentences of the solver on what to be careful about.
+    """
 
     iterations: int
     steps: int
     cuts: int
     ended: str
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,6 +131,13 @@ class Solution:
     def iterations(self) -> int:
         """Newton iterations in all."""
         return self.statistics.iterations
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What the solver and the elements say against the digits of this result, in sentences; empty if nothing."""
+        from beamfem.analysis.locking import locking_warnings
+
+        return (*self.statistics.warnings, *locking_warnings(self))
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps."""

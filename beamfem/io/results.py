@@ -1,7 +1,7 @@
 """Solutions in HDF5 files: the model described in JSON, the states in rows."""
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
@@ -104,8 +104,9 @@ def _read(file: Any) -> Solution:
     at, p, v, a = (np.asarray(file[name][:rows]) for name in _STATES)
     if at.shape != (rows,) or any(values.shape != (rows, model.size) for values in (p, v, a)):
         raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")
-    statistics = Statistics(**json.loads(file.attrs["statistics"]))
+    saved = json.loads(file.attrs["statistics"])
+    statistics = Statistics(**{**saved, "warnings": tuple(saved.get("warnings", ()))})
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
-        statistics = Statistics(statistics.iterations, statistics.steps, statistics.cuts, ended)
+        statistics = replace(statistics, ended=ended)
     return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics)

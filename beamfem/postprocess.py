@@ -243,15 +243,12 @@ def _resultants(mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndar
     """Stress resultants (steps, stations, ns) of nodal vectors (steps, nodes, vectors, 2), axis `now` at stations."""
     own = mesh.beam.element
     stiffness, reference = stiffness_at(mesh, element, xi)
-    if own.integration == "lobatto":
-        strains = _recovered(mesh, vectors)
-    else:
-        strains = own.forces.strains(now) - reference
+    strains = _recovered(mesh, vectors) if own.integration == "lobatto" else own.forces.strains(now) - reference
     return np.einsum("qij,sqj->sqi", stiffness, strains)
 
 
 def _recovered(mesh: BeamMesh, vectors: np.ndarray) -> np.ndarray:
-    """Strains (steps, stations, ns) from those at the Lobatto points; between these they wave, in slender beams much."""
+    """Strains (steps, stations, ns) from those at the Lobatto points; between these the stretch waves."""
     own = mesh.beam.element
     where, at = np.repeat(np.arange(mesh.elements), len(lobatto.POINTS)), np.tile(lobatto.POINTS, mesh.elements)
     strains = own.forces.strains(axis(mesh, vectors, where, at)) - own.forces.strains(reference_axis(mesh, where, at))

@@ -44,7 +44,7 @@ def energy_stiffness(
     inner[:] = np.swapaxes(table, -1, -2) @ inner @ table
     if isinstance(forces, Structural):
         _spread_curvature(result)
-    for j in np.flatnonzero(_at_nodes(forces)):
+    for j in np.flatnonzero(_at_nodes(forces)).tolist():
         inner[..., j, j] *= _TRAPEZOID / WEIGHTS
     if isinstance(coordinates, ShearFree):
         shear = int(np.argmax(forces.shear_measures))

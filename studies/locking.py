@@ -271,7 +271,8 @@ def _tables(result: Locking) -> list[Table]:
         [[*key, *(f"{value:.6f}" for value in (*result.shear[key], *result.stretch[key]))] for key in result.shear],
         "Structural forces. Between nodes without shear a bubble 6 xi (1 - xi) carries it; its mean is 1 and its mean "
         "square 1.2, at the 2 Gauss points it is 1, in the middle 3/2, which at the Lobatto points counts with 4/9. "
-        "So full integration is 1.2 times too stiff at every mesh, in shear, and in stretch where |r_x| = 1 is fixed; with a stretch coordinate stretch is exact. The bending part "
+        "So full integration is 1.2 times too stiff at every mesh, in shear, and in stretch where |r_x| = 1 is fixed; "
+        "with a stretch coordinate stretch is exact. The bending part "
         "of the deflection, P L^3 / (3 E I) (1 - 1 / (4 n^2)) with n elements, is subtracted.",
     )
     return [bending, shear, rigid]

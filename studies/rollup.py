@@ -215,7 +215,8 @@ def _tables(result: RollUp) -> list[Table]:
         header,
         rows,
         "Reduced integration (k points, 2 of shear-rigid ones); on the cubic field the Lobatto points with structural "
-        "forces and the elastic line, full with continuum forces on gradients or rotations. Expected: structural forces and elastic line as many as the moment says; continuum "
+        "forces and the elastic line, full with continuum forces on gradients or rotations. Expected: structural "
+        "forces and elastic line as many as the moment says; continuum "
         "forces a little more, the energy of uniform bending (at the clamp gradients bend a little differently). Load "
         f"steps and iterations for one circle: fewest of beginning with {', '.join(map(str, STARTS))} steps.",
     )

@@ -118,7 +118,11 @@ def test_only_rigid_motions_cost_nothing(forces, coordinates, curve, elements):
 @pytest.mark.parametrize("slenderness", [1e2, 1e4])
 @pytest.mark.parametrize("element", [e for e in LOBATTO if e.forces.name != "elastic-line"], ids=identify)
 def test_section_forces_of_a_slender_beam_have_no_waves(element, slenderness):
-    """Those of the deformed beam cut by hand, within what 40 elements of one normal force each can say."""
+    """Those of the deformed beam cut by hand, within the first order that 40 elements have; waves grow with (L / h)^2.
+
+    Of a body, c = d'.d' / 2 steps from element to element while the stretch of their node is one.
+    """
+    allowed = 0.07 if element.forces.fills_body else 0.025
     solution, beam = cantilever(element, 40, slenderness, tip_force)
     forces = solution.section_forces(beam)
     load = 5.0 * 2e11 * beam.section.second_moment
@@ -130,7 +134,7 @@ def test_section_forces_of_a_slender_beam_have_no_waves(element, slenderness):
         (forces.shear, load * np.cos(angle)),
         (forces.moment, load * arm),
     ):
-        assert np.abs(found[-1] - exact).max() < 0.04 * load
+        assert np.abs(found[-1] - exact).max() < allowed * load
 
 
 def readable_energy(mesh, p):

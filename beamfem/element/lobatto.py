@@ -74,10 +74,7 @@ def assumed(forces: Forces, coordinates: Coordinates, jacobian: np.ndarray) -> n
 
 
 def recovery(forces: Forces) -> np.ndarray:
-    """Return the table (ns, stations, points) of the straight line nearest to each measure in the mean square.
-
-    Of the stretch of a body the mean: c steps from element to element and the stretch of their common node cannot follow.
-    """
+    """Return the table (ns, stations, points) of the straight line nearest to each measure in the mean square."""
     nodal = _at_nodes(forces)
     table = np.empty((len(nodal), len(STATIONS), len(POINTS)))
     at_points, at_stations = (2.0 * xi - 1.0 for xi in (POINTS, STATIONS))
@@ -85,8 +82,6 @@ def recovery(forces: Forces) -> np.ndarray:
         weights = _TRAPEZOID if only_nodes else WEIGHTS
         slope = weights * at_points / (weights @ at_points**2)
         row[:] = weights + at_stations[:, None] * slope
-    if not isinstance(forces, Structural | ElasticLine):
-        table[_STRETCH] = WEIGHTS
     return table
 
 

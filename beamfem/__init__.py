@@ -25,7 +25,15 @@ from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
-from beamfem.errors import BeamfemError, ConvergenceError, FreeMotionError, InputError, UnknownPointError
+from beamfem.errors import (
+    BeamfemError,
+    ConvergenceError,
+    FreeMotionError,
+    InputError,
+    LimitPointError,
+    UnknownPointError,
+    UnstableWarning,
+)
 from beamfem.io.cad import read_dxf
 from beamfem.io.frame import Frame
 from beamfem.io.mesh import LineMesh, read_mesh
@@ -37,10 +45,12 @@ from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.model.time_functions import Interpolated, Piecewise
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solution import Solution, State
+from beamfem.status import Status
 from beamfem.sweeps.sweep import sweep
 
 __all__ = [
@@ -74,9 +84,11 @@ __all__ = [
     "Gravity",
     "Hinge",
     "InputError",
+    "Interpolated",
     "Lagrange",
     "Layer",
     "Layered",
+    "LimitPointError",
     "Line",
     "LineMesh",
     "Material",
@@ -86,6 +98,7 @@ __all__ = [
     "Parametric",
     "Path",
     "PathState",
+    "Piecewise",
     "Pin",
     "Point",
     "PointForce",
@@ -105,9 +118,11 @@ __all__ = [
     "SplitContinuum",
     "Spring",
     "State",
+    "Status",
     "Structural",
     "Tube",
     "UnknownPointError",
+    "UnstableWarning",
     "converge",
     "elliptic_arc",
     "graded",

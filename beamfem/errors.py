@@ -25,3 +25,18 @@ class ConvergenceError(BeamfemError, RuntimeError):
     def __init__(self, message: str, solution: Any = None) -> None:
         super().__init__(message)
         self.solution = solution
+
+
+class LimitPointError(ConvergenceError):
+    """A static solve that came to a limit point: beyond `load_factor` there is no equilibrium near by.
+
+    `solution` holds the states before it.
+    """
+
+    def __init__(self, message: str, load_factor: float, solution: Any = None) -> None:
+        super().__init__(message, solution)
+        self.load_factor = load_factor
+
+
+class UnstableWarning(UserWarning):
+    """Some rows of a static solution are equilibria that the structure would leave."""

@@ -19,6 +19,11 @@ class PathState(State):
     def load_factor(self) -> float:
         return self.at
 
+    @property
+    def stable(self) -> bool:
+        """Whether the state is a stable equilibrium; see `Solution.stable`."""
+        return bool(self._alone.stable[0])
+
     @cached_property
     def _alone(self) -> Solution:
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])

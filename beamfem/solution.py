@@ -6,7 +6,7 @@ from functools import cached_property
 from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -19,19 +19,24 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.postprocess import Fields, SectionForces
+from beamfem.status import Status
+
+if TYPE_CHECKING:
+    from beamfem.energy_drift import EnergyDrift
 
 
 @dataclass(frozen=True)
 class Statistics:
     """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
 
-    warnings: sentences of the solver on what to be careful about.
+    status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
     """
 
     iterations: int
     steps: int
     cuts: int
     ended: str
+    status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
 
 
@@ -65,7 +70,8 @@ class Energy:
 class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
-    at (steps,): load factors or times [s]; p, v, a (steps, n).
+    at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
+    equilibrium, where the solver knows it.
     """
 
     model: Model
@@ -75,11 +81,14 @@ class Solution:
     v: np.ndarray
     a: np.ndarray
     statistics: Statistics
+    stability: np.ndarray | None = None
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
-        return f"{type(self).__name__}({len(self.at)} states, {span}, of {self.model!r})"
+        unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
+        drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
+        return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift})"
 
     def __len__(self) -> int:
         return len(self.at)
@@ -111,7 +120,35 @@ class Solution:
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
-        return Solution(self.model, self.static, *parts, self.statistics)
+        stability = None if self.stability is None else self.stability[rows]
+        return Solution(self.model, self.static, *parts, self.statistics, stability)
+
+    @property
+    def status(self) -> Status:
+        """How the solve ended."""
+        return self.statistics.status
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what to know before using the numbers, of locking too; empty where there is nothing to say."""
+        from beamfem.analysis.locking import locking_warnings
+
+        return (*self.statistics.warnings, *locking_warnings(self))
+
+    @cached_property
+    def stable(self) -> np.ndarray:
+        """Return whether each row is a stable equilibrium (steps,): no small motion about it grows.
+
+        Without follower loads: the tangent has no negative eigenvalue (Lagrange and Dirichlet). With them, no mode of
+        vibration diverges or flutters. Raises InputError for a motion.
+        """
+        if not self.static:
+            raise InputError("stable is asked of the rows of a static solution; this one is a motion")
+        if self.stability is not None:
+            return self.stability
+        from beamfem.analysis.stability import stable_rows
+
+        return stable_rows(self)
 
     @property
     def time(self) -> np.ndarray:
@@ -131,13 +168,6 @@ class Solution:
     def iterations(self) -> int:
         """Newton iterations in all."""
         return self.statistics.iterations
-
-    @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """What the solver and the elements say against the digits of this result, in sentences; empty if nothing."""
-        from beamfem.analysis.locking import locking_warnings
-
-        return (*self.statistics.warnings, *locking_warnings(self))
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps."""
@@ -198,6 +228,13 @@ class Solution:
         kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
         strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
         return Energy(kinetic, strain, self._potential())
+
+    @cached_property
+    def energy_drift(self) -> "EnergyDrift | None":
+        """Error of the energy over a motion that nothing drives; None elsewhere. See `energy_drift.EnergyDrift`."""
+        from beamfem.energy_drift import energy_drift
+
+        return energy_drift(self) if len(self) else None
 
     def _potential(self) -> np.ndarray:
         result = np.zeros(len(self))

@@ -247,7 +247,7 @@ def test_frequencies_of_a_ring_that_locks_say_so():
 def test_warnings_of_a_solver_come_first_and_are_saved(tmp_path):
     pytest.importorskip("h5py")
     solution, _ = cantilever(bf.CRBF(1), 2, 10, tip_force)
-    said = bf.solution.Statistics(3, 1, 0, "ended", ("take care",))
+    said = bf.solution.Statistics(3, 1, 0, "ended", warnings=("take care",))
     marked = bf.Solution(solution.model, True, solution.at, solution.p, solution.v, solution.a, said)
     assert marked.warnings == ("take care",)
     marked.save(tmp_path / "marked.h5")

@@ -213,6 +213,17 @@ def test_a_saved_prescribed_motion_cannot_be_run_on(tmp_path):
         bf.simulate(bf.load(tmp_path / "moved.h5").model, 0.01, 1e-3)
 
 
+def test_a_saved_table_is_kept_by_its_points_and_can_be_run_on(tmp_path):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.ANCF(), bf.Rectangle(0.1, 0.1), bf.Material(1e7, 0.3, 1000.0))
+    table = bf.Interpolated([(0.0, 0.0), (0.0042, 1e-3), (1.0, 0.5)])
+    supports = [bf.Prescribed(beam.start, ux=0.0, uy=table, rotation=0.0)]
+    before = bf.simulate(bf.Model([beam], supports), 0.01, 1e-3, save_every=5)
+    before.save(tmp_path / "moved.h5")
+    model = bf.load(tmp_path / "moved.h5").model
+    assert model.supports[0].uy == table
+    assert np.array_equal(bf.simulate(model, 0.01, 1e-3, save_every=5).p, before.p)
+
+
 STEEL, RUBBER = bf.Material(2e11, 0.3, 7800.0), bf.Material(1e7, 0.4, 1200.0)
 
 

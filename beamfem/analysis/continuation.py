@@ -40,11 +40,15 @@ class PathPoint:
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """The last y (n + 1,) of an iteration, how many iterations it took and why it ended."""
+    """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
+
+    negative_pivots: fewest and most of the tangents on the way.
+    """
 
     y: np.ndarray
     iterations: int
     ended: Ended
+    negative_pivots: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,17 +109,21 @@ class Continuation:
         """Return the stress resultants that a step from y predicts, None where Newton is to take those of the state."""
         return predicted_stresses(self.system, y[:-1], step[:-1]) if self.newton.independent_stresses else None
 
-    def correct(self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray) -> Corrected:
+    def correct(
+        self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray, farthest: float = np.inf
+    ) -> Corrected:
         """Return the equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,).
 
-        stresses: of the first geometric tangent, as they were predicted for `start`.
+        stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
+        beyond which no equilibrium is looked for.
         """
-        y, last = self.hold(start), np.inf
+        y, last, counts = self.hold(start), np.inf, []
         for iteration in range(1, self.newton.iterations + 1):
             try:
-                balance, along, _ = self._solve(y, stresses)
+                balance, along, factors = self._solve(y, stresses)
             except (LinAlgError, ValueError):
                 return Corrected(y, iteration, Ended.SINGULAR)
+            counts.append(factors.negative_pivots)
             reach = self.dot(normal, along)
             if reach == 0.0:
                 return Corrected(y, iteration, Ended.SINGULAR)
@@ -124,9 +132,11 @@ class Continuation:
             stresses = self.stresses(y, new - y)
             size = float(np.max(np.abs(new - y) / self.scale))
             y = new
+            if self.length(y - start) > farthest:
+                return Corrected(y, iteration, Ended.DIVERGED)
             ended = verdict(self.system, y[:-1], float(y[-1]), self.newton, iteration, (size, last))
             if ended is not None:
-                return Corrected(y, iteration, ended)
+                return Corrected(y, iteration, ended, (min(counts), max(counts)))
             last = size
         return Corrected(y, self.newton.iterations, Ended.EXHAUSTED)
 

@@ -30,6 +30,7 @@ class Ended(Enum):
     DIVERGED = "the corrections grew beyond the size of the model"
     EXHAUSTED = "the iterations ran out before the corrections became small"
     SINGULAR = "the tangent is singular"
+    LOST = "the count of negative pivots changed on the way, so the equilibrium may be one of another path"
     INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
 
     @property
@@ -73,20 +74,26 @@ class Newton:
             raise InputError(f"independent_stresses must be True or False, got {self.independent_stresses!r}")
 
 
-def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, newton: Newton) -> NewtonResult:
-    """Return the equilibrium at `load_factor` that is found from the state `start` (n,)."""
+def solve_equilibrium(
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, guarded: bool = False
+) -> NewtonResult:
+    """Return the equilibrium at `load_factor` that is found from the state `start` (n,).
+
+    guarded: stop where the tangent has another count of negative pivots than at the start, from the third iteration on:
+    the second tangent takes the stresses of a linear step, which may be far too large.
+    """
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None:
         solve = _solve_halves if worth_cutting(system) else _solve_band
-        result = solve(system, start, load_factor, newton, held_step)
+        result = solve(system, start, load_factor, newton, held_step, guarded)
         if result is not None:
             return result
     p, rest = start.copy(), np.zeros(len(start))
     scale = system.scale
     free = system.free_dofs
     stresses = None
-    last = np.inf
+    last, begun_with = np.inf, -1
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
         step = held_step if iteration == 1 else np.zeros(len(p))
@@ -98,20 +105,27 @@ def solve_equilibrium(system: System, start: np.ndarray, load_factor: float, new
             step[free] = factors.solve(right)
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
+        if guarded:
+            if iteration == 1:
+                begun_with = factors.negative_pivots
+            elif iteration > 2 and factors.negative_pivots != begun_with:
+                return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
         if newton.independent_stresses:
             stresses = predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
         if ended is not None:
-            state = start if ended is Ended.DIVERGED else p
+            if guarded and factors.negative_pivots != begun_with:
+                ended = Ended.LOST
+            state = p if ended.good else start
             return NewtonResult(state, iteration, ended, factors.negative_pivots)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 
 def _solve_band(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
     p, held_force = start.copy(), np.zeros(len(start))
@@ -130,17 +144,18 @@ def _solve_band(
         system.turned,
     )
     body = system.body(load_factor)
-    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0])
-    settings = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT, newton.iterations, newton.independent_stresses
-    limits = np.array(settings, dtype=float)
+    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, -1.0, 0.0])
+    bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
+    limits = np.array((*bounds, newton.iterations, newton.independent_stresses, guarded), dtype=float)
     change = held_step, held_force
     load = max((float(np.abs(forces).max(initial=0.0)) for forces in values), default=0.0)
     while found[0] < newton.iterations:
         if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
-        # the factorisation keeps the inverse of each pivot on the diagonal
-        negative = int((rows[:, rows.shape[1] // 2] < 0.0).sum())
+        negative = int(found[7])
+        if guarded and negative != found[6]:
+            return NewtonResult(start, iterations, Ended.LOST, negative)
         if _grown(size):
             return NewtonResult(start, iterations, Ended.DIVERGED, negative)
         if _small(size, before, iterations, newton):
@@ -152,12 +167,12 @@ def _solve_band(
 
 
 def _solve_halves(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool
 ) -> NewtonResult | None:
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before = _load_size(system, load_factor), np.inf
+    load, before, begun_with = _load_size(system, load_factor), np.inf, -1
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -165,15 +180,21 @@ def _solve_halves(
                 size, pivots = correct(halves, pool, newton.independent_stresses, change)
             except LinAlgError:
                 return None
+            negative = negative_pivots(halves, pivots) if guarded or _grown(size) else 0
+            begun_with = negative if iteration == 1 else begun_with
+            if guarded and iteration > 2 and negative != begun_with:
+                return NewtonResult(start, iteration, Ended.LOST, negative)
             if _grown(size):
-                return NewtonResult(start, iteration, Ended.DIVERGED, negative_pivots(halves, pivots))
+                return NewtonResult(start, iteration, Ended.DIVERGED, negative)
             if _small(size, before, iteration, newton):
                 p, unbalanced, jacobian = joined(halves, pool)
                 largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
                 force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
                 ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
                 if ended is not None:
-                    return NewtonResult(p, iteration, ended, negative_pivots(halves, pivots))
+                    negative = negative_pivots(halves, pivots)
+                    lost = guarded and negative != begun_with
+                    return NewtonResult(start if lost else p, iteration, Ended.LOST if lost else ended, negative)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)

@@ -51,7 +51,7 @@ class PathRecord:
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
         critical = tuple(self.limit_points), tuple(self.bifurcations)
-        return Path(self.model, True, rows[:, -1], *states, statistics, *critical)
+        return Path(self.model, True, rows[:, -1], *states, statistics, None, *critical)
 
 
 @contextmanager

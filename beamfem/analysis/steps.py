@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.bifurcations import Crossing, bifurcations
-from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.continuation import Continuation, Corrected, PathPoint
 from beamfem.analysis.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
@@ -15,6 +15,7 @@ _LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_CORRECTION = 0.5  # of the step
+_FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
 
@@ -54,7 +55,8 @@ def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
 def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
     """Return the step of a length from a point with what lies in it, or why it is refused."""
     change = size * point.tangent
-    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent))
+    farthest = _FARTHEST * size
+    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent), farthest)
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)
     if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:
@@ -63,6 +65,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
         new = line.linearised(corrected.y, point.tangent)
     except (LinAlgError, ValueError):
         return Refused("the tangent is singular", corrected.iterations)
+    if _crosses_over(line, (point, new), corrected):
+        return Refused("another path lies between the start and the end of the step", corrected.iterations)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
@@ -75,3 +79,16 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))
+
+
+def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:
+    """Tell whether the correction went through states of another count of negative pivots than those of both ends.
+
+    So it does from one side of an imperfect bifurcation to the branch on the other side. Where loads follow, only the
+    sign of the determinant counts, which an odd number of negative pivots makes negative.
+    """
+    counts = [end.negative_pivots for end in ends]
+    fewest, most = corrected.negative_pivots
+    if line.system.symmetric:
+        return fewest < min(counts) or most > max(counts)
+    return fewest == most and counts[0] % 2 == counts[1] % 2 != most % 2

@@ -13,7 +13,7 @@ from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.path_record import PathRecord, kept
-from beamfem.analysis.statics import first_equilibrium
+from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model

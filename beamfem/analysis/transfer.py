@@ -13,19 +13,22 @@ from beamfem.model.reference import reference_angle
 from beamfem.model.system import System, coordinate_columns
 from beamfem.solution import State
 
+_SAME = 1e-9  # of the length of a beam, within which its nodes are at the same place
+_ADVICE = "take it from a model of the same beams, elements and points with supports"
+
 
 def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return coordinates and rates (n,) of a state in the model of a system.
 
-    Nodes are the same; whether gradients or angles carry them depends on what holds and joins them.
+    Beams are found again by themselves, in a copy of their model by where they lie, whatever their order. Nodes are the
+    same; whether gradients or angles carry them depends on what holds and joins them.
     Raises InputError where the beams do not match.
     """
     source, target = state.model, system.model
     if source is target:
         return np.array(state.p), np.array(state.v)
-    _require_alike(source, target, name)
     p, v = system.reference.copy(), np.zeros(target.size)
-    for old, new in zip(source.meshes, target.meshes, strict=True):
+    for old, new in _matched(source, target, name):
         values, rates = _by_label(old, state)
         for label, nodes, dofs in coordinate_columns(new):
             # a turned vector is that of the first of the joined nodes
@@ -57,15 +60,38 @@ def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict
     return values, rates
 
 
-def _require_alike(source: Model, target: Model, name: str) -> None:
-    advice = "take it from a model of the same beams, elements and points with supports"
-    if len(source.meshes) != len(target.meshes):
-        raise InputError(
-            f"{name} is of a model with {len(source.meshes)} beams, this has {len(target.meshes)}; {advice}"
-        )
-    for number, (old, new) in enumerate(zip(source.meshes, target.meshes, strict=True)):
-        if old.vectors != new.vectors or old.nodes != new.nodes or np.abs(old.arc - new.arc).max() > 1e-9 * new.arc[-1]:
+def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
+    """Return the mesh of each beam in both models. Raises InputError where a beam has no like one."""
+    own = {id(mesh.beam): mesh for mesh in source.meshes}
+    left = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
+    pairs = []
+    for new in target.meshes:
+        old = own.get(id(new.beam)) or next((mesh for mesh in left if _alike(mesh, new)), None)
+        if old is None or not _alike(old, new):
+            other = [old] if old is not None else source.meshes[:5]
+            there = "; ".join(_described(source, mesh) for mesh in other)
             raise InputError(
-                f"{name} has {old.nodes} nodes of {old.beam.element.name} on beam {number}, this model has {new.nodes} "
-                f"of {new.beam.element.name}, or elsewhere; {advice}"
+                f"{name} does not have the {_described(target, new)} of this model, it has {there}, or nodes elsewhere "
+                f"in between; {_ADVICE}"
             )
+        left = [mesh for mesh in left if mesh is not old]
+        pairs.append((old, new))
+    if left:
+        raise InputError(f"this model does not have the {_described(source, left[0])} of {name}; {_ADVICE}")
+    return pairs
+
+
+def _alike(old: BeamMesh, new: BeamMesh) -> bool:
+    """Tell whether two beams have the same nodal vectors at the same places."""
+    if old.vectors != new.vectors or old.nodes != new.nodes:
+        return False
+    near = _SAME * new.arc[-1]
+    apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
+    turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
+    return bool(apart <= near and turned <= _SAME * new.speed.max())
+
+
+def _described(model: Model, mesh: BeamMesh) -> str:
+    (x0, y0), (x1, y1) = mesh.position[[0, -1]]
+    number = model.number_of(mesh.beam)
+    return f"{mesh.nodes} nodes of {mesh.beam.element.name} on beam {number} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"

@@ -21,6 +21,7 @@ from beamfem.model.model import Model
 from beamfem.model.reference import energy_points, length_points, stations
 from beamfem.model.sampled import Sampled, SampledSection
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.model.time_functions import Interpolated
 from beamfem.section import Layer, Layered, Section, StiffnessSection
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
@@ -57,6 +58,7 @@ _CLASSES = {
         Spring,
         Foundation,
         Prescribed,
+        Interpolated,
         Gravity,
         DistributedLoad,
         PointForce,

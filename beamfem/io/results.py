@@ -12,6 +12,7 @@ import numpy as np
 from beamfem.errors import BeamfemError, InputError
 from beamfem.io.description import describe, rebuild
 from beamfem.solution import Solution, Statistics
+from beamfem.status import Status
 
 _FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1
@@ -36,10 +37,12 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         file.attrs["format_version"] = _FORMAT_VERSION
         file.attrs["beamfem_version"] = version("beamfem")
         file.attrs["static"] = solution.static
-        file.attrs["statistics"] = json.dumps(asdict(solution.statistics))
+        file.attrs["statistics"] = json.dumps(asdict(solution.statistics) | {"status": solution.status.name})
         file.attrs["all_rows"] = len(solution)
         file.attrs["rows"] = 0
         file.create_dataset("model", data=description)
+        if solution.stability is not None:
+            file.create_dataset("stability", data=solution.stability)
         for name in _STATES:
             row = getattr(solution, name).shape[1:]
             file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
@@ -104,9 +107,15 @@ def _read(file: Any) -> Solution:
     at, p, v, a = (np.asarray(file[name][:rows]) for name in _STATES)
     if at.shape != (rows,) or any(values.shape != (rows, model.size) for values in (p, v, a)):
         raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")
-    saved = json.loads(file.attrs["statistics"])
-    statistics = Statistics(**{**saved, "warnings": tuple(saved.get("warnings", ()))})
+    statistics = _statistics(json.loads(file.attrs["statistics"]))
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
-        statistics = replace(statistics, ended=ended)
-    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics)
+        statistics = replace(statistics, ended=ended, status=Status.STOPPED)
+    stability = np.asarray(file["stability"][:rows]) if "stability" in file else None
+    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, stability)
+
+
+def _statistics(saved: dict[str, Any]) -> Statistics:
+    """Return the statistics of a file; older ones know no status and no warnings."""
+    status = Status[saved.pop("status", Status.COMPLETED.name)]
+    return Statistics(**saved | {"status": status, "warnings": tuple(saved.get("warnings", ()))})

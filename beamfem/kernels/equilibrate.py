@@ -23,6 +23,15 @@ def take(step, p, scale):
     return size
 
 
+@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+def negative_diagonal(rows):
+    """Return how many of the inverse pivots that a factorised band (n, width) has on its diagonal are negative."""
+    count, middle = 0, rows.shape[1] // 2
+    for i in range(rows.shape[0]):
+        count += rows[i, middle] < 0.0
+    return count
+
+
 @njit(cache=True, error_model="numpy")
 def equilibrate(
     forms, blocks, work, loads, springs, layouts, free, turned, p, body, values, held_change, scale, limits, rows, found
@@ -31,9 +40,11 @@ def equilibrate(
 
     held_change: first step (n,) of the held coordinates and what it changes in the residual (n,), zero to go on.
     limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
-    iterations, 1 to take predicted stresses for the geometric tangent. rows (unknown, width): the band. found (6,):
-    iterations so far, last correction and the one before; then largest residual of the unknown, of all coordinates and
-    the smallest r0' x d of the state reached. Stops where corrections are small or stagnant, or have grown.
+    iterations, 1 to take predicted stresses for the geometric tangent, 1 to stop where the count of negative pivots is
+    another one from the third tangent on (the stresses of the second are those of a whole linear step).
+    rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then largest
+    residual of the unknown, of all coordinates and the smallest r0' x d of the state reached; negative pivots of the
+    first tangent, -1 before, and of the last. Stops where corrections are small or stagnant, or have grown.
     """
     n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
@@ -55,6 +66,12 @@ def equilibrate(
         turn_in(right, turned[0], turned[1])
         if not factor(rows, right, step, window) > limits[3]:
             return False
+        found[7] = negative_diagonal(rows)
+        if found[6] < 0.0:
+            found[6] = found[7]
+        elif limits[6] > 0.0 and found[7] != found[6] and found[0] > 1.0:
+            found[0] += 1.0
+            return True
         solve_upper(rows, right, window)
         turn_back(right, turned[0], turned[1])
         for i in range(n):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.model.supports import PointSupport, Roller, Value
 from beamfem.validation import function_value
@@ -14,12 +15,13 @@ from beamfem.validation import function_value
 class Held:
     """A coordinate that a support prescribes: its reference and a value, or a function of time, on top.
 
-    turns: whether it is a rotation.
+    turns: whether it is a rotation; point: where the support stands.
     """
 
     dof: int
     value: Value
     turns: bool
+    point: Point
 
     def change(self, time: float, static: bool) -> float:
         """Return the change from the reference at a time, in statics at a load factor."""
@@ -41,7 +43,7 @@ def held_coordinates(model: Model) -> tuple[Held, ...]:
             if dofs[name] in held:
                 what = type(support).__name__
                 raise InputError(f"{what} at {support.point}: another support already holds {direction} there")
-            held[dofs[name]] = Held(dofs[name], value, direction == "rotation")
+            held[dofs[name]] = Held(dofs[name], value, direction == "rotation", support.point)
     return tuple(held[dof] for dof in sorted(held))
 
 

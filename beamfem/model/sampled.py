@@ -17,6 +17,11 @@ class Sampled:
     at: tuple[float, ...]
     values: tuple[float, ...]
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Times [s] or load factors (n,) where the slope jumps."""
+        return self.at
+
     def __call__(self, at: float) -> float:
         """Return the value at a time [s] or load factor. Raises InputError outside of the saved range."""
         if not self.at[0] <= at <= self.at[-1]:

@@ -178,8 +178,11 @@ class System:
 
     def held_values(self, time: float) -> np.ndarray:
         """Values of the held coordinates at a time, in statics at a load factor."""
-        changes = np.array([item.change(time, self.static) for item in self.held], dtype=float)
-        return self.reference[self.held_dofs] + changes
+        return self.reference[self.held_dofs] + self.held_changes(time)
+
+    def held_changes(self, time: float) -> np.ndarray:
+        """Changes of the held coordinates from the reference (nh,) at a time, in statics at a load factor."""
+        return np.array([item.change(time, self.static) for item in self.held], dtype=float)
 
     def largest_turn(self, before: float, after: float) -> float:
         """Return the largest change [rad] of a prescribed rotation between two times.

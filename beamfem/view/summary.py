@@ -40,6 +40,8 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
         ("Newton iterations", f"{statistics.iterations} in {statistics.steps} steps, {statistics.cuts} cut"),
         ("ended", statistics.ended),
     ]
+    if solution.energy_drift is not None:
+        rows.append(("energy", str(solution.energy_drift)))
     if len(solution):
         name, value = largest_displacement(solution)
         rows.append((name, value))

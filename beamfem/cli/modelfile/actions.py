@@ -93,14 +93,7 @@ def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
             raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
         if isinstance(given, int | float):
             return given
-        found = function(table, key)
-        if moving and not found.smooth:
-            raise table.error(
-                "a table of values has no acceleration at its points, so it cannot prescribe a motion; "
-                'take a function of kind "smooth-ramp" or "sine"',
-                key,
-            )
-        return found
+        return function(table, key)
 
     readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
     readers |= {"point": places.point, **dict.fromkeys(("ux", "uy", "rotation"), value)}

@@ -1,0 +1,105 @@
+"""Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.analysis.continuation import Continuation, PathPoint, begin
+from beamfem.analysis.critical_points import Segment, SegmentLostError
+from beamfem.analysis.newton import Newton
+from beamfem.analysis.steps import Step, longest_step, take_step, too_small
+from beamfem.errors import BeamfemError
+from beamfem.model.system import System
+
+_FIRST_STEP = 1e-2  # along the path, see Continuation
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A point of the path, how many iterations it took and how many steps were refused on the way to it."""
+
+    point: PathPoint
+    iterations: int
+    cuts: int
+
+
+class PathLostError(BeamfemError):
+    """The path could not be followed: why, after how many iterations and refused steps."""
+
+    def __init__(self, reason: str, iterations: int, cuts: int) -> None:
+        super().__init__(reason)
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+class TurnsBackError(BeamfemError):
+    """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path behind it."""
+
+    def __init__(self, limit: np.ndarray, beyond: np.ndarray, iterations: int, cuts: int) -> None:
+        super().__init__(f"the path turns back at load factor {limit[-1]:.6g}")
+        self.limit = limit
+        self.beyond = beyond
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+class PathFollower:
+    """The path of a system from the equilibrium p (n,), followed by its length; steps go on as long as they were."""
+
+    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float) -> None:
+        self.system = system
+        self.newton = newton
+        self.start = p, load_factor
+        self.size = _FIRST_STEP
+
+    @cached_property
+    def line(self) -> Continuation:
+        """How lengths along the path are measured: by what the loads do at its start."""
+        return begin(self.system, *self.start, self.newton)[0]
+
+    def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
+        """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
+
+        end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
+        along the path is accepted.
+        """
+        growing = np.zeros(len(p) + 1)
+        growing[-1] = 1.0
+        try:
+            line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
+        except (LinAlgError, ValueError):
+            raise PathLostError("the tangent is singular there", 0, 0) from None
+        while point.load_factor < beyond:
+            step, iterations, cuts = _step(line, point, self.size)
+            self.size = step.next_size
+            if step.limits:
+                raise TurnsBackError(step.segment.at(step.limits[0]).y, step.segment.after.y, iterations, cuts)
+            point = step.segment.after
+            if point.load_factor > end:
+                point = _at_load(step.segment, end, iterations, cuts)
+            yield Followed(point, iterations, cuts)
+
+
+def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:
+    try:
+        return segment.at_load(target)
+    except SegmentLostError as error:
+        raise PathLostError(str(error), iterations, cuts) from error
+
+
+def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int, int]:
+    """Return the longest step up to `size` that is accepted, the iterations of all that were tried, and those cut."""
+    size = min(size, longest_step(line, point))
+    iterations = cuts = 0
+    while True:
+        taken = take_step(line, point, size)
+        iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken, iterations, cuts
+        cuts += 1
+        size *= 0.5
+        if too_small(line, point, size):
+            raise PathLostError(taken.reason, iterations, cuts)

@@ -1,0 +1,103 @@
+"""Load steps that stay on the path: by the load where that is safe, else by the length of the path."""
+
+from typing import Literal
+
+from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
+from beamfem.analysis.newton import Ended, Newton, solve_equilibrium
+from beamfem.analysis.snap import rest_state
+from beamfem.analysis.static_record import StaticRecord
+from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.model.system import System
+from beamfem.progress import progress
+
+Snap = Literal["error", "jump"]
+
+_CUTS = 4  # in succession, before the path is followed by its length
+_EASY_ITERATIONS = 8
+_LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
+_SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
+
+
+def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap: Snap) -> None:
+    """Add the rows from the last one to load factor 1; `step` is the first load step.
+
+    Raises LimitPointError and ConvergenceError with the solution so far.
+    """
+    follower = PathFollower(system, newton, done.state, done.reached)
+    cuts, refused = 0, done.reached
+    with progress("load factor", 1.0) as report:
+        while done.reached < 1.0:
+            step = _within_a_turn(system, done, step)
+            target = 1.0 if done.reached + step > 1.0 - 1e-12 else done.reached + step
+            result = solve_equilibrium(system, done.state, target, newton, guarded=True)
+            done.iterations += result.iterations
+            if result.ended.good:
+                done.add(target, result.state, result.negative_pivots, result.ended)
+                if target >= refused:
+                    cuts = 0
+                if result.iterations <= _EASY_ITERATIONS:
+                    step *= 2.0
+            elif cuts < _CUTS:
+                cuts += 1
+                done.cuts += 1
+                refused = max(refused, target)
+                step *= 0.5
+            else:
+                # behind what the load step could not pass, a longer one is tried once
+                _follow(done, follower, target, snap)
+                refused = 1.0
+                step *= 2.0
+            report(done.reached)
+
+
+def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
+    """Return a load step in which no prescribed rotation turns too far. Raises ConvergenceError at a jump."""
+    while system.largest_turn(done.reached, min(done.reached + step, 1.0)) > _LARGEST_TURN:
+        step *= 0.5
+        if step < _SHORTEST_TURN:
+            raise ConvergenceError(
+                f"a prescribed rotation jumps by more than {_LARGEST_TURN:g} rad just after load factor "
+                f"{done.reached:.6g}; let it turn over a part of the load factor, so that turns can be counted",
+                done.solution(),
+            )
+    return step
+
+
+def _follow(done: StaticRecord, follower: PathFollower, beyond: float, snap: Snap) -> None:
+    """Add the rows along the path to a load factor or, where the path turns back, to the state behind the jump."""
+    try:
+        for followed in follower.follow(done.state, done.reached, beyond, 1.0):
+            done.iterations += followed.iterations
+            done.cuts += followed.cuts
+            point = followed.point
+            done.add(point.load_factor, point.y[:-1], point.negative_pivots, Ended.CONVERGED)
+    except TurnsBackError as turn:
+        done.iterations += turn.iterations
+        done.cuts += turn.cuts
+        _jump(follower, done, turn, snap)
+    except PathLostError as lost:
+        done.iterations += lost.iterations
+        done.cuts += lost.cuts
+        raise ConvergenceError(
+            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}, with load steps and "
+            "steps along the path cut to round-off",
+            done.solution(),
+        ) from lost
+
+
+def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
+    """Add the state of rest behind a limit point. Raises LimitPointError where no jump is wanted."""
+    load_factor = float(turn.limit[-1])
+    where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
+    if snap == "error":
+        raise LimitPointError(
+            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to where the structure comes to '
+            "rest; or let a Prescribed displacement lead instead of the load",
+            load_factor,
+            done.solution(),
+        )
+    found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
+    done.iterations += found.iterations
+    if not found.ended.good:
+        raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())
+    done.add(load_factor, found.state, found.negative_pivots, found.ended)

@@ -1,0 +1,79 @@
+"""What a static solve has found, and how it becomes a solution."""
+
+import warnings
+
+import numpy as np
+
+from beamfem.analysis.newton import Ended
+from beamfem.errors import UnstableWarning
+from beamfem.model.model import Model
+from beamfem.solution import Solution, Statistics
+from beamfem.status import Status
+
+
+class StaticRecord:
+    """The rows found so far: load factors, states (n,) and the negative pivots of their tangents."""
+
+    def __init__(self, model: Model, symmetric: bool) -> None:
+        self.model = model
+        self.symmetric = symmetric
+        self.load_factors: list[float] = []
+        self.states: list[np.ndarray] = []
+        self.negative_pivots: list[int] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = Ended.CONVERGED
+
+    @property
+    def reached(self) -> float:
+        return self.load_factors[-1]
+
+    @property
+    def state(self) -> np.ndarray:
+        return self.states[-1]
+
+    def add(self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended) -> None:
+        self.load_factors.append(load_factor)
+        self.states.append(state)
+        self.negative_pivots.append(negative_pivots)
+        self.ended = ended
+
+    def solution(self, complete: bool = False) -> Solution:
+        """Return the rows as a solution; complete: the solve came to its end. Warns of unstable rows."""
+        states, counts = np.array(self.states), np.array(self.negative_pivots)
+        # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
+        unstable = counts > 0 if self.symmetric else counts % 2 == 1
+        status = Status.STOPPED if not complete else Status.COMPLETED
+        if complete and self.ended is Ended.ROUND_OFF:
+            status = Status.ROUND_OFF
+        ended = self.ended.value
+        said: tuple[str, ...] = ()
+        if unstable.any():
+            status = Status.UNSTABLE if complete else status
+            said = (_describe(unstable, np.array(self.load_factors)),)
+            if unstable[-1] and self.symmetric:
+                ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
+            elif unstable[-1]:
+                ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
+            warnings.warn(said[0], UnstableWarning, stacklevel=3)
+        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, status, said)
+        return Solution(
+            self.model,
+            True,
+            np.array(self.load_factors),
+            states,
+            np.zeros(states.shape),  # unlike zeros_like, no memory until somebody writes to it
+            np.zeros(states.shape),
+            statistics,
+            ~unstable if self.symmetric else None,
+        )
+
+
+def _describe(unstable: np.ndarray, load_factors: np.ndarray) -> str:
+    rows = np.flatnonzero(unstable)
+    first, last = load_factors[rows[0]], load_factors[rows[-1]]
+    where = f"at load factor {first:.6g}" if len(rows) == 1 else f"from load factor {first:.6g} to {last:.6g}"
+    return (
+        f"{len(rows)} of {len(unstable)} rows are unstable equilibria, {where}: the structure would leave them for "
+        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their branches"
+    )

@@ -1,0 +1,74 @@
+"""By how much the energy of a motion changed though nothing drove it: the error of its time steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem import postprocess
+from beamfem.model.loads import Gravity, PointMoment
+from beamfem.model.reference import length_points, reference_position
+from beamfem.model.supports import Foundation
+from beamfem.model.system import system_of
+from beamfem.solution import Solution
+
+_ROWS = 100  # at which energies are looked at, for what they are measured by
+
+
+@dataclass(frozen=True)
+class EnergyDrift:
+    """Change of the total energy from start to end of a motion, and the largest energy that it exchanges, both [J]."""
+
+    change: float
+    exchanged: float
+
+    @property
+    def digits(self) -> float:
+        """Decimal digits of the energy that are left; inf where none is lost."""
+        if self.change == 0.0:
+            return np.inf
+        return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0
+
+    def __str__(self) -> str:
+        return f"energy drifts by {self.change:.2g} J of {self.exchanged:.3g} J"
+
+
+def energy_drift(solution: Solution) -> EnergyDrift | None:
+    """Return the drift of a motion's energy, springs and foundations included; None where something does work on it.
+
+    That is so under loads with an amplitude or that follow, and where supports move.
+    """
+    if solution.static or not _conservative(solution):
+        return None
+    # where moments act, rotations are followed from row to row
+    followed = any(isinstance(load, PointMoment) for load in solution.model.loads)
+    rows = np.arange(len(solution)) if followed else np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
+    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
+    some = Solution(solution.model, False, at, p, v, a, solution.statistics)
+    energy, springs = some.energy(), _in_springs(some)
+    total = energy.total + springs
+    parts = energy.kinetic.max(), np.ptp(energy.strain + springs), np.ptp(energy.potential)
+    return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
+
+
+def _conservative(solution: Solution) -> bool:
+    system = system_of(solution.model, static=False)
+    moved = any(callable(item.value) for item in system.held)
+    driven = any(
+        load.amplitude is not None or (not isinstance(load, Gravity | PointMoment) and load.follower)
+        for load in solution.model.loads
+    )
+    return not moved and not driven
+
+
+def _in_springs(solution: Solution) -> np.ndarray:
+    """Return the energy of springs and foundations (steps,) [J]."""
+    springs = system_of(solution.model, static=False).springs
+    result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
+    for support in solution.model.supports:
+        if isinstance(support, Foundation):
+            mesh = solution.model.mesh_of(support.beam.start)
+            element, xi, weight = length_points(mesh)
+            now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p), element, xi).r
+            moved = now - reference_position(mesh, element, xi)
+            result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
+    return np.asarray(result)

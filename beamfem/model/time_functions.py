@@ -1,0 +1,65 @@
+"""Functions of time, or of the load factor, that say where they have kinks."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from beamfem.curves.curve import numbers, points
+from beamfem.errors import InputError
+from beamfem.validation import function_of_one
+
+
+@dataclass(frozen=True)
+class Interpolated:
+    """Values at increasing times, points (n, 2): linear between them, constant before and after. Raises InputError."""
+
+    points: Sequence[Sequence[float]]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", points("points", self.points))
+        if len(self.points) < 2:
+            raise InputError(f"points must be at least two pairs (time, value), got {len(self.points)}")
+        if np.any(np.diff(self._table[0]) <= 0.0):
+            raise InputError("points must have increasing times")
+
+    @cached_property
+    def _table(self) -> np.ndarray:
+        return np.array(self.points).T
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Times (n,) of the points, where the slope jumps."""
+        return tuple(self._table[0].tolist())
+
+    def __call__(self, time: float) -> float:
+        return float(np.interp(time, *self._table))
+
+
+@dataclass(frozen=True)
+class Piecewise:
+    """A function of time that is smooth between increasing times `kinks` (n,) [s], where it may bend or jump.
+
+    Any function of yours with an attribute `kinks` will do as well. Raises InputError.
+    """
+
+    function: Callable[[float], float]
+    kinks: Sequence[float]
+
+    def __post_init__(self) -> None:
+        function_of_one("function", self.function, "time")
+        object.__setattr__(self, "kinks", kinks_of(self))
+
+    def __call__(self, time: float) -> float:
+        return self.function(time)
+
+
+def kinks_of(function: Any) -> tuple[float, ...]:
+    """Return the times [s] at which a function declares kinks, none by default. Raises InputError."""
+    kinks = numbers("kinks", getattr(function, "kinks", ()))
+    if any(later <= earlier for earlier, later in pairwise(kinks)):
+        raise InputError(f"kinks must be increasing times, got {kinks}")
+    return kinks

@@ -1,0 +1,135 @@
+"""Loads that vary in time: impulses of pulses, kinks that functions declare, and what steps cannot resolve."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+
+
+def half_sine(time, begin=0.0, duration=1e-3):
+    return float(np.sin(np.pi * (time - begin) / duration)) if begin <= time <= begin + duration else 0.0
+
+
+def pushed(amplitude, step=2e-3, duration=0.02, rho_inf=0.9, save_every=1):
+    """A free beam, pushed along its axis by 100 N times an amplitude."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), STEEL)
+    model = bf.Model([one], loads=[bf.PointForce(one.end, (100.0, 0.0), amplitude=amplitude)])
+    return bf.simulate(model, duration, step, bf.GeneralizedAlpha(rho_inf), save_every=save_every)
+
+
+@pytest.mark.parametrize("begin", [0.0, 0.0033, 0.0055])
+@pytest.mark.parametrize("rho_inf", [0.0, 0.9, 1.0])
+def test_a_short_pulse_between_declared_kinks_gives_its_impulse(begin, rho_inf):
+    """A half sine of 1 ms within steps of 2 ms gave nothing."""
+    pulse = bf.Piecewise(lambda t: half_sine(t, begin), (begin, begin + 1e-3))
+    solution = pushed(pulse, rho_inf=rho_inf)
+    assert solution.linear_momentum()[-1, 0] == pytest.approx(100.0 * 2e-3 / np.pi, rel=2e-4)
+    assert len(solution) == 11
+
+
+def test_a_pulse_of_exactly_one_step_gives_its_impulse_when_it_is_declared():
+    solution = pushed(bf.Piecewise(lambda t: half_sine(t, 0.0, 2e-3), (0.0, 2e-3)))
+    assert solution.linear_momentum()[-1, 0] == pytest.approx(100.0 * 4e-3 / np.pi, rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("begin", "end"), [(0.0033, 0.0053), (0.004, 0.006), (0.0, 0.0007), (0.0033, 0.0037), (0.0, 0.02)]
+)
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_rectangular_pulse_gives_its_impulse_exactly(begin, end, closed):
+    inside = (lambda t: float(begin <= t <= end)) if closed else (lambda t: float(begin < t < end))
+    solution = pushed(bf.Piecewise(inside, (begin, end)))
+    assert solution.linear_momentum()[-1, 0] == pytest.approx(100.0 * (end - begin), rel=1e-9)
+
+
+def test_a_table_gives_the_impulse_of_its_straight_pieces_whatever_the_step():
+    table = bf.Interpolated([(0.0031, 0.0), (0.0034, 1.0), (0.0041, -0.5), (0.0049, 0.0)])
+    expected = 100.0 * (0.5 * 3e-4 + 0.25 * 7e-4 - 0.25 * 8e-4)
+    for step in (2e-3, 7e-4, 1e-4):
+        assert pushed(table, step, rho_inf=1.0).linear_momentum()[-1, 0] == pytest.approx(expected, rel=1e-9)
+
+
+def test_steps_that_end_at_kinks_are_those_of_the_grid():
+    """A table at multiples of the step divides nothing, and changes nothing."""
+    points = [(0.0, 0.0), (0.004, 1.0), (0.01, 0.2)]
+    table, plain = pushed(bf.Interpolated(points)), pushed(lambda t: np.interp(t, *np.transpose(points)))
+    assert np.array_equal(table.p, plain.p)
+    assert table.statistics == plain.statistics
+
+
+@pytest.mark.parametrize("save_every", [1, 3, 100])
+def test_divided_steps_are_kept_like_others(save_every):
+    pulse = bf.Piecewise(lambda t: half_sine(t, 0.0033), (0.0033, 0.0043))
+    every, some = pushed(pulse), pushed(pulse, save_every=save_every)
+    rows = [*range(0, 10, save_every), 10]
+    assert np.array_equal(some.p, every.p[rows])
+    assert some.time == pytest.approx(every.time[rows])
+
+
+@pytest.mark.parametrize("save_every", [1, 4, 100])
+def test_a_failure_in_a_divided_step_hands_back_the_last_whole_one(save_every):
+    blow = bf.Piecewise(lambda t: float(t > 0.0051), (0.0051,))
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), bf.Rectangle(0.01, 0.01), STEEL)
+    model = bf.Model([one], loads=[bf.PointForce(one.end, (1e15, 0.0), amplitude=blow)])
+    with pytest.raises(bf.ConvergenceError, match=r"the step from 0\.0051 s to 0\.006 s did not converge") as caught:
+        bf.simulate(model, 0.02, 2e-3, save_every=save_every)
+    kept = caught.value.solution
+    assert kept.time[-1] == pytest.approx(0.004)
+    assert np.abs(kept.p[-1] - kept.p[0]).max() < 1e-15
+
+
+@pytest.mark.parametrize("rho_inf", [1.0, 0.5])
+def test_the_order_stays_two_where_kinks_divide_steps(rho_inf):
+    """A ringing cantilever under a table, all of whose kinks lie within steps, against fine steps at its kinks."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.01, 0.01), STEEL)
+    table = bf.Interpolated([(0.0, 0.0), (0.01234, 1.0), (0.03456, -1.0), (0.05678, 0.0)])
+    model = bf.Model([one], [bf.Clamp(one.start)], [bf.PointForce(one.end, (0.0, 1.0), amplitude=table)])
+
+    def tip(step):
+        return bf.simulate(model, 0.08, step, bf.GeneralizedAlpha(rho_inf)).displacement(one.end)[-1, 1]
+
+    exact = tip(5e-5)
+    errors = [abs(tip(step) - exact) for step in (2e-3, 1e-3, 5e-4)]
+    assert np.log2(errors[0] / errors[-1]) / 2.0 > 1.8, errors
+
+
+def test_a_load_that_varies_within_a_step_is_named():
+    with pytest.warns(UserWarning, match=r"amplitude of PointForce at \(1, 0\).* within the step from 0 s to 0\.002 s"):
+        solution = pushed(half_sine)
+    assert "varies within steps" in solution.statistics.ended
+    assert solution.linear_momentum()[-1, 0] == 0.0
+
+
+def test_the_weight_follows_its_amplitude():
+    """Found by mutation: gravity's amplitude frozen at its start went unnoticed."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), STEEL)
+    model = bf.Model([one], loads=[bf.Gravity((0.0, -10.0), amplitude=lambda t: 3.0 * t)])
+    solution = bf.simulate(model, 0.1, 1e-3, bf.GeneralizedAlpha(1.0))
+    gained = solution.linear_momentum()[:, 1]
+    assert gained == pytest.approx(-7800.0 * 1e-4 * 15.0 * solution.time**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("kinks", [(0.1, 0.1), (0.2, 0.1), ("a",), 3.0])
+def test_kinks_that_are_no_increasing_times_are_refused(kinks):
+    with pytest.raises(bf.InputError, match="kinks"):
+        bf.Piecewise(np.sin, kinks)
+
+
+@pytest.mark.parametrize("save_every", [1, 3, 100])
+def test_a_failed_step_is_undone_whatever_is_kept(save_every):
+    """Found by mutation: the last state was that of the failed step where save_every does not divide."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), bf.Rectangle(0.01, 0.01), STEEL)
+
+    def run(size, duration):
+        amplitude = lambda t: 1.0 if t < 0.0095 else size  # noqa: E731
+        model = bf.Model([one], loads=[bf.PointForce(one.end, (0.0, 1.0), amplitude=amplitude)])
+        return bf.simulate(model, duration, 2e-3, save_every=save_every)
+
+    with pytest.raises(bf.ConvergenceError, match=r"the step from 0\.008 s to 0\.01 s did not converge") as caught:
+        run(1e15, 0.02)
+    kept, good = caught.value.solution, run(1.0, 0.008)
+    assert kept.time == pytest.approx(good.time)
+    assert np.array_equal(kept.p, good.p)
+    assert np.array_equal(kept.a, good.a)

@@ -1,0 +1,119 @@
+"""Static solves that meet a limit point: they name it, or jump to where the structure comes to rest."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+
+def toggle(load, element=None, turn=0.0):
+    """Shallow frame of two bars, ends clamped 2 m apart, 0.02 m rise; a load down (or along the turned axis)."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def place(x, y):
+        return c * x - s * y, s * x + c * y
+
+    section = bf.Section(area=1e-4, second_moment=1e-9)
+    common = (6, element or bf.CRBF(3), section, bf.Material(7e10, 0.3, 2700.0))
+    left = bf.Beam(bf.Line(place(-1, 0), place(0, 0.02)), *common)
+    right = bf.Beam(bf.Line(place(0, 0.02), place(1, 0)), *common)
+    return left, bf.Model(
+        [left, right],
+        [bf.Clamp(left.start), bf.Clamp(right.end)],
+        [bf.PointForce(left.end, place(0.0, -load))],
+        [bf.Rigid(left.end, right.start)],
+    )
+
+
+@pytest.fixture(scope="module")
+def traced():
+    top, model = toggle(1.0)
+    return top, bf.trace_equilibrium(model, until=lambda state: state.displacement(top.end)[1] < -0.05)
+
+
+@pytest.mark.parametrize("steps", [1, 10, 100])
+def test_a_limit_point_is_named_with_its_load_and_the_rows_before_it(traced, steps):
+    limit = traced[1].limit_points[0].load_factor
+    _, model = toggle(3.0 * limit)
+    with pytest.raises(bf.LimitPointError, match=r"limit point at load factor 0\.333333") as caught:
+        bf.solve_static(model, steps)
+    assert caught.value.load_factor == pytest.approx(1.0 / 3.0, rel=1e-6)
+    before = caught.value.solution
+    assert before.stable.all()
+    assert before.load_factor[-1] < 1.0 / 3.0
+    assert before.status is bf.Status.STOPPED
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_jump_ends_on_the_far_stable_part_of_the_path(traced, turn):
+    top, path = traced
+    limit = path.limit_points[0].load_factor
+    beam, model = toggle(3.0 * limit, turn=turn)
+    solution = bf.solve_static(model, snap="jump")
+    assert solution.stable.all()
+    row = int(np.flatnonzero(np.isclose(solution.load_factor, 1.0 / 3.0, rtol=1e-6))[-1])
+    down = np.array([-np.sin(turn), np.cos(turn)])
+    moved = solution.displacement(beam.end) @ down
+    # the top led to where it came to rest needs the same load, and is behind both limit points
+    led = bf.Model(
+        path.model.beams, [*path.model.supports, bf.Prescribed(top.end, uy=moved[row])], (), path.model.joints
+    )
+    assert -bf.solve_static(led).reaction(top.end)[-1, 1] == pytest.approx(limit, rel=1e-6)
+    assert moved[row] < path.limit_points[-1].displacement(top.end)[1]
+    assert np.all(np.diff(solution.load_factor) >= 0.0)
+    straight = bf.solve_static(bf.Model(model.beams, model.supports, model.loads, model.joints), snap="jump", steps=40)
+    assert moved[-1] == pytest.approx(straight.displacement(beam.end)[-1] @ down, rel=1e-8)
+
+
+def test_a_column_beyond_its_critical_load_goes_on_straight_and_says_that_it_is_unstable():
+    section = bf.Rectangle(0.01, 0.01)
+    steel = bf.Material(2e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(3), section, steel)
+    critical = np.pi**2 / 4.0 * 2e11 * section.second_moment
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-2.0 * critical, 0.0))])
+    with pytest.warns(bf.UnstableWarning, match="rows are unstable equilibria, from load factor"):
+        solution = bf.solve_static(model)
+    assert np.abs(solution.displacement(beam.end)[-1, 1]) < 1e-9
+    # Reissner's column loses its stability a little below Euler's load: it is shortened, and shears
+    assert np.array_equal(solution.stable, solution.load_factor < 0.5 * (1.0 - 1e-4))
+    assert solution.status is bf.Status.UNSTABLE
+    assert "unstable" in repr(solution)
+    assert "eigenvalues of its tangent are negative" in solution.statistics.ended
+
+
+def test_a_follower_load_that_loses_its_path_is_refused_with_a_limit_point():
+    """The load turns with the section at the top of a toggle; its determinant changes sign at the limit point."""
+    top, model = toggle(1.0)
+    follower = bf.Model(model.beams, model.supports, [bf.PointForce(top.end, (0.0, -1.0), follower=True)], model.joints)
+    path = bf.trace_equilibrium(follower, until=lambda state: state.displacement(top.end)[1] < -0.05)
+    limit = path.limit_points[0].load_factor
+    load = bf.PointForce(top.end, (0.0, -2.0 * limit), follower=True)
+    with pytest.raises(bf.LimitPointError) as caught:
+        bf.solve_static(bf.Model(model.beams, model.supports, [load], model.joints))
+    assert caught.value.load_factor == pytest.approx(0.5, rel=1e-6)
+
+
+def test_large_standing_loads_grow_first_where_one_step_would_leave_the_path():
+    """The wavy cantilever whose one-step solve once ended in another equilibrium, its load standing from the start."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    beam = bf.Beam(bf.Parametric(lambda u: (u, 0.3 * np.sin(3 * u)), 0, 1.5), 40, bf.ShearRigid(), section, steel)
+    force = 2e11 * section.second_moment * np.array([-2.0, 3.0])
+    tips = []
+    for scale in (True, False):
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, force, scale=scale)])
+        tips.append(bf.solve_static(model).position(beam.end)[-1])
+    assert tips[0] == pytest.approx([-0.00684, 1.71669], abs=2e-5)
+    assert tips[1] == pytest.approx(tips[0], abs=1e-9)
+
+
+def test_a_rotation_that_jumps_by_more_than_a_radian_is_refused_with_its_load_factor():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    turned = bf.Prescribed(beam.end, rotation=lambda t: 1.5 if t > 0.3 else 0.0)
+    with pytest.raises(bf.ConvergenceError, match=r"jumps by more than 1 rad just after load factor 0\.3"):
+        bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start), turned]))
+
+
+def test_snap_takes_two_words_only():
+    _, model = toggle(1.0)
+    with pytest.raises(bf.InputError, match='snap must be "error" or "jump"'):
+        bf.solve_static(model, snap="yes")

@@ -12,7 +12,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem import postprocess
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
-from beamfem.analysis.newton import round_off_floor
+from beamfem.analysis.round_off import round_off_floor
 from beamfem.element.element import Element
 from beamfem.kernels.block import Block
 from beamfem.model.blocks import build_block

@@ -12,7 +12,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem import postprocess
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses, residual
-from beamfem.analysis.round_off import round_off_floor
+from beamfem.analysis.round_off import row_floors
 from beamfem.element.element import Element
 from beamfem.kernels.block import Block
 from beamfem.model.blocks import build_block
@@ -71,11 +71,11 @@ def _change(state: "State", span: float | None) -> float:
     at = (state.p, state.v, state.a, state.at)
     weights = STATICS if span is None else (1.0, 0.0, 1.0 / span**2)
     free, blocks = system.free_dofs, _unlocked_blocks(system)
-    step, stresses = np.zeros(len(state.p)), None
+    step, stresses, floors = np.zeros(len(state.p)), None, row_floors(system, state.p)[free]
     for _ in range(_PREDICTIONS):
         other, tangent = linearise(system, *at, weights, stresses, blocks)
         excess = (other - residual(system, *at))[free]
-        if np.abs(excess).max(initial=0.0) <= 2.0 * round_off_floor(system, state.p):
+        if np.all(np.abs(excess) <= 2.0 * floors):
             return 0.0
         try:
             step[free] = tangent.solve(-excess, system.turned)

@@ -99,11 +99,10 @@ def _at_nodes(forces: Forces) -> np.ndarray:
 
 
 def _spread_curvature(stiffness: np.ndarray) -> None:
-    """Move the bending stiffness about the neutral axis (ne, 5) from the Lobatto to the Gauss points."""
-    axial, coupling = stiffness[..., _STRETCH, _STRETCH], stiffness[..., _STRETCH, _CURVATURE]
-    eccentric = coupling**2 / np.where(axial > 0.0, axial, 1.0)
-    bending = stiffness[..., _CURVATURE, _CURVATURE] - eccentric
+    """Move bending stiffness (ne, 5) from the Lobatto to the Gauss points; coupled with stretch it stays."""
+    coupled = np.any(stiffness[..., _STRETCH, _CURVATURE] != 0.0, axis=1)[:, None]
+    bending = stiffness[..., _CURVATURE, _CURVATURE].copy()
     stiffness[:, len(POINTS) :] = 0.0
-    share = np.array([0.0, _GAUSS[1] / WEIGHTS[1], 0.0, 1.0, 1.0])
-    eccentric[:, len(POINTS) :] = 0.0
-    stiffness[..., _CURVATURE, _CURVATURE] = eccentric + share * bending
+    apart = np.array([0.0, _GAUSS[1] / WEIGHTS[1], 0.0, 1.0, 1.0])
+    together = np.array([1.0, 1.0, 1.0, 0.0, 0.0])
+    stiffness[..., _CURVATURE, _CURVATURE] = np.where(coupled, together, apart) * bending

@@ -31,6 +31,7 @@ from beamfem.errors import (
     FreeMotionError,
     InputError,
     LimitPointError,
+    RoundOffWarning,
     UnknownPointError,
     UnstableWarning,
 )
@@ -110,6 +111,7 @@ __all__ = [
     "RigidVelocity",
     "Roller",
     "Rotation",
+    "RoundOffWarning",
     "Section",
     "SectionForces",
     "ShearFree",

@@ -40,3 +40,7 @@ class LimitPointError(ConvergenceError):
 
 class UnstableWarning(UserWarning):
     """Some rows of a static solution are equilibria that the structure would leave."""
+
+
+class RoundOffWarning(UserWarning):
+    """Round-off leaves few digits of the forces of a solution."""

@@ -8,6 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, load_slope, predicted_stresses, residual
 from beamfem.analysis.newton import Ended, Newton, verdict
+from beamfem.analysis.round_off import loses_digits
 from beamfem.analysis.tangent import Factorised
 from beamfem.model.system import System
 
@@ -182,7 +183,7 @@ class Continuation:
         unbalanced, tangent = linearise(system, p, rest, rest, at, STATICS, stresses)
         factors = tangent.factorised(system.turned)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
-        balance[free] = factors.solve(-unbalanced[free])
+        balance[free], _ = factors.correction(unbalanced[free])
         along[free] = factors.solve(-load_slope(system, p, at, width)[free])
         along[held] = (system.held_values(at + width) - system.held_values(at - width)) / (2.0 * width)
         along[-1] = 1.0
@@ -201,6 +202,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     """
     plain = Continuation(system, newton, 1.0, 1.0)
     rest = np.zeros(len(p))
+    loses_digits(system, p, load_factor)
     _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
     factors = tangent.factorised(system.turned)
     mode = plain.softest(factors)

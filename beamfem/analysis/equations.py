@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
+from beamfem.analysis.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.balance import balance
 from beamfem.kernels.block import Block, PointLoads, Springs
@@ -12,6 +13,7 @@ from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
+MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
 
 
@@ -71,9 +73,29 @@ def linearise(
     model = system.forms, blocks or system.blocks, system.workspaces(stresses), loads, system.springs, system.layouts
     actions = system.body(time), point_rows(system, time), 0
     balance(*model, p, v, a, *actions, np.array(coefficients), stresses is not None, result, matrix)
+    tangent: Tangent
     if pattern is None:
-        return result, BandTangent(matrix.reshape(unknown, width))
-    return result, SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+        tangent = BandTangent(matrix.reshape(unknown, width))
+    else:
+        tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
+        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
+    return result, tangent
+
+
+def with_stresses(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    plain: Tangent,
+) -> MixedTangent:
+    """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
+    p = state[0]
+    known = stresses or predicted_stresses(system, p, np.zeros(len(p)))
+    loads, rest = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
+    return mixed(system, p, coefficients[0], loads, rest, plain)
 
 
 def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.round_off import FEW_DIGITS, remainder
 from beamfem.analysis.steps import Step
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
@@ -56,7 +57,12 @@ class PathRecord:
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
+        system = system_of(self.model, static=True)
+        digits = remainder(system, rows[-1, :-1], float(rows[-1, -1])).digits if len(rows) else np.nan
+        ended = self.ended
+        if digits < FEW_DIGITS:
+            ended += f"; round-off leaves {digits:.0f} digits of the forces"
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, digits=digits)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
         return Path(

@@ -165,14 +165,14 @@ def test_a_failed_solve_ends_with_1_and_keeps_the_states_found(tmp_path):
     done = invoke("run", file, "--out", out, "--json")
     found = json.loads(done.stdout)
     assert done.exit_code == found["exit_code"] == 1
-    assert "no equilibrium found beyond load factor 0.7698" in found["error"]["message"]
+    assert "a limit point at load factor 0.7698" in found["error"]["message"]
     solution = bf.load(out)
     reached = solution.load_factor[-1]
     assert reached * 5e6 == pytest.approx(2e11 * 1e-4 / (3.0 * np.sqrt(3.0)), rel=1e-5)
     note = f"The states found before, up to load factor {reached:g}, are saved in {out}."
     assert found["error"]["notes"] == [note]
     assert solution.position(solution.model.beams[0].end)[-1, 0] == pytest.approx(1.0 / np.sqrt(3.0), abs=3e-3)
-    assert invoke("run", file).stderr.startswith("error: no equilibrium")
+    assert invoke("run", file).stderr.startswith("error: a limit point")
 
 
 def test_info_export_and_plot_of_a_results_file(results, tmp_path):

@@ -196,6 +196,7 @@ STRETCHES = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore:.*unstable equilibria:beamfem.errors.UnstableWarning")  # a short column buckles
 @of_forces("continuum", lambda element: element.coordinates.name == "gradients" and not element.forces.plane_stress)
 @pytest.mark.parametrize(("stretch", "thickness", "stress"), STRETCHES)
 def test_uniaxial_stretch_of_the_continuum(element, stretch, thickness, stress):
@@ -208,6 +209,7 @@ def test_uniaxial_stretch_of_the_continuum(element, stretch, thickness, stress):
     assert solution.section_forces(beam).normal[-1] == pytest.approx(stress * THICK.area, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:.*unstable equilibria:beamfem.errors.UnstableWarning")  # a short column buckles
 @pytest.mark.parametrize("forces", [bf.SplitContinuum(), bf.ContinuumMechanics(True)])
 @pytest.mark.parametrize(("stretch", "thickness", "stress"), STRETCHES)
 def test_uniaxial_stretch_in_plane_stress(forces, stretch, thickness, stress):

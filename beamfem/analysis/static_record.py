@@ -44,7 +44,10 @@ class StaticRecord:
         self.digits = digits
 
     def solution(self, complete: bool = False) -> Solution:
-        """Return the rows as a solution; complete: the solve came to its end. Warns of unstable rows and few digits."""
+        """Return the rows as a solution; complete: the solve came to its end.
+
+        Warns of few digits and, where the solve is complete, of unstable rows: where it is not, an error is on its way.
+        """
         states, counts = np.array(self.states), np.array(self.negative_pivots)
         # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
         unstable = counts > 0 if self.symmetric else counts % 2 == 1
@@ -60,7 +63,8 @@ class StaticRecord:
                 ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
             elif unstable[-1]:
                 ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
-            warnings.warn(said[0], UnstableWarning, stacklevel=3)
+            if complete:
+                warnings.warn(said[0], UnstableWarning, stacklevel=3)
         if self.digits < FEW_DIGITS:
             few = f"round-off leaves {self.digits:.0f} digits of the forces"
             ended += f"; {few}"

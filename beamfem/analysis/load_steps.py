@@ -29,7 +29,7 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
         while done.reached < 1.0:
             step = _within_a_turn(system, done, step)
             target = 1.0 if done.reached + step > 1.0 - 1e-12 else done.reached + step
-            result = solve_equilibrium(system, done.state, target, newton, guarded=True)
+            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
             done.iterations += result.iterations
             if result.ended.good:
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)

@@ -89,19 +89,19 @@ class Newton:
 
 
 def solve_equilibrium(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, guarded: bool = False
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None = None
 ) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,).
 
-    guarded: stop where the tangent has another count of negative pivots than at the start, from the third iteration on:
-    the second tangent takes the stresses of a linear step, which may be far too large.
+    keep: stop where the tangent has another count of negative pivots, from the third iteration on: the second tangent
+    takes the stresses of a linear step, which may be far too large.
     """
     mixed = MIXED in system.proven
-    result = _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, guarded))
+    result = _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
     if not result.ended.good:
         loses_digits(system, start, load_factor)
     if MIXED in system.proven and not mixed:
-        return _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, guarded))
+        return _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
     return result
 
 
@@ -119,19 +119,19 @@ def _judged(system: System, load_factor: float, newton: Newton, result: NewtonRe
     return result
 
 
-def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, guarded: bool) -> NewtonResult:
+def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None) -> NewtonResult:
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None and MIXED not in system.proven:
         solve = _solve_halves if worth_cutting(system) else _solve_band
-        result = solve(system, start, load_factor, newton, held_step, guarded)
+        result = solve(system, start, load_factor, newton, held_step, keep)
         if result is not None:
             return result
     p, rest = start.copy(), np.zeros(len(start))
     scale = system.scale
     free = system.free_dofs
     stresses = None
-    last, begun_with = np.inf, -1
+    last = np.inf
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
         step = held_step if iteration == 1 else np.zeros(len(p))
@@ -143,18 +143,15 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
                 after = None
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
-        if guarded:
-            if iteration == 1:
-                begun_with = factors.negative_pivots
-            elif iteration > 2 and factors.negative_pivots != begun_with:
-                return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
+        if iteration > 2 and keep not in (None, factors.negative_pivots):
+            return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
         if newton.independent_stresses:
             stresses = after or predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
         if ended is not None:
-            if guarded and factors.negative_pivots != begun_with:
+            if keep not in (None, factors.negative_pivots):
                 ended = Ended.LOST
             state = p if ended.good else start
             return NewtonResult(state, iteration, ended, factors.negative_pivots)
@@ -163,7 +160,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
 
 
 def _solve_band(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool = False
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
     p, held_force = start.copy(), np.zeros(len(start))
@@ -182,17 +179,19 @@ def _solve_band(
         system.turned,
     )
     body = system.body(load_factor)
-    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, -1.0, 0.0])
+    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0])
     bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
-    limits = np.array((*bounds, newton.iterations, newton.independent_stresses, guarded), dtype=float)
+    limits = np.array(
+        (*bounds, newton.iterations, newton.independent_stresses, -1 if keep is None else keep), dtype=float
+    )
     change = held_step, held_force
     load = load_size(system, values)
     while found[0] < newton.iterations:
         if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found, unbalanced):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
-        negative = int(found[7])
-        if guarded and negative != found[6]:
+        negative = int(found[6])
+        if keep not in (None, negative):
             return NewtonResult(start, iterations, Ended.LOST, negative)
         if _grown(size):
             return NewtonResult(start, iterations, Ended.DIVERGED, negative)
@@ -206,12 +205,12 @@ def _solve_band(
 
 
 def _solve_halves(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool = False
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before, begun_with = load_size(system, system.point_values(load_factor)), np.inf, -1
+    load, before = load_size(system, system.point_values(load_factor)), np.inf
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -219,9 +218,8 @@ def _solve_halves(
                 size, pivots = correct(halves, pool, newton.independent_stresses, change)
             except LinAlgError:
                 return None
-            negative = negative_pivots(halves, pivots) if guarded or _grown(size) else 0
-            begun_with = negative if iteration == 1 else begun_with
-            if guarded and iteration > 2 and negative != begun_with:
+            negative = negative_pivots(halves, pivots) if keep is not None or _grown(size) else 0
+            if iteration > 2 and keep not in (None, negative):
                 return NewtonResult(start, iteration, Ended.LOST, negative)
             if _grown(size):
                 return NewtonResult(start, iteration, Ended.DIVERGED, negative)
@@ -231,7 +229,7 @@ def _solve_halves(
                 ended = _judge(system, p, newton, (size, before, iteration), left, jacobian <= 0.0)
                 if ended is not None:
                     negative = negative_pivots(halves, pivots)
-                    lost = guarded and negative != begun_with
+                    lost = keep not in (None, negative)
                     reached, ended = (start, Ended.LOST) if lost else (p, ended)
                     return NewtonResult(reached, iteration, ended, negative, left.digits)
             before = size

@@ -23,7 +23,7 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
     """Return the equilibrium at load factor 0; where it is far, that of the path along which all loads grow at once."""
     if _at_rest(system):
         return NewtonResult(system.reference, 0, Ended.CONVERGED)
-    result = solve_equilibrium(system, system.reference, 0.0, newton, guarded=True)
+    result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
     return result if result.ended.good else _grown(system, newton, result)
 
 

@@ -43,7 +43,7 @@ def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Ne
         p = moved
         time *= 2.0
         if size < _NEAR:
-            result = solve_equilibrium(system, p, load_factor, newton, guarded=True)
+            result = solve_equilibrium(system, p, load_factor, newton, keep=0)
             iterations += result.iterations
             if result.ended.good and result.negative_pivots == 0 and _size(system, result.state - p) < _LARGEST_MOVE:
                 return NewtonResult(result.state, iterations, result.ended)

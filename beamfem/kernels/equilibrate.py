@@ -56,12 +56,12 @@ def equilibrate(
 
     held_change: first step (n,) of the held coordinates and what it changes in the residual (n,), zero to go on.
     limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
-    iterations, 1 to take predicted stresses for the geometric tangent, 1 to stop where the count of negative pivots is
-    another one from the third tangent on (the stresses of the second are those of a whole linear step).
-    rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then largest
+    iterations, 1 to take predicted stresses for the geometric tangent, and the count of negative pivots where it stops
+    if the third tangent or a later one has another (the stresses of the second are those of a whole linear step), or -1.
+    rows (unknown, width): the band. found (7,): iterations so far, last correction and the one before; then largest
     residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
-    whose residual (n,) is filled; negative pivots of the first tangent, -1 before, and of the last. Stops where
-    corrections are small or stagnant, or have grown.
+    whose residual (n,) is filled; negative pivots of the last tangent. Stops where corrections are small or
+    stagnant, or have grown.
     """
     n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
@@ -83,10 +83,8 @@ def equilibrate(
         turn_in(right, turned[0], turned[1])
         if not factor(rows, right, step, window) > limits[3]:
             return False
-        found[7] = negative_diagonal(rows)
-        if found[6] < 0.0:
-            found[6] = found[7]
-        elif limits[6] > 0.0 and found[7] != found[6] and found[0] > 1.0:
+        found[6] = negative_diagonal(rows)
+        if limits[6] >= 0.0 and found[6] != limits[6] and found[0] > 1.0:
             found[0] += 1.0
             return True
         solve_upper(rows, right, window)

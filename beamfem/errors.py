@@ -40,3 +40,7 @@ class LimitPointError(ConvergenceError):
 
 class UnstableWarning(UserWarning):
     """Some rows of a static solution are equilibria that the structure would leave."""
+
+
+class ChangedCodeWarning(UserWarning):
+    """Stored results of a sweep were computed before code that its function runs was changed."""

@@ -1,6 +1,5 @@
 """Sweeps: every combination once, in any kind of worker, found again, and no loss by what fails or dies."""
 
-import importlib
 import os
 import subprocess
 import sys
@@ -173,19 +172,6 @@ def test_store_of_a_killed_run_is_read(tmp_path):
     done = run([sys.executable, script])
     assert done.stdout.strip() == "0 [0, 1, 4, 9, 16, 25, 36, 49]"
     assert done.stderr == ""
-
-
-def test_a_changed_function_is_called_again(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(tmp_path)
-    module_file = tmp_path / "changing_module.py"
-    module_file.write_text("def value(x):\n    return x\n")
-    module = importlib.import_module("changing_module")
-    assert bf.sweep(module.value, x=[1, 2], store=tmp_path / "s").values == (1, 2)
-    module_file.write_text("def value(x):\n    return x + 10\n")
-    importlib.invalidate_caches()
-    sys.modules.pop("changing_module")
-    module = importlib.import_module("changing_module")
-    assert bf.sweep(module.value, x=[1, 2], store=tmp_path / "s").values == (11, 12)
 
 
 def test_keys_tell_values_apart():

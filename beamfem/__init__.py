@@ -32,6 +32,7 @@ from beamfem.errors import (
     FreeMotionError,
     InputError,
     LimitPointError,
+    RoundOffWarning,
     UnknownPointError,
     UnstableWarning,
 )
@@ -112,6 +113,7 @@ __all__ = [
     "RigidVelocity",
     "Roller",
     "Rotation",
+    "RoundOffWarning",
     "Section",
     "SectionForces",
     "ShearFree",

@@ -4,10 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem import postprocess
 from beamfem.model.loads import Gravity, PointMoment
-from beamfem.model.reference import length_points, reference_position
-from beamfem.model.supports import Foundation
 from beamfem.model.system import system_of
 from beamfem.solution import Solution
 
@@ -33,7 +30,7 @@ class EnergyDrift:
 
 
 def energy_drift(solution: Solution) -> EnergyDrift | None:
-    """Return the drift of a motion's energy, springs and foundations included; None where something does work on it.
+    """Return the drift of a motion's energy; None where something does work on it.
 
     That is so under loads with an amplitude or that follow, and where supports move.
     """
@@ -44,9 +41,8 @@ def energy_drift(solution: Solution) -> EnergyDrift | None:
     rows = np.arange(len(solution)) if followed else np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
     some = Solution(solution.model, False, at, p, v, a, solution.statistics)
-    energy, springs = some.energy(), _in_springs(some)
-    total = energy.total + springs
-    parts = energy.kinetic.max(), np.ptp(energy.strain + springs), np.ptp(energy.potential)
+    energy = some.energy()
+    total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
 
 
@@ -58,17 +54,3 @@ def _conservative(solution: Solution) -> bool:
         for load in solution.model.loads
     )
     return not moved and not driven
-
-
-def _in_springs(solution: Solution) -> np.ndarray:
-    """Return the energy of springs and foundations (steps,) [J]."""
-    springs = system_of(solution.model, static=False).springs
-    result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
-    for support in solution.model.supports:
-        if isinstance(support, Foundation):
-            mesh = solution.model.mesh_of(support.beam.start)
-            element, xi, weight = length_points(mesh)
-            now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p), element, xi).r
-            moved = now - reference_position(mesh, element, xi)
-            result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
-    return np.asarray(result)

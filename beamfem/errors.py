@@ -44,3 +44,7 @@ class UnstableWarning(UserWarning):
 
 class ChangedCodeWarning(UserWarning):
     """Stored results of a sweep were computed before code that its function runs was changed."""
+
+
+class RoundOffWarning(UserWarning):
+    """Round-off leaves few digits of the forces of a solution."""

@@ -1,6 +1,6 @@
 """An equilibrium path: its states, its limit points and its bifurcations."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, overload
 
@@ -13,21 +13,26 @@ from beamfem.solution import Solution, State, Statistics
 
 @dataclass(frozen=True, eq=False)
 class PathState(State):
-    """One state of a path, with what a Solution offers but without its axis of steps."""
+    """One state of a path, with what a Solution offers but without its axis of steps.
+
+    stability: whether it is a stable equilibrium, where that is known; critical points are not.
+    """
+
+    stability: bool | None = field(default=None, kw_only=True)
 
     @property
     def load_factor(self) -> float:
         return self.at
 
-    @property
-    def stable(self) -> bool:
-        """Whether the state is a stable equilibrium; see `Solution.stable`."""
-        return bool(self._alone.stable[0])
-
     @cached_property
     def _alone(self) -> Solution:
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
         return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"))
+
+    @property
+    def stable(self) -> bool:
+        """Whether it is a stable equilibrium, see `Solution.stable`."""
+        return bool(self._alone.stable[0]) if self.stability is None else self.stability
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point (2,) [m]."""
@@ -77,6 +82,7 @@ class Path(Solution):
     """The equilibria along a path, in order; load factors may fall.
 
     Row i is the state `path[i]`; limit points and bifurcations lie between the rows. `save` keeps the rows only.
+    The bifurcation that a branch starts from is no stable row.
     """
 
     limit_points: tuple[PathState, ...] = ()
@@ -91,7 +97,8 @@ class Path(Solution):
         return self._state(row) if isinstance(row, int) else super().__getitem__(row)
 
     def _state(self, row: int) -> PathState:
-        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+        stability = None if self.stability is None else bool(self.stability[row])
+        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stability=stability)
 
 
 def _first(value: Any) -> Any:

@@ -6,6 +6,7 @@ import numpy as np
 
 from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
+from beamfem.last_digits import exactly
 from beamfem.model.beam import Point
 from beamfem.model.system import system_of
 
@@ -40,9 +41,12 @@ def support_forces(solution: "Solution") -> np.ndarray:
     for dof, _ in system.inclined:
         held[dof : dof + 2] = True
     springs = system.springs
-    result = np.zeros((len(solution), model.size))
-    for row, at in enumerate(solution.at):
-        p = solution.p[row]
-        result[row] = np.where(held, residual(system, p, solution.v[row], solution.a[row], at), 0.0)
-        np.subtract.at(result[row], springs.dof, springs.stiffness * (p[springs.dof] - springs.rest))
-    return result
+
+    def forces(p: np.ndarray) -> np.ndarray:
+        result = np.zeros(p.shape)
+        for row, at in enumerate(solution.at):
+            result[row] = np.where(held, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
+            np.subtract.at(result[row], springs.dof, springs.stiffness * (p[row, springs.dof] - springs.rest))
+        return result
+
+    return exactly(solution, forces)

@@ -12,12 +12,11 @@ import numpy as np
 
 from beamfem import postprocess
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
+from beamfem.energies import Energy, potential
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.loads import PointForce, factor
-from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
+from beamfem.model.reference import reference_position
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.status import Status
 
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
 class Statistics:
     """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
 
+    digits: of the forces of the last equilibrium that the balance of loads and reactions makes sure, nan if not known.
     status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
     """
 
@@ -38,6 +38,7 @@ class Statistics:
     ended: str
     status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
+    digits: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,21 +50,6 @@ class State:
     a: np.ndarray
     at: float
     model: Model
-
-
-@dataclass(frozen=True)
-class Energy:
-    """Energies (steps,) [J]; potential is that of gravity and of the other constant dead forces.
-
-    Forces that follow have none; springs and foundations are not counted."""
-
-    kinetic: np.ndarray
-    strain: np.ndarray
-    potential: np.ndarray
-
-    @property
-    def total(self) -> np.ndarray:
-        return self.kinetic + self.strain + self.potential
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,10 +114,12 @@ class Solution:
         """How the solve ended."""
         return self.statistics.status
 
-    @property
+    @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what to know before using the numbers; empty where there is nothing to say."""
-        return self.statistics.warnings
+        """Sentences on what to know before using the numbers, of locking too; empty where there is nothing to say."""
+        from beamfem.analysis.locking import locking_warnings
+
+        return (*self.statistics.warnings, *locking_warnings(self))
 
     @cached_property
     def stable(self) -> np.ndarray:
@@ -210,6 +198,13 @@ class Solution:
 
         return support_forces(self)
 
+    @cached_property
+    def remainders(self) -> np.ndarray:
+        """What the coordinates of a static solution lack below their last digit (steps, n), see `last_digits`."""
+        from beamfem.last_digits import remainders
+
+        return remainders(self)
+
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
         from beamfem.end_forces import with_ends
@@ -225,7 +220,7 @@ class Solution:
         """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
         kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
         strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
-        return Energy(kinetic, strain, self._potential())
+        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
 
     @cached_property
     def energy_drift(self) -> "EnergyDrift | None":
@@ -233,31 +228,6 @@ class Solution:
         from beamfem.energy_drift import energy_drift
 
         return energy_drift(self) if len(self) else None
-
-    def _potential(self) -> np.ndarray:
-        result = np.zeros(len(self))
-        for load in self.model.gravity:
-            weights = np.array([factor(load, at, self.static) for at in self.at])
-            for mesh, carried in zip(self.model.meshes, self._momenta, strict=True):
-                result -= weights * ((carried.first_moment - _reference_moment(mesh)) @ np.array(load.vector))
-        for acting in self.model.point_loads:
-            if acting.follower and isinstance(acting, PointForce):
-                continue
-            weights = np.array([factor(acting, at, self.static) for at in self.at])
-            fx, fy, moment = acting.value
-            result -= weights * (self.displacement(acting.point) @ np.array([fx, fy]))
-            if moment:
-                result -= weights * moment * self.rotation(acting.point)
-        for spread in self.model.distributed:
-            if spread.follower:
-                continue
-            weights = np.array([factor(spread, at, self.static) for at in self.at])
-            mesh = self.model.mesh_of(spread.beam.start)
-            element, xi, weight = length_points(mesh)
-            now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.p), element, xi).r
-            start = reference_position(mesh, element, xi)
-            result -= weights * (np.einsum("sqc,c->sq", now - start, np.array(spread.vector)) @ weight)
-        return result
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum (steps, 2) [kg m/s]."""
@@ -351,14 +321,6 @@ class Solution:
         from beamfem.io.results import save
 
         save(self, path)
-
-
-def _reference_moment(mesh: BeamMesh) -> np.ndarray:
-    """Integral of the reference position over the mass (2,) [kg m]."""
-    element, xi, inertia = inertia_points(mesh)
-    return np.asarray(
-        inertia[:, 0] @ reference_position(mesh, element, xi) + inertia[:, 1] @ reference_axis(mesh, element, xi).d
-    )
 
 
 def _single(value: Any) -> Any:

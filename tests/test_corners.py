@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.analysis.equations import residual
-from beamfem.analysis.newton import round_off_floor
+from beamfem.analysis.round_off import round_off_floor
 from beamfem.model.system import System
 
 

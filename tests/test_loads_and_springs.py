@@ -248,3 +248,18 @@ def test_gradients_under_a_moment_or_spring_carry_an_angle_only_where_it_is_held
     model = bf.Model([beam], [bf.Clamp(beam.start), bf.Spring(beam.end, rotational=1.0)])
     assert isinstance(beam.element.coordinates, Gradients)
     assert [model.meshes[0].labels(node)[-1] for node in range(4)] == ["theta", "r_y^y", "r_y^y", "theta"]
+
+
+@pytest.mark.parametrize("support", ["spring", "foundation"])
+def test_energy_of_springs_counts_in_the_total(support):
+    """Free vibration on springs: what strain and motion lose the springs hold, to the error of the time steps."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.02, 0.02), bf.Material(2e11, 0.3, 7800.0))
+    resting = {
+        "spring": [bf.Spring(beam.start, (1e4, 2e4), 50.0), bf.Spring(beam.end, (1e4, 1e4))],
+        "foundation": [bf.Foundation(beam, (1e4, 2e4))],
+    }
+    model = bf.Model([beam], resting[support])
+    motion = bf.simulate(model, 0.2, 2e-4, bf.GeneralizedAlpha(1.0), velocity=bf.RigidVelocity((0.1, 0.3), 0.5))
+    energy = motion.energy()
+    assert np.ptp(energy.potential) > 0.9 * energy.total[0]
+    assert energy.total == pytest.approx(energy.total[0], rel=1e-4)

@@ -98,7 +98,7 @@ def test_both_limit_loads_of_a_bar_are_met_whatever_the_unit_of_the_load(scale, 
 
 def test_a_load_behind_a_limit_point_is_landed_on():
     beam, model = bar()
-    path = trace_equilibrium(model, -0.01)
+    path = trace_equilibrium(model, -0.01, direction=1)
     assert path.load_factor[-1] == -0.01
     assert len(path.limit_points) == 1
     back = trace_equilibrium(model, 0.0)

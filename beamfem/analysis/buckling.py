@@ -3,45 +3,58 @@
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
+from warnings import warn
 
 import numpy as np
 
 from beamfem.analysis.balance import left_over
-from beamfem.analysis.critical import critical_load, load_of_limit_point
-from beamfem.analysis.equations import load_slope
+from beamfem.analysis.critical import LIMIT_POINT, Critical, critical_points
+from beamfem.analysis.equations import STATICS, linearise, load_slope
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.initial import resting_state
-from beamfem.analysis.lost_stiffness import Start
+from beamfem.analysis.linearised import linearised_loads
+from beamfem.analysis.loading_path import LoadingPath, PathLostError
 from beamfem.analysis.newton import Newton, solve_equilibrium
-from beamfem.analysis.primary_path import PathEndsError, PrimaryPath
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
-from beamfem.model.system import system_of
+from beamfem.model.system import System, system_of
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
 from beamfem.validation import positive
 
 _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
+_LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
+_LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
+_MOST_POINTS = 300
+_UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
 
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """Critical load factors, ascending.
+    """Critical points of a loading path, in its order, load factors ascending.
 
-    load_factors (count,): where the tangent is singular on the loading path; linearised (count,): where it would be if
-    it went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (count, n): critical shapes over all
-    coordinates, their largest displacement of a node 1; states (count, n): the equilibria at `load_factors`.
+    load_factors (m,): where the tangent is singular, m <= count; kinds (m,): "bifurcation", where another path crosses,
+    or "limit point", the largest load factor of the path, with which it ends; linearised (k,), k <= count: where it
+    would be singular if the path went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (m, n):
+    critical shapes over all coordinates, their largest displacement of a node 1; states (m, n): the equilibria at
+    `load_factors`; uncertainty (m,): share of a load factor that round-off and interpolation may have changed; ended:
+    why there are no more.
     """
 
     model: Model
     load_factors: np.ndarray
+    kinds: tuple[str, ...]
     linearised: np.ndarray
     modes: np.ndarray
     states: np.ndarray
+    uncertainty: np.ndarray
+    ended: str
 
     def __repr__(self) -> str:
-        return f"Buckling(load factors {', '.join(f'{value:.8g}' for value in self.load_factors)})"
+        points = zip(self.kinds, self.load_factors, strict=True)
+        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points)
+        return f"Buckling({listed or 'no critical point'}; ended because {self.ended})"
 
     def __len__(self) -> int:
         return len(self.load_factors)
@@ -51,6 +64,8 @@ class Buckling:
 
         mode: its row; amplitude [m] of the largest displacement, by default a tenth of the longest beam.
         """
+        if len(self) == 0:
+            raise InputError(f"there is no critical point: {self.ended}")
         if mode not in range(len(self)):
             raise InputError(f"mode must be between 0 and {len(self) - 1}, got {mode!r}")
         if amplitude is None:
@@ -68,12 +83,12 @@ class Buckling:
 
 
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
-    """Return the `count` lowest load factors, above that of the start, at which the tangent is singular.
+    """Return the first `count` points of the loading path at which the tangent is singular, or those that there are.
 
-    about: the stable equilibrium to start from, by default that at load factor 0. The path from there is followed with
-    its true equilibria and none is left out (negative pivots of the tangent are counted).
-    Raises InputError where no load factor is critical, loads do nothing or follow the beam; FreeMotionError;
-    ConvergenceError, with the equilibria found, where the path ends in a limit point before.
+    about: the stable equilibrium to start from, by default that at load factor 0. The true equilibria from there are
+    followed up to their largest load factor, and negative pivots of the tangent are counted: no change is left out.
+    Warns of results with less than four digits. Raises InputError where no load factor is critical, loads do nothing
+    or follow the beam; FreeMotionError; ConvergenceError, with the equilibria found, where the path was lost before.
     """
     whole_number("count", count)
     system = system_of(model, static=True)
@@ -81,6 +96,43 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     unknown = len(system.free_dofs)
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
+    p, load_factor = _stable_start(system, about)
+    path = LoadingPath(system, p, load_factor)
+    slope = path.start.tangent[:-1] / path.start.tangent[-1]
+    linearised = linearised_loads(system, p, load_factor, slope, count)
+    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
+    if not len(linearised):
+        raise InputError(
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
+        )
+    farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+    found, ended = _criticals(path, count, farthest)
+    if not found and path.lost:
+        raise ConvergenceError(
+            f"the loading path was lost before any load factor was critical: {ended}", path.solution()
+        )
+    uncertainty = np.array([point.uncertainty for point in found])
+    if np.any(uncertainty > _UNCERTAIN):
+        digits = ", ".join(f"{value:.0e}" for value in uncertainty)
+        warn(
+            f"round-off leaves few digits of these critical load factors, relative errors up to {digits}", stacklevel=2
+        )
+    shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
+    return Buckling(
+        model,
+        np.array([point.load_factor for point in found]),
+        tuple(point.kind for point in found),
+        linearised,
+        upright(np.array(shapes).reshape(-1, model.size)),
+        np.array([point.p for point in found]).reshape(-1, model.size),
+        uncertainty,
+        ended,
+    )
+
+
+def _stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
     p, load_factor = resting_state(system, about)
     if left_over(system, p, load_factor) > 0.0:
         begun = solve_equilibrium(system, p, load_factor, Newton())
@@ -89,39 +141,41 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         p = begun.state
     if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
         raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
-    path = PrimaryPath(system, p, load_factor)
-    start = Start.at(system, path.found[0])
-    linearised = load_factor + 1.0 / start.rates(count)
-    moved = float(np.max(np.abs(path.found[0].slope) / system.scale))
-    linearised = linearised[(linearised - load_factor) * moved <= _LARGEST_CHANGE]
-    if len(linearised) < count:
-        found = f"only {len(linearised)} of {count} load factors" if len(linearised) else "no positive load factor"
+    rest = np.zeros_like(p)
+    tangent = linearise(system, p, rest, rest, load_factor, STATICS)[1]
+    unstable = tangent.factorised(system.turned).negative_pivots
+    if unstable > 0:
         raise InputError(
-            f"{found} can be critical: the loads stiffen the model, or would first have to move it by more than half "
-            "of its length"
+            f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "
+            f"in {unstable} direction(s)"
         )
-    loads: list[float] = []
-    shapes: list[np.ndarray] = []
-    states: list[np.ndarray] = []
-    for number, guess in enumerate(linearised):
+    return p, load_factor
+
+
+def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str]:
+    """Return the first `count` critical points of a path up to its first limit point, and why there are no more."""
+    found: list[Critical] = []
+    here = path.start
+    while len(path.points) < _MOST_POINTS:
         try:
-            load = critical_load(path, start, number, guess, count)
-        except PathEndsError:
-            raise ConvergenceError(_no_further(path, start, loads), path.solution(model)) from None
-        state = path.between(load)
-        shape = start.critical_shape(state, load, number)
-        loads.append(load)
-        states.append(state)
-        shapes.append(shape / largest_translation(model, state, shape))
-    return Buckling(model, np.array(loads), linearised, upright(np.array(shapes)), np.array(states))
-
-
-def _no_further(path: PrimaryPath, start: Start, loads: list[float]) -> str:
-    """Say where and why the path ends."""
-    limit = load_of_limit_point(path, start)
-    where = f"a limit point at load factor {limit:.6g}" if limit else f"load factor {path.found[-1].load_factor:.6g}"
-    before = f"after {', '.join(f'{load:.6g}' for load in loads)}" if loads else "before any load factor"
-    return (
-        f"the loading path ends in {where} {before} was found critical; "
-        "no equilibrium near by carries more. trace_equilibrium follows the path around it"
-    )
+            following = path.advance(here)
+            more, here = critical_points(path, here, following)
+        except PathLostError as error:
+            if not path.shorten(here):
+                return found, str(error)
+            continue
+        except ConvergenceError as error:
+            path.lost = True
+            return found, str(error)
+        path.add(here)
+        for point in more:
+            found.append(point)
+            if point.kind == LIMIT_POINT:
+                return found[:count], "the path has its largest load factor there"
+        if len(found) >= count:
+            return found[:count], f"{count} are asked for"
+        if path.moved(here) > _LARGEST_MOVEMENT:
+            return found, "the model has moved by more than its own length"
+        if here.load_factor > farthest:
+            return found, f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
+    return found, f"the {_MOST_POINTS} points of the path are used up"

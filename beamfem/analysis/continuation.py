@@ -1,6 +1,5 @@
 """Points of an equilibrium path, corrected and linearised with the load factor among the unknowns."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, load_slope, predicted_stresses, residual
 from beamfem.analysis.newton import Ended, Newton, verdict
+from beamfem.analysis.round_off import loses_digits
 from beamfem.analysis.tangent import Factorised
 from beamfem.model.system import System
 
@@ -17,6 +17,7 @@ _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
 _GROWS_WELL = 0.3  # share of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
+_STILL = 1e-7  # of a mode: what an iteration may still turn it by
 
 Stresses = tuple[np.ndarray, ...]
 
@@ -146,27 +147,27 @@ class Continuation:
         tangent = along / self.length(along)
         return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
 
-    def softest(self, factors: Factorised, besides: Sequence[np.ndarray] = ()) -> np.ndarray:
-        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive.
+    def softest(self, factors: Factorised) -> np.ndarray:
+        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive."""
+        mode = self.softest_modes(factors, 1)[0]
+        return np.asarray(mode * np.sign(mode[np.argmax(np.abs(mode) / self.scale)]))
 
-        besides: softer modes (n + 1,) that it is orthogonal to.
-        """
+    def softest_modes(self, factors: Factorised, count: int) -> np.ndarray:
+        """Return orthonormal changes of y (count, n + 1) that span those with the smallest stiffness."""
         free = self.system.free_dofs
-        weights = self.weights[free]
-        mode = np.random.default_rng(len(besides)).standard_normal(len(free)) / np.sqrt(weights)
+        roots = np.sqrt(self.weights[free])
+        basis = np.random.default_rng(0).standard_normal((len(free), min(count, len(free))))
         for _ in range(_INVERSE_ITERATIONS):
-            for other in besides:
-                mode -= (weights * mode) @ other[free] * other[free]
-            mode /= np.sqrt(weights @ mode**2)
-            found = factors.solve(weights * mode)
-            change = abs(weights @ (mode * found)) / np.sqrt(weights @ found**2)
-            mode = found
-            if 1.0 - change < 1e-14:
+            basis = np.linalg.qr(basis)[0]
+            found = np.column_stack([factors.solve(roots * column) * roots for column in basis.T])
+            outside = found - basis @ (basis.T @ found)
+            still = np.all(np.linalg.norm(outside, axis=0) < _STILL * np.linalg.norm(found, axis=0))
+            basis = found
+            if still:
                 break
-        result = np.zeros(len(self.scale))
-        result[free] = mode
-        largest = np.argmax(np.abs(result) / self.scale)
-        return np.asarray(result / np.copysign(self.length(result), result[largest]))
+        result = np.zeros((basis.shape[1], len(self.scale)))
+        result[:, free] = (np.linalg.qr(basis)[0] / roots[:, None]).T
+        return result
 
     def softness(self, factors: Factorised, mode: np.ndarray) -> float:
         """Return mode . K^-1 mode, infinite with a change of sign where the tangent K is singular along the mode."""
@@ -182,7 +183,7 @@ class Continuation:
         unbalanced, tangent = linearise(system, p, rest, rest, at, STATICS, stresses)
         factors = tangent.factorised(system.turned)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
-        balance[free] = factors.solve(-unbalanced[free])
+        balance[free], _ = factors.correction(unbalanced[free])
         along[free] = factors.solve(-load_slope(system, p, at, width)[free])
         along[held] = (system.held_values(at + width) - system.held_values(at - width)) / (2.0 * width)
         along[-1] = 1.0
@@ -201,6 +202,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     """
     plain = Continuation(system, newton, 1.0, 1.0)
     rest = np.zeros(len(p))
+    loses_digits(system, p, load_factor)
     _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
     factors = tangent.factorised(system.turned)
     mode = plain.softest(factors)

@@ -1,13 +1,19 @@
-"""Extreme eigenpairs of a pair of matrices, one of which is factorised."""
+"""Eigenpairs next to a shift, by the factors of a shifted matrix."""
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
-from scipy.linalg import eig, eigh
+from scipy.linalg import cholesky, eig, eigh, solve_triangular
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import LinearOperator, eigs, eigsh
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
+
+from beamfem.errors import ConvergenceError
 
 _DENSE = 200  # unknowns up to which all eigenpairs are as quick as a few
+_LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are found where the iteration for a few fails
+MOST_RESTARTS = 100  # of an iteration, which takes some ten where round-off leaves it digits
+_LANCZOS_VECTORS = (1, 3)  # times the usual number
 
 
 class Solver(Protocol):
@@ -19,70 +25,100 @@ class Solver(Protocol):
 Pairs = tuple[np.ndarray, np.ndarray]
 
 
-def largest_pairs(
-    matrix: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs | None = None
-) -> Pairs:
-    """Return the largest mu (m,), descending, and x (n, m) with matrix x = mu stiffness x, x^T stiffness x = 1.
+def nothing_known(n: int) -> Pairs:
+    return np.empty(0), np.empty((n, 0))
 
-    stiffness: positive definite along the free directions, with its factors; count: how many to find besides the
-    `known` ones, which the result holds as well. m is smaller only where there are no more directions.
+
+def largest_pairs(mass: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+    """Return the largest mu (m,), descending, and x (n, m) with S mass x = mu x, x^T mass x = 1, S the inverse.
+
+    mass: positive definite; factors: of a symmetric matrix, positive definite along the free directions; count: how
+    many to find besides the `known` ones, which the result does not hold. m is smaller where there are no more.
+    Raises ConvergenceError.
     """
-    n = matrix.shape[0]
-    found = 0 if known is None else len(known[0])
-    if n <= _DENSE or 2 * (count + found) >= n:
-        basis = _dense_basis(factors, n)
-        values, y = eigh(basis.T @ (matrix @ basis))
-        return values[::-1][: count + found], (basis @ y[:, ::-1])[:, : count + found]
+    n = mass.shape[0]
+    carried = mass @ known[1]
 
-    def remaining(x: np.ndarray) -> np.ndarray:
-        result = matrix @ x
-        if known is not None:
-            carried = stiffness @ known[1]
-            result = result - carried @ (known[0] * (carried.T @ x))
-        return np.asarray(result)
+    def dense() -> Pairs:
+        root = cholesky(mass.toarray(), lower=True)
+        inverse = root.T @ np.column_stack([factors.solve(column) for column in root.T])
+        inverse = 0.5 * (inverse + inverse.T)
+        old = root.T @ known[1]
+        values, y = eigh(inverse - old @ (known[0][:, None] * old.T))
+        return values[::-1], solve_triangular(root.T, y[:, ::-1])
 
-    values, x = eigsh(
-        LinearOperator((n, n), matvec=remaining, dtype=float),
-        count,
-        M=stiffness,
-        Minv=LinearOperator((n, n), matvec=factors.solve, dtype=float),
-        which="LA",
-        v0=_first_vector(n),
-    )
-    if known is not None:
-        values, x = np.append(known[0], values), np.column_stack([known[1], x])
-    order = np.argsort(-values, kind="stable")
-    return values[order], x[:, order]
+    def few(vectors: int) -> Pairs:
+        inverse = LinearOperator(
+            (n, n), matvec=lambda b: factors.solve(b) - known[1] @ (known[0] * (known[1].T @ b)), dtype=float
+        )
+        # ARPACK asks the matrix itself nothing where it is given the inverse
+        reciprocal, x = eigsh(
+            LinearOperator((n, n), matvec=np.asarray, dtype=float),
+            count,
+            M=mass,
+            sigma=0.0,
+            OPinv=inverse,
+            ncv=lanczos_vectors(vectors, count, n),
+            maxiter=MOST_RESTARTS,
+            v0=first_vector(n),
+        )
+        order = np.argsort(reciprocal, kind="stable")
+        return 1.0 / reciprocal[order], x[:, order]
+
+    mu, x = first_that_works(dense, few, n, count)
+    for _ in range(2):
+        x = x - known[1] @ (carried.T @ x)
+    return mu[:count], x[:, :count]
 
 
-def general_pairs(matrix: csr_array, stiffness: csr_array, factors: Solver, count: int) -> Pairs:
-    """Return the largest |mu| (m,) complex, descending, and x (n, m) with matrix x = mu stiffness x.
+def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
 
-    matrix: symmetric, positive definite; stiffness: any matrix, with its factors.
+    mass: symmetric, positive definite; stiffness: any matrix, with its factors; known: pairs that the result does not
+    hold, with x^T mass x = 1. Raises ConvergenceError.
     """
-    n = matrix.shape[0]
-    if n <= _DENSE or 2 * count + 2 >= n:
-        values, x = eig(np.column_stack([factors.solve(column) for column in matrix.toarray().T]))
-    else:
-        # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) matrix x
-        inverse = LinearOperator((n, n), matvec=factors.solve, dtype=float)
-        reciprocal, x = eigs(stiffness, count, M=matrix, sigma=0.0, OPinv=inverse, v0=_first_vector(n))
-        values = 1.0 / reciprocal
+    n = mass.shape[0]
+    carried = mass @ known[1]
+
+    def dense() -> Pairs:
+        inverse = np.column_stack([factors.solve(column) for column in mass.toarray().T])
+        return eig(inverse - known[1] @ (known[0][:, None] * carried.T))
+
+    def few(vectors: int) -> Pairs:
+        inverse = LinearOperator(
+            (n, n), matvec=lambda b: factors.solve(b) - known[1] @ (known[0] * (known[1].T @ b)), dtype=float
+        )
+        # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
+        options = {"ncv": lanczos_vectors(vectors, count, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
+        reciprocal, x = eigs(stiffness, count, M=mass, sigma=0.0, OPinv=inverse, **options)
+        return 1.0 / reciprocal, x
+
+    values, x = first_that_works(dense, few, n, count + 1)
     order = np.argsort(-np.abs(values), kind="stable")[:count]
-    return values[order], x[:, order]
+    values, x = values[order], x[:, order]
+    # Wielandt: deflation leaves the other values, and adds a share of the known directions to their vectors
+    shares = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
+    return values, x + known[1] @ shares
 
 
-def _dense_basis(factors: Solver, n: int) -> np.ndarray:
-    """Return F (n, m) with F F^T = inverse of the stiffness along the free directions, so F^T stiffness F = 1."""
-    inverse = np.column_stack([factors.solve(column) for column in np.eye(n)])
-    size = np.sqrt(np.abs(np.diag(inverse)))
-    size[size == 0.0] = 1.0
-    inverse = 0.5 * (inverse + inverse.T) / np.outer(size, size)
-    values, vectors = eigh(inverse)
-    free = values > n * np.finfo(float).eps * values[-1]
-    return np.asarray(size[:, None] * vectors[:, free] * np.sqrt(values[free]))
+def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:
+    """Return what finds a `few` eigenpairs of n unknowns, or what finds all where these are not many or that fails."""
+    if n > _DENSE and 2 * count < n:
+        for vectors in _LANCZOS_VECTORS:
+            try:
+                return few(vectors)
+            except ArpackError:
+                continue
+        if n > _LARGEST_DENSE:
+            raise ConvergenceError(f"the iteration for {count} eigenvalues of {n} unknowns did not converge")
+    return dense()
 
 
-def _first_vector(n: int) -> np.ndarray:
+def lanczos_vectors(times: int, count: int, n: int) -> int:
+    """Return how many vectors an iteration for `count` eigenpairs works with."""
+    return min(n, times * max(2 * count + 1, 20))
+
+
+def first_vector(n: int) -> np.ndarray:
     """Return a start of the iteration that is the same in every run and has a share of every mode."""
     return np.random.default_rng(0).standard_normal(n)

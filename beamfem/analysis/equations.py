@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
+from beamfem.analysis.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.balance import balance
 from beamfem.kernels.block import Block, PointLoads, Springs
@@ -12,6 +13,8 @@ from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
+ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is their sum
+MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
 
 
@@ -71,15 +74,60 @@ def linearise(
     model = system.forms, blocks or system.blocks, system.workspaces(stresses), loads, system.springs, system.layouts
     actions = system.body(time), point_rows(system, time), 0
     balance(*model, p, v, a, *actions, np.array(coefficients), stresses is not None, result, matrix)
+    tangent: Tangent
     if pattern is None:
-        return result, BandTangent(matrix.reshape(unknown, width))
-    return result, SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+        tangent = BandTangent(matrix.reshape(unknown, width))
+    else:
+        tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
+        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
+    return result, tangent
 
 
-def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns)."""
-    stresses = system.stress_tables()
-    for form, block, work, stress in zip(system.forms, system.blocks, system.workspaces(), stresses, strict=True):
+def with_stresses(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    plain: Tangent,
+) -> MixedTangent:
+    """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
+    p = state[0]
+    known = stresses or _sure_stresses(system, p)
+    loads, rest = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
+    return mixed(system, p, coefficients[0], loads, rest, plain)
+
+
+def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants of a state, of each block (ne, nq, ns), zero where they may be round-off only.
+
+    That of a stiff part would buckle, or hold, what is soft beside it.
+    """
+    result = predicted_stresses(system, p, np.zeros(len(p)))
+    reach, turn = sizes(system, p)
+    for block, errors, stress in zip(system.blocks, system.stress_errors, result, strict=True):
+        round_off = ROUND_OFF * (reach * errors[0] + turn * errors[1])
+        stress[np.abs(stress) <= round_off[block.kind]] = 0.0
+    return result
+
+
+def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
+    """Return the largest position [m], or the size of the model, and the largest of all other coordinates, or 1."""
+    reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
+    return reach, max(float(np.max(np.abs(p[~system.positions]), initial=0.0)), 1.0)
+
+
+def predicted_stresses(
+    system: System, p: np.ndarray, step: np.ndarray, blocks: tuple[Block, ...] | None = None
+) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
+
+    blocks: to take instead of those of the system.
+    """
+    own = blocks or system.blocks
+    stresses = tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in own)
+    for form, block, work, stress in zip(system.forms, own, system.workspaces(), stresses, strict=True):
         predict_stress(form, block, work, p, step, stress)
     return stresses
 

@@ -96,19 +96,24 @@ def _rigid(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.ndarray
     """Rates (n,) of a rigid motion from the state p."""
     result = np.zeros(len(p))
     for mesh in system.model.meshes:
-        columns = coordinate_columns(mesh)
-        for place, (label, _, dofs) in enumerate(columns):
-            if label == "theta":
-                result[dofs] = velocity.angular
-            elif label != "s":
-                name, axis = label.split("^")
-                component = "xy".index(axis)
-                other = columns[place + 1 - 2 * component][2]
-                lever = p[other] - (velocity.about[1 - component] if name == "r" else 0.0)
-                result[dofs] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
-                if name == "r":
-                    result[dofs] += velocity.vector[component]
+        set_rigid_rates(mesh, velocity, p, result)
     return result
+
+
+def set_rigid_rates(mesh: BeamMesh, velocity: RigidVelocity, p: np.ndarray, rates: np.ndarray) -> None:
+    """Write the rates of the coordinates of a beam that moves rigidly from the state p (n,) into `rates` (n,)."""
+    columns = coordinate_columns(mesh)
+    for place, (label, _, dofs) in enumerate(columns):
+        if label == "theta":
+            rates[dofs] = velocity.angular
+        elif label != "s":
+            name, axis = label.split("^")
+            component = "xy".index(axis)
+            other = columns[place + 1 - 2 * component][2]
+            lever = p[other] - (velocity.about[1 - component] if name == "r" else 0.0)
+            rates[dofs] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
+            if name == "r":
+                rates[dofs] += velocity.vector[component]
 
 
 def _along(mesh: BeamMesh, velocity: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:

@@ -76,7 +76,7 @@ class PathFollower:
             step, iterations, cuts = _step(line, point, self.size)
             self.size = step.next_size
             if step.limits:
-                raise TurnsBackError(step.segment.at(step.limits[0]).y, step.segment.after.y, iterations, cuts)
+                raise TurnsBackError(step.segment.critical(step.limits[0]), step.segment.after.y, iterations, cuts)
             point = step.segment.after
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)

@@ -32,11 +32,14 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
             result = solve_equilibrium(system, done.state, target, newton, guarded=True)
             done.iterations += result.iterations
             if result.ended.good:
-                done.add(target, result.state, result.negative_pivots, result.ended)
+                done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
                 if result.iterations <= _EASY_ITERATIONS:
                     step *= 2.0
+            elif result.ended is Ended.NO_DIGITS:
+                # what round-off takes of a load it takes of a smaller one as well
+                raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
             elif cuts < _CUTS:
                 cuts += 1
                 done.cuts += 1
@@ -100,4 +103,4 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     done.iterations += found.iterations
     if not found.ended.good:
         raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())
-    done.add(load_factor, found.state, found.negative_pivots, found.ended)
+    done.add(load_factor, found.state, found.negative_pivots, found.ended, found.digits)

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from beamfem.analysis.balance import left_over
-from beamfem.analysis.eigenpairs import Pairs, general_pairs, largest_pairs
+from beamfem.analysis.eigenpairs import Pairs, general_pairs, nothing_known
 from beamfem.analysis.initial import resting_state
+from beamfem.analysis.lowest import lowest_pairs
 from beamfem.analysis.pencil import UNTURNED, Pencil
-from beamfem.analysis.rigid import sort_rigid
+from beamfem.analysis.rigid import unresisted
 from beamfem.analysis.shapes import largest_translation, upright
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.solution import Solution, State, Statistics
@@ -20,8 +21,7 @@ from beamfem.validation import count as whole_number
 from beamfem.validation import positive
 
 _REAL = 1e-8  # imaginary parts of lambda below this share are round-off
-_CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be counted apart
-_SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
+_SPARE = 4  # eigenvalues found beyond those asked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +51,13 @@ class Modes:
     def elastic(self) -> np.ndarray:
         """Frequencies [Hz] without those of the rigid modes."""
         return self.frequencies[len(self.rigid) :]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the elements say against the digits of these frequencies, in sentences; empty if nothing."""
+        from beamfem.analysis.locking import frequency_warnings
+
+        return frequency_warnings(self)
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
         """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
@@ -107,63 +114,35 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
             f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
             "is left over. Give about= a state of solve_static with the same loads"
         )
-    squares, vectors = _symmetric(pencil, count) if pencil.symmetric else _general(pencil, count)
-    if len(squares) < count:
-        raise InputError(f"count is {count}, but supports leave this model only {len(squares)} modes")
-    order = np.argsort(np.abs(squares) > pencil.round_off, kind="stable")
-    squares, vectors = squares[order], vectors[:, order]
-    rigid = int((np.abs(squares) <= pencil.round_off).sum())
+    if count > pencil.size:
+        raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")
+    rigid, words = unresisted(pencil)
+    missing = max(count - len(rigid), 0)
+    squares, vectors = (lowest_pairs if pencil.symmetric else _general)(pencil, missing, rigid[:, system.free_dofs].T)
     rates = _rates(squares)
-    rates[:rigid] = 0.0
-    rest = rigid + np.lexsort((-rates.real[rigid:], rates.imag[rigid:]))
-    keep = np.append(np.arange(rigid), rest)
-    shapes = np.zeros((len(keep), model.size), dtype=vectors.dtype)
-    shapes[:, system.free_dofs] = vectors[:, keep].T
-    shapes /= np.sqrt(np.real(_quadratic(pencil, vectors[:, keep])))[:, None]
-    words: tuple[str, ...] = ()
-    if rigid:
-        shapes[:rigid], words = sort_rigid(pencil, np.real(shapes[:rigid]))
-    rates = rates[keep][:count]
+    order = np.lexsort((-rates.real, rates.imag))
+    shapes = np.zeros((missing, model.size), dtype=vectors.dtype)
+    shapes[:, system.free_dofs] = vectors[:, order].T[:missing]
+    shapes = np.concatenate([rigid[:count], shapes])
+    rates = np.append(np.zeros(len(rigid)), rates[order])[:count]
     rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
     frequencies = rates.imag / (2.0 * np.pi)
-    return Modes(model, rest_state, frequencies, rates.real, upright(shapes[:count]), words[:count])
+    return Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
 
 
-def _symmetric(pencil: Pencil, count: int) -> Pairs:
-    """Return the lowest omega^2 (m,), ascending, m >= count, and vectors (unknown, m); none is left out."""
-    shift = pencil.shift()
+def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
+    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric; see `lowest_pairs`."""
+    if count == 0:
+        return nothing_known(pencil.size)
+    shift = pencil.shift(rigid.shape[1])
     tangent = pencil.shifted(shift)
     factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
-    wanted = min(count + _SPARE, len(pencil.system.free_dofs))
-    known: Pairs | None = None
-    missing = wanted
-    for _ in range(8):
-        known = largest_pairs(pencil.mass, stiffness, factors, missing, known)
-        positive_ones = known[0] > 0.0
-        squares = shift + 1.0 / known[0][positive_ones]
-        vectors = known[1][:, positive_ones]
-        if len(squares) == len(pencil.system.free_dofs) or len(squares) < wanted:
-            return squares, vectors
-        below = count + int(np.argmax(np.diff(squares[count - 1 :])))
-        cut = 0.5 * (squares[below - 1] + squares[below])
-        if squares[below] - squares[below - 1] <= _CLUSTER * abs(cut):
-            missing = wanted
-            continue
-        missing = pencil.below(cut) - below
-        if missing == 0:
-            return squares[:below], vectors[:, :below]
-        missing = max(missing, _SPARE)
-    raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
-
-
-def _general(pencil: Pencil, count: int) -> Pairs:
-    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric."""
-    shift = pencil.shift()
-    tangent = pencil.shifted(shift)
-    factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
-    reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE)
+    known = np.full(rigid.shape[1], -1.0 / shift), rigid
+    reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)
     found = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
-    return shift + 1.0 / reciprocal[found], vectors[:, found]
+    vectors = vectors[:, found]
+    sizes = np.real((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))
+    return shift + 1.0 / reciprocal[found], vectors / np.sqrt(sizes)
 
 
 def _rates(squares: np.ndarray) -> np.ndarray:
@@ -176,7 +155,3 @@ def _rates(squares: np.ndarray) -> np.ndarray:
     squares = np.where(real, squares.real, squares)
     rates = np.sqrt(-squares)
     return np.where(rates.imag < 0.0, -rates, rates) + 0.0
-
-
-def _quadratic(pencil: Pencil, vectors: np.ndarray) -> np.ndarray:
-    return np.asarray((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))

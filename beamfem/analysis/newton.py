@@ -1,15 +1,25 @@
 """Newton's method for an equilibrium at a fixed load factor."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
-from beamfem.analysis.equations import STATICS, linearise, point_rows, predicted_stresses, residual
+from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
+from beamfem.analysis.round_off import (
+    ENOUGH,
+    MOST_DIGITS,
+    digits_of,
+    load_size,
+    loses_digits,
+    remainder,
+    row_floors,
+)
 from beamfem.analysis.tangent import SMALLEST_PIVOT
 from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
@@ -19,6 +29,7 @@ from beamfem.model.system import System
 from beamfem.validation import count, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
+_SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
 _LARGEST = 1e3  # of the model; larger corrections lead nowhere
 
 
@@ -30,6 +41,7 @@ class Ended(Enum):
     DIVERGED = "the corrections grew beyond the size of the model"
     EXHAUSTED = "the iterations ran out before the corrections became small"
     SINGULAR = "the tangent is singular"
+    NO_DIGITS = "round-off leaves no digit of the forces: stiffnesses and loads of this model are too far apart"
     LOST = "the count of negative pivots changed on the way, so the equilibrium may be one of another path"
     INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
 
@@ -42,13 +54,15 @@ class Ended(Enum):
 class NewtonResult:
     """The last state (n,) of an iteration, how many iterations it took and why it ended.
 
-    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable.
+    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
+    digits: how many of the forces are sure at least.
     """
 
     state: np.ndarray
     iterations: int
     ended: Ended
     negative_pivots: int = 0
+    digits: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -82,9 +96,33 @@ def solve_equilibrium(
     guarded: stop where the tangent has another count of negative pivots than at the start, from the third iteration on:
     the second tangent takes the stresses of a linear step, which may be far too large.
     """
+    mixed = MIXED in system.proven
+    result = _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, guarded))
+    if not result.ended.good:
+        loses_digits(system, start, load_factor)
+    if MIXED in system.proven and not mixed:
+        return _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, guarded))
+    return result
+
+
+def _judged(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
+    """Return a result with the digits that are sure of its forces, and what its state lacked to balance them."""
+    if result.ended is Ended.CONVERGED and math.isnan(result.digits):
+        return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
+    if result.ended is Ended.ROUND_OFF:
+        digits = digits_of(system, result.state, load_factor) if math.isnan(result.digits) else result.digits
+        if digits >= ENOUGH:
+            return replace(result, digits=digits)
+        missing = remainder(system, result.state, load_factor)
+        ended = Ended.ROUND_OFF if missing.digits >= 1.0 else Ended.NO_DIGITS
+        return replace(result, state=result.state + missing.step, ended=ended, digits=missing.digits)
+    return result
+
+
+def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, guarded: bool) -> NewtonResult:
     held_step = np.zeros(len(start))
     held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
-    if system.unknowns.pattern is None:
+    if system.unknowns.pattern is None and MIXED not in system.proven:
         solve = _solve_halves if worth_cutting(system) else _solve_band
         result = solve(system, start, load_factor, newton, held_step, guarded)
         if result is not None:
@@ -97,12 +135,12 @@ def solve_equilibrium(
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
         step = held_step if iteration == 1 else np.zeros(len(p))
-        right = -unbalanced[free]
-        if iteration == 1 and np.any(held_step):
-            right -= _held_force(system, p, held_step, load_factor)[free]
         try:
             factors = tangent.factorised(system.turned)
-            step[free] = factors.solve(right)
+            step[free], after = factors.correction(unbalanced[free])
+            if iteration == 1 and np.any(held_step):
+                step[free] -= factors.solve(_held_force(system, p, held_step, load_factor)[free])
+                after = None
         except (LinAlgError, ValueError):
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if guarded:
@@ -111,7 +149,7 @@ def solve_equilibrium(
             elif iteration > 2 and factors.negative_pivots != begun_with:
                 return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
         if newton.independent_stresses:
-            stresses = predicted_stresses(system, p, step)
+            stresses = after or predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
@@ -125,13 +163,13 @@ def solve_equilibrium(
 
 
 def _solve_band(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool = False
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
     p, held_force = start.copy(), np.zeros(len(start))
     if held_step.any():
         held_force = _held_force(system, start, held_step, load_factor)
-    rows = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1))
+    rows, unbalanced = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1)), np.empty(len(p))
     values = point_rows(system, load_factor)
     model = (
         system.forms,
@@ -148,9 +186,9 @@ def _solve_band(
     bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
     limits = np.array((*bounds, newton.iterations, newton.independent_stresses, guarded), dtype=float)
     change = held_step, held_force
-    load = max((float(np.abs(forces).max(initial=0.0)) for forces in values), default=0.0)
+    load = load_size(system, values)
     while found[0] < newton.iterations:
-        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found):
+        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found, unbalanced):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
         negative = int(found[7])
@@ -159,20 +197,21 @@ def _solve_band(
         if _grown(size):
             return NewtonResult(start, iterations, Ended.DIVERGED, negative)
         if _small(size, before, iterations, newton):
-            ended = _judge(system, p, newton, size, found[3], max(found[4], load), found[5] <= 0.0)
+            left = _Left(unbalanced, found[3], max(found[4], load))
+            ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
-                return NewtonResult(p, iterations, ended, negative)
+                return NewtonResult(p, iterations, ended, negative, left.digits)
         change = np.zeros(len(p)), np.zeros(len(p))
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 
 def _solve_halves(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, guarded: bool = False
 ) -> NewtonResult | None:
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before, begun_with = _load_size(system, load_factor), np.inf, -1
+    load, before, begun_with = load_size(system, system.point_values(load_factor)), np.inf, -1
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -188,13 +227,13 @@ def _solve_halves(
                 return NewtonResult(start, iteration, Ended.DIVERGED, negative)
             if _small(size, before, iteration, newton):
                 p, unbalanced, jacobian = joined(halves, pool)
-                largest = float(np.max(np.abs(unbalanced[system.free_dofs]), initial=0.0))
-                force = max(float(np.max(np.abs(unbalanced), initial=0.0)), load)
-                ended = _judge(system, p, newton, size, largest, force, jacobian <= 0.0)
+                left = _left(system, unbalanced, load)
+                ended = _judge(system, p, newton, (size, before, iteration), left, jacobian <= 0.0)
                 if ended is not None:
                     negative = negative_pivots(halves, pivots)
                     lost = guarded and negative != begun_with
-                    return NewtonResult(start if lost else p, iteration, Ended.LOST if lost else ended, negative)
+                    reached, ended = (start, Ended.LOST) if lost else (p, ended)
+                    return NewtonResult(reached, iteration, ended, negative, left.digits)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
@@ -210,10 +249,10 @@ def verdict(
     if not _small(size, before, iteration, newton):
         return None
     rest = np.zeros(len(p))
-    unbalanced = residual(system, p, rest, rest, load_factor)
-    largest = float(np.max(np.abs(system.along_free(unbalanced)), initial=0.0))
-    force = max(float(np.max(np.abs(unbalanced), initial=0.0)), _load_size(system, load_factor))
-    return _judge(system, p, newton, size, largest, force, inverted(system, p))
+    left = _left(
+        system, residual(system, p, rest, rest, load_factor), load_size(system, system.point_values(load_factor))
+    )
+    return _judge(system, p, newton, (size, before, iteration), left, inverted(system, p))
 
 
 def _grown(size: float) -> bool:
@@ -221,23 +260,65 @@ def _grown(size: float) -> bool:
 
 
 def _small(size: float, before: float, iteration: int, newton: Newton) -> bool:
-    return size <= newton.tolerance or (iteration > 2 and size > 0.25 * before and size < _STAGNANT)
+    return size <= newton.tolerance or _stagnant(size, before, iteration)
+
+
+def _stagnant(size: float, before: float, iteration: int) -> bool:
+    return iteration > 2 and size > 0.25 * before and size < _STAGNANT
+
+
+@dataclass(frozen=True, eq=False)
+class _Left:
+    """What is left of the balance: residual (n,), its largest of the unknown, and the largest force.
+
+    Forces are multiplied by what their coordinate is measured by, so that they compare with moments [N m].
+    """
+
+    residual: np.ndarray
+    largest: float
+    force: float
+
+    @property
+    def digits(self) -> float:
+        """How many digits of the largest force every row leaves."""
+        return min(math.log10(self.force / self.largest), MOST_DIGITS) if self.largest > 0.0 else MOST_DIGITS
+
+
+def _left(system: System, unbalanced: np.ndarray, load: float) -> _Left:
+    """Return the same of a residual (n,); load: largest that acts, for where nothing reacts."""
+    largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
+    return _Left(unbalanced, largest, max(float(np.max(np.abs(unbalanced) * system.scale, initial=0.0)), load))
 
 
 def _judge(
-    system: System, p: np.ndarray, newton: Newton, size: float, largest: float, force: float, inside_out: bool
+    system: System, p: np.ndarray, newton: Newton, sizes: tuple[float, float, int], left: _Left, inside_out: bool
 ) -> Ended | None:
     """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
 
-    largest: residual of the unknown directions [N, N m]; force: largest force that acts or reacts.
+    sizes: of the last correction and the one before, and the number of the iteration. Where the residual is above the
+    tolerance, each row must have come to its own floor, and what the next correction would be must be lost in the
+    digits of the movement.
     """
-    if size <= newton.tolerance and largest <= newton.residual_tolerance * force:
+    if sizes[0] <= newton.tolerance and left.largest <= newton.residual_tolerance * left.force:
         ended = Ended.CONVERGED
-    elif largest <= round_off_floor(system, p):
+    elif _settled(system, p, sizes) and np.all(
+        np.abs(system.along_free(left.residual)) <= row_floors(system, p)[system.free_dofs]
+    ):
         ended = Ended.ROUND_OFF
     else:
         return None
     return Ended.INVERTED if inside_out else ended
+
+
+def _settled(system: System, p: np.ndarray, sizes: tuple[float, float, int]) -> bool:
+    """Tell whether a further correction, if they shrink as before, is small against the movement or below a digit."""
+    size, before, iteration = sizes
+    if _stagnant(size, before, iteration):
+        return True
+    following = size * min(size / before, 1.0) if iteration > 1 else size
+    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
+    last_digit = np.finfo(float).eps * float(np.max(np.abs(p) / system.scale, initial=1.0))
+    return following <= max(_SURE * moved, last_digit)
 
 
 def inverted(system: System, p: np.ndarray) -> bool:
@@ -246,22 +327,6 @@ def inverted(system: System, p: np.ndarray) -> bool:
     for block, own in zip(system.blocks, work, strict=True):
         place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
     return bool(smallest_jacobian(system.forms, system.blocks, work) <= 0.0)
-
-
-def round_off_floor(system: System, p: np.ndarray) -> float:
-    """Return the residual [N] that is left by cancellation when strains are formed from positions.
-
-    A position of size |r| carries an error eps |r|, a strain over an element of length l therefore eps |r| / l times
-    the slopes of the shape functions; the section answers with its largest axial stiffness, again times slopes.
-    """
-    reach = max(float(np.max(np.abs(p))), system.extent)
-    return 4.0 * np.finfo(float).eps * system.strain_error * reach
-
-
-def _load_size(system: System, load_factor: float) -> float:
-    """Largest force or moment that acts; keeps the residual's scale above zero where nothing reacts."""
-    values = [np.abs(forces).max(initial=0.0) for forces in system.point_values(load_factor)]
-    return float(max(values, default=0.0))
 
 
 def _held_force(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:

@@ -6,9 +6,11 @@ from contextlib import contextmanager
 import numpy as np
 
 from beamfem.analysis.continuation import Continuation, PathPoint
+from beamfem.analysis.round_off import FEW_DIGITS, remainder
 from beamfem.analysis.steps import Step
 from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
+from beamfem.model.system import system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Statistics
 
@@ -18,15 +20,23 @@ class PathRecord:
 
     def __init__(self, model: Model) -> None:
         self.model = model
+        # of other tangents the signs of pivots do not tell what is stable
+        self.symmetric = system_of(model, static=True).symmetric
         self.points: list[np.ndarray] = []
+        self.stable: list[bool] = []
         self.limit_points: list[PathState] = []
         self.bifurcations: list[Bifurcation] = []
         self.iterations = 0
         self.cuts = 0
         self.ended = "the path was not followed to its end"
 
-    def add(self, y: np.ndarray) -> None:
+    def add(self, y: np.ndarray, stable: bool) -> None:
         self.points.append(y)
+        self.stable.append(stable)
+
+    @property
+    def last(self) -> PathState:
+        return self.state(self.points[-1], self.stable[-1] if self.symmetric else None)
 
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
@@ -34,24 +44,37 @@ class PathRecord:
         share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
         for x in step.limits:
             if x <= share:
-                self.limit_points.append(self.state(segment.at(x).y))
+                self.limit_points.append(self.state(segment.critical(x)))
         for crossing in step.crossings:
             if crossing.share <= share:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
-    def state(self, y: np.ndarray) -> PathState:
-        """Return the state of y (n + 1,), coordinates and load factor."""
+    def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
+        """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
         rest = np.zeros(self.model.size)
-        return PathState(y[:-1], rest, rest, float(y[-1]), self.model)
+        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stability=stability)
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, self.ended)
+        system = system_of(self.model, static=True)
+        digits = remainder(system, rows[-1, :-1], float(rows[-1, -1])).digits if len(rows) else np.nan
+        ended = self.ended
+        if digits < FEW_DIGITS:
+            ended += f"; round-off leaves {digits:.0f} digits of the forces"
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, digits=digits)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
-        critical = tuple(self.limit_points), tuple(self.bifurcations)
-        return Path(self.model, True, rows[:, -1], *states, statistics, None, *critical)
+        return Path(
+            self.model,
+            True,
+            rows[:, -1],
+            *states,
+            statistics,
+            stability=np.array(self.stable, dtype=bool) if self.symmetric else None,
+            limit_points=tuple(self.limit_points),
+            bifurcations=tuple(self.bifurcations),
+        )
 
 
 @contextmanager

@@ -6,13 +6,13 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.analysis.equations import INERTIA, STATICS, linearise
+from beamfem.analysis.equations import INERTIA, STATICS, linearise, residual
 from beamfem.analysis.tangent import Tangent
 from beamfem.model.system import System
 
 # turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
 UNTURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
-_ROUND_OFF = 16.0 * np.finfo(float).eps
+_RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
 _ASYMMETRY = 1e-12
 
 
@@ -31,6 +31,12 @@ class Pencil:
     system: System
     p: np.ndarray
     load_factor: float
+
+    @cached_property
+    def unbalanced(self) -> np.ndarray:
+        """Residual (unknown,) that Newton's method has left."""
+        rest = np.zeros(len(self.p))
+        return residual(self.system, self.p, rest, rest, self.load_factor)[self.system.free_dofs]
 
     def shifted(self, shift: float) -> Tangent:
         """Return K - shift M."""
@@ -53,25 +59,28 @@ class Pencil:
         return is_symmetric(self.stiffness)
 
     @cached_property
-    def round_off(self) -> float:
-        """Eigenvalues [1/s^2] up to this size cannot be told from zero."""
-        return _ROUND_OFF * self._largest
-
-    @cached_property
-    def _largest(self) -> float:
-        return float(np.max(np.abs(self.stiffness.diagonal()) / self.mass.diagonal()))
+    def size(self) -> int:
+        """How many modes there are: inclined rollers hold one of their two coordinates each."""
+        return self.mass.shape[0] - len(self.system.turned[0])
 
     def below(self, value: float) -> int:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
         return self.shifted(value).factorised(self.system.turned).negative_pivots
 
-    def shift(self) -> float:
-        """Return a shift [1/s^2] below all eigenvalues, of the size of the lowest elastic one."""
-        soft = self.below(self.round_off)
-        low, high = np.log(self.round_off), np.log(4.0 * self._largest)
+    def shift(self, rigid: int) -> float:
+        """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.
+
+        rigid: how many are zero; without any, zero itself is such a shift of a stable state.
+        """
+        if rigid == 0 and self.symmetric and self.below(0.0) == 0:
+            return 0.0
+        high = np.log(4.0 * float(np.max(np.abs(self.stiffness.diagonal()) / self.mass.diagonal())))
+        low = high - _RANGE
         while high - low > np.log(4.0):
             middle = 0.5 * (low + high)
-            low, high = (low, middle) if self.below(np.exp(middle)) > soft else (middle, high)
+            size = np.exp(middle)
+            near = self.below(size) - (self.below(-size) if self.symmetric else 0)
+            low, high = (low, middle) if near > rigid else (middle, high)
         shift = -float(np.exp(high))
         while self.symmetric and self.below(shift) > 0:
             shift *= 4.0

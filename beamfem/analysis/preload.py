@@ -7,7 +7,8 @@ import numpy as np
 
 from beamfem.analysis.equations import residual
 from beamfem.analysis.load_steps import reach
-from beamfem.analysis.newton import Ended, Newton, NewtonResult, round_off_floor, solve_equilibrium
+from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
+from beamfem.analysis.round_off import row_floors
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError
 from beamfem.model.loads import factor
@@ -31,7 +32,7 @@ def _at_rest(system: System) -> bool:
     if _AT_REST not in system.proven:
         p = system.reference
         rest = np.zeros(p.shape)
-        balanced = np.abs(residual(system, p, rest, rest, 0.0)).max() <= round_off_floor(system, p)
+        balanced = np.all(np.abs(residual(system, p, rest, rest, 0.0)) <= row_floors(system, p))
         if not balanced or not np.array_equal(system.held_values(0.0), p[system.held_dofs]):
             return False
         system.proven.add(_AT_REST)
@@ -48,7 +49,7 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
         reach(growing, done, 1.0, newton, "error")
     except ConvergenceError:
         return replace(failed, iterations=done.iterations)
-    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots[-1])
+    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots[-1], done.digits)
 
 
 def _growing(model: Model) -> Model:

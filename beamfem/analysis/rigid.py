@@ -1,14 +1,51 @@
-"""Rigid-body motions among the modes: sorted, and said in words."""
+"""Rigid motions of a model or its parts: which meet no resistance, sorted, and said in words."""
 
 import numpy as np
-from scipy.linalg import null_space, svd
+from scipy.linalg import cholesky, null_space, solve_triangular, svd
 
+from beamfem.analysis.body_motions import Conditions, bodies_of, free_motions
+from beamfem.analysis.equations import residual
 from beamfem.analysis.free_motion import describe
 from beamfem.analysis.initial import RigidVelocity, start_velocity
+from beamfem.analysis.mode_stiffness import stresses_of, weak_stiffness
 from beamfem.analysis.pencil import Pencil
+from beamfem.analysis.round_off import round_off_floor
 from beamfem.analysis.shapes import nodal_motion
 
-_SMALL = 1e-5  # of a motion: what the eigensolver may leave
+_SMALL = 1e-5  # of a motion
+_UNBALANCED = 1e-8  # of the largest force: what an equilibrium may leave, and a turn of it change
+
+
+def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return the rigid motions (m, n) without resistance about the state, M-orthonormal, and what each moves, in words.
+
+    They are those of the bodies that supports, springs and joints leave free, as far as no force arises from them:
+    a turn of a pendulum is resisted by its weight, and a turn of a body that nothing loads by nothing.
+    """
+    system, p = pencil.system, pencil.p
+    conditions = Conditions(system, bodies_of(system.model), p)
+    shapes = np.array([conditions.rates(p, motion) for motion in free_motions(conditions)]).reshape(-1, len(p))
+    if not len(shapes):
+        return shapes, ()
+    shapes /= np.abs(shapes / system.scale).max(axis=1)[:, None]
+    free = system.free_dofs
+    loads = weak_stiffness(system, p, pencil.load_factor, stresses_of(system, p, np.zeros_like(p)))
+    resistance = loads @ shapes[:, free].T * system.scale[free][:, None]
+    _, sizes, combinations = svd(resistance, full_matrices=False)
+    still = sizes <= _negligible_force(pencil) * system.extent * np.sqrt(resistance.size)
+    found = combinations[still] @ shapes
+    if not len(found):
+        return found, ()
+    return sort_rigid(pencil, solve_triangular(cholesky(_product(pencil, found, found), lower=True), found, lower=True))
+
+
+def _negligible_force(pencil: Pencil) -> float:
+    """Return the force [N] that a unit turn of the state may change by for its round-off and what Newton leaves."""
+    system, p, still = pencil.system, pencil.p, np.zeros_like(pencil.p)
+    forces = [*system.point_values(pencil.load_factor), residual(system, p, still, still, pencil.load_factor)]
+    forces += [stresses[..., 0] for stresses in stresses_of(system, p, still)]
+    largest = max(float(np.abs(values).max(initial=0.0)) for values in forces)
+    return _UNBALANCED * largest + round_off_floor(system, p)
 
 
 def sort_rigid(pencil: Pencil, shapes: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:

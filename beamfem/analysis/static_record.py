@@ -5,7 +5,8 @@ import warnings
 import numpy as np
 
 from beamfem.analysis.newton import Ended
-from beamfem.errors import UnstableWarning
+from beamfem.analysis.round_off import FEW_DIGITS
+from beamfem.errors import RoundOffWarning, UnstableWarning
 from beamfem.model.model import Model
 from beamfem.solution import Solution, Statistics
 from beamfem.status import Status
@@ -23,6 +24,7 @@ class StaticRecord:
         self.iterations = 0
         self.cuts = 0
         self.ended = Ended.CONVERGED
+        self.digits = np.nan
 
     @property
     def reached(self) -> float:
@@ -32,14 +34,17 @@ class StaticRecord:
     def state(self) -> np.ndarray:
         return self.states[-1]
 
-    def add(self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended) -> None:
+    def add(
+        self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended, digits: float = np.nan
+    ) -> None:
         self.load_factors.append(load_factor)
         self.states.append(state)
         self.negative_pivots.append(negative_pivots)
         self.ended = ended
+        self.digits = digits
 
     def solution(self, complete: bool = False) -> Solution:
-        """Return the rows as a solution; complete: the solve came to its end. Warns of unstable rows."""
+        """Return the rows as a solution; complete: the solve came to its end. Warns of unstable rows and few digits."""
         states, counts = np.array(self.states), np.array(self.negative_pivots)
         # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
         unstable = counts > 0 if self.symmetric else counts % 2 == 1
@@ -56,7 +61,12 @@ class StaticRecord:
             elif unstable[-1]:
                 ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
             warnings.warn(said[0], UnstableWarning, stacklevel=3)
-        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, status, said)
+        if self.digits < FEW_DIGITS:
+            few = f"round-off leaves {self.digits:.0f} digits of the forces"
+            ended += f"; {few}"
+            said += (few,)
+            warnings.warn(few, RoundOffWarning, stacklevel=3)
+        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, status, said, self.digits)
         return Solution(
             self.model,
             True,

@@ -39,6 +39,6 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, 
         raise ConvergenceError(
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
-    done.add(0.0, first.state, first.negative_pivots, first.ended)
+    done.add(0.0, first.state, first.negative_pivots, first.ended, first.digits)
     reach(system, done, 1.0 / steps, newton, snap)
     return done.solution(complete=True)

@@ -14,6 +14,7 @@ _LARGEST = 0.5
 _LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
+_LARGEST_HELD_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
 _FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
@@ -40,11 +41,19 @@ class Refused:
 
 
 def longest_step(line: Continuation, point: PathPoint) -> float:
-    """Return the longest step from a point: it bounds the movement and the change of the load factor."""
+    """Return the longest step from a point.
+
+    It bounds the movement, the change of the load factor and the turn of a support, of which gradients elsewhere on the
+    beam cannot tell a full one from none.
+    """
     load_share = abs(float(point.tangent[-1])) / line.load_scale
     moving = np.sqrt(max(1.0 - load_share**2, 0.0))
     load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
-    return float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
+    size = float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
+    before, slope = point.load_factor, float(point.tangent[-1])
+    while line.system.largest_turn(before, before + size * slope) > _LARGEST_HELD_TURN and size > _SMALLEST:
+        size *= 0.5
+    return size
 
 
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:

@@ -16,6 +16,7 @@ _NOTHING = np.empty(0)
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
 Turned = tuple[np.ndarray, np.ndarray]
+Stresses = tuple[np.ndarray, ...]
 
 
 class Factorised(Protocol):
@@ -28,6 +29,13 @@ class Factorised(Protocol):
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        ...
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
         ...
 
 
@@ -79,6 +87,13 @@ class BandFactors:
         turn_back(x, *self.turned)
         return x
 
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
+
 
 @dataclass(frozen=True)
 class BandTangent:
@@ -127,6 +142,13 @@ class SparseFactors:
         turn_back(x, *self.turned)
         return np.asarray(x)
 
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
+
 
 @dataclass(frozen=True)
 class SparseTangent:
@@ -151,19 +173,24 @@ class SparseTangent:
 
     def sparse(self, turned: Turned) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        first, normal = turned
+        first, _ = turned
         if not len(first):
             return csr_array(self.matrix)
-        turn = eye_array(self.matrix.shape[0], format="lil")
-        for i, (c, s) in zip(first, normal, strict=True):
-            turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
-        turn = csr_array(turn)
+        turn = turning(self.matrix.shape[0], turned)
         rotated = csr_array(turn @ self.matrix @ turn.T)
         kept = np.ones(rotated.shape[0])
         kept[first] = 0.0
         keep = dia_array((kept[None], [0]), shape=rotated.shape)
         held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
         return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
+
+
+def turning(size: int, turned: Turned) -> csr_array:
+    """Return the matrix (n, n) that turns each pair of an inclined roller to (normal, tangent)."""
+    turn = eye_array(size, format="lil")
+    for i, (c, s) in zip(*turned, strict=True):
+        turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
+    return csr_array(turn)
 
 
 def _diagonals(rows: np.ndarray) -> np.ndarray:

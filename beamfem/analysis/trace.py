@@ -33,16 +33,19 @@ def trace_equilibrium(
     until: Until = None,
     *,
     start: Bifurcation | None = None,
-    direction: int = 1,
+    direction: int | None = None,
     step: float | None = None,
     points: int = 500,
     newton: Newton | None = None,
 ) -> Path:
-    """Return the equilibria along the path that leaves load factor 0 towards larger ones, past limit points.
+    """Return the equilibria along the path that leaves load factor 0, past limit points.
 
     until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
-    path ends after so many `points`. start: a bifurcation of a path of this model, to follow the branch that crosses
-    there to the side of its mode (direction 1) or to the other (-1). step: load factor of the second point.
+    path ends after so many `points`. direction: 1 to leave towards larger load factors, -1 towards negative ones, by
+    default towards `until`. start: a bifurcation of a path of this model, to follow the branch that crosses there to
+    the side of its mode (direction 1, the default) or to the other (-1); a branch that comes back has the mode along
+    it, and is left towards larger load factors (1) or smaller ones (-1). step: how far the load factor of the second
+    point is from 0.
     Steps are cut and grown as the iterations and the turning of the path need.
     Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
     cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
@@ -55,8 +58,10 @@ def trace_equilibrium(
         if start is not None:
             raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
     count("points", points)
-    if direction not in (1, -1):
+    if direction not in (None, 1, -1):
         raise InputError(f"direction must be 1 or -1, got {direction!r}")
+    if direction is None:
+        direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     system = system_of(model, static=True)
     require_support(system)
     _require_load(system)
@@ -66,13 +71,14 @@ def trace_equilibrium(
         line, point = _first(system, newton or Newton(iterations=_ITERATIONS), record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
-            record.add(point.y)
+            point = replace(point, tangent=direction * point.tangent)
+            record.add(point.y, point.negative_pivots == 0)
         else:
-            record.add(np.append(start.p, start.at))
+            record.add(np.append(start.p, start.at), stable=False)
             if points > 1:
                 point, size = _branch(line, start, direction, record)
         landed = False
-        while not (landed or _met(until, record.state(record.points[-1]))):
+        while not (landed or _met(until, record.last)):
             if len(record.points) >= points:
                 record.ended = f"the {points} points are used up"
                 break
@@ -81,7 +87,7 @@ def trace_equilibrium(
             landing = _landing(line, taken, until) if isinstance(until, float) else None
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
-            record.add(point.y)
+            record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
             report(len(record.points))
         else:
@@ -116,7 +122,7 @@ def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continua
     first = first_equilibrium(system, newton)
     record.iterations += first.iterations
     if not first.ended.good:
-        record.add(np.append(system.reference, 0.0))
+        record.add(np.append(system.reference, 0.0), stable=False)
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
         return begin(system, first.state, 0.0, newton)
@@ -129,34 +135,37 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
     found = leave(line, start, direction)
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
-    record.add(found.y)
+    record.add(found.y, found.negative_pivots == 0)
     return found, line.length(found.y - record.points[0])
 
 
 def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
-    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError."""
+    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError.
+
+    It names what most lengths were refused for: of the shortest ones, round-off decides.
+    """
     size = min(size, longest_step(line, point))
-    whole = True
+    reasons: list[str] = []
     while True:
         taken = take_step(line, point, size)
         record.iterations += taken.iterations
         if isinstance(taken, Step):
-            return taken if whole else replace(taken, next_size=min(taken.next_size, size))
+            return taken if not reasons else replace(taken, next_size=min(taken.next_size, size))
         record.cuts += 1
-        whole = False
+        reasons.append(taken.reason)
         size *= 0.5
         if too_small(line, point, size):
-            record.ended = taken.reason
+            record.ended = max(reasons, key=reasons.count)
             raise ConvergenceError(
                 f"the path ends at load factor {point.load_factor:.6g} after {len(record.points)} points: "
-                f"{taken.reason}, with steps along it down to {size:.1e}",
+                f"{record.ended}, with steps along it down to {size:.1e}",
                 record.path(),
             )
 
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
     """Return the first point of a step with the load factor, None where it does not come to it."""
-    shares = [0.0, *step.limits, 1.0]
+    shares = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
     stops = [step.segment.at(x) for x in shares]
     for before, after in pairwise(stops):
         low, high = before.load_factor - load_factor, after.load_factor - load_factor

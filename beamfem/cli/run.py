@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _TITLES = {
     "load_factors": "Critical load factors",
+    "kinds": "What they are",
     "linearised": "Linearised about the start",
     "frequencies": "Frequencies [Hz]",
     "growth": "Growth [1/s]",

@@ -159,7 +159,7 @@ def _check_ends(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
         apart = np.linalg.norm(nodes[one] - nodes[other])
         raise InputError(
             f"two nodes are at {_at(nodes, one)}, {apart:.1g} apart, so that lines which meet there are not joined "
-            f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name the node"
+            f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name it"
         )
     middle = cells[:, 2][cells[:, 2] >= 0]
     crossed = np.intersect1d(middle, ends)

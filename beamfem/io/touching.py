@@ -1,6 +1,7 @@
 """Lines of a mesh that end inside another line: the straight one is divided there, so that the two are joined."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -20,12 +21,14 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
         raise InputError(
             f"a line ends inside line {cell[curved[0]]}, a line3, at ({x:g}, {y:g}); split the line3 there"
         )
+    if not len(cell):
+        return cells, np.arange(len(cells))
     rows, owner = [], []
     order = np.lexsort((share, cell))
     inside = np.split(node[order], np.searchsorted(cell[order], np.arange(1, len(cells))))
     for number, (own, between) in enumerate(zip(cells, inside, strict=True)):
         stops = [own[0], *between, own[1]]
-        rows += [(a, b, own[2]) for a, b in zip(stops, stops[1:], strict=False)]
+        rows += [(a, b, own[2]) for a, b in pairwise(stops)]
         owner += [number] * (len(stops) - 1)
     return np.array(rows, dtype=np.int64), np.array(owner)
 

@@ -34,7 +34,23 @@ def negative_diagonal(rows):
 
 @njit(cache=True, error_model="numpy")
 def equilibrate(
-    forms, blocks, work, loads, springs, layouts, free, turned, p, body, values, held_change, scale, limits, rows, found
+    forms,
+    blocks,
+    work,
+    loads,
+    springs,
+    layouts,
+    free,
+    turned,
+    p,
+    body,
+    values,
+    held_change,
+    scale,
+    limits,
+    rows,
+    found,
+    residual,
 ):
     """Iterate from p (n,), changed in place; return whether every tangent could be factorised without pivots.
 
@@ -43,12 +59,13 @@ def equilibrate(
     iterations, 1 to take predicted stresses for the geometric tangent, 1 to stop where the count of negative pivots is
     another one from the third tangent on (the stresses of the second are those of a whole linear step).
     rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then largest
-    residual of the unknown, of all coordinates and the smallest r0' x d of the state reached; negative pivots of the
-    first tangent, -1 before, and of the last. Stops where corrections are small or stagnant, or have grown.
+    residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
+    whose residual (n,) is filled; negative pivots of the first tangent, -1 before, and of the last. Stops where
+    corrections are small or stagnant, or have grown.
     """
     n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
-    residual, step, rest, right = np.empty(n), np.empty(n), np.zeros(n), np.empty(unknown)
+    step, rest, right = np.empty(n), np.zeros(n), np.empty(unknown)
     held_step, held_force = held_change
     first, row, done = True, int(limits[4]) * 0, False
     while True:
@@ -89,12 +106,12 @@ def equilibrate(
         done = found[1] <= limits[0] or stagnant or not found[0] < limits[4]
     found[3], found[4] = 0.0, 0.0
     for i in range(n):
-        found[4] = max(found[4], abs(residual[i]))
+        found[4] = max(found[4], abs(residual[i]) * scale[i])
     for i in range(unknown):
         right[i] = residual[free[i]]
     turn_in(right, turned[0], turned[1])
     for i in range(unknown):
-        found[3] = max(found[3], abs(right[i]))
+        found[3] = max(found[3], abs(right[i]) * scale[free[i]])
     found[5] = smallest_jacobian(forms, blocks, work)
     return True
 

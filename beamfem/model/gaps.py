@@ -1,4 +1,4 @@
-"""Joined nodes at one place: what rounding has left between them is closed in the reference, which stays free of stress."""
+"""Joined nodes at one place: what rounding has left between them is closed in the reference, free of stress."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -10,7 +10,6 @@ from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
 from beamfem.kernels.band import ANY_WIDTH, known_width
 from beamfem.kernels.block import (
-    ELASTIC_LINE,
     GRADIENTS,
     ROTATION,
     SHEAR_RIGID,
@@ -31,6 +30,7 @@ from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.round_off import residual_errors, stress_errors
 from beamfem.model.supports import Spring
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
@@ -105,14 +105,27 @@ class System:
         return tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in self.blocks)
 
     @cached_property
-    def strain_error(self) -> float:
-        """Residual [N/m] that a relative error of one in positions of one metre gives at most, formed as strains."""
-        worst = 0.0
+    def residual_errors(self) -> np.ndarray:
+        """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
+        vectors = [element.field.vectors for element in self.model.groups]
+        return residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+
+    @cached_property
+    def stress_errors(self) -> tuple[np.ndarray, ...]:
+        """Stress resultants (2, nc, nq, ns) of each block that a relative error of one leaves, likewise."""
+        vectors = [element.field.vectors for element in self.model.groups]
+        return tuple(
+            np.array([stress_errors(block, names, part) for part in (True, False)])
+            for block, names in zip(self.blocks, vectors, strict=True)
+        )
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """Which coordinates are positions [m] (n,)."""
+        result = np.zeros(self.model.size, dtype=bool)
         for block in self.blocks:
-            worst = max(worst, float(block.stiffness[:, :, 0, 0].max()) * _gain(block, block.slope))
-            if block.measures == ELASTIC_LINE:
-                worst = max(worst, float(block.stiffness[:, :, 1, 1].max()) * _gain(block, block.second))
-        return worst
+            result[block.dof[:, :2]] = True
+        return result
 
     @cached_property
     def _actions(self) -> tuple[Actions, ...]:
@@ -257,19 +270,13 @@ class System:
     @cached_property
     def scale(self) -> np.ndarray:
         """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest."""
-        scale = np.ones(self.model.size)
-        for block in self.blocks:
-            scale[block.dof[:, :2]] = self.extent
-        return scale
+        return np.where(self.positions, self.extent, 1.0)
 
-
-def _gain(block: Block, table: np.ndarray) -> float:
-    """Force on a node for a unit of displacement through a derivative of r0 [1/m], per section stiffness."""
-    per_node = block.scale.shape[1] // block.node.shape[1]
-    carries_r = np.arange(block.scale.shape[1]) % per_node < per_node - 1
-    slopes = np.abs(table / block.scale[:, None, :])[:, :, carries_r]
-    share = np.einsum("cq,cqi->ci", block.weight, slopes)
-    return float((slopes.sum(axis=2).max(axis=1) * share.max(axis=1)).max())
+    @cached_property
+    def strain_scale(self) -> np.ndarray:
+        """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
+        length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)
+        return np.where(self.positions, length, 1.0)
 
 
 def system_of(model: Model, static: bool) -> System:

@@ -49,7 +49,8 @@ def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None,
     """
 
     def title(mode: int) -> str:
-        return f"{mode + 1}: load factor {buckling.load_factors[mode]:.5g}"
+        ends = " (limit point)" if buckling.kinds[mode] == "limit point" else ""
+        return f"{mode + 1}: load factor {buckling.load_factors[mode]:.5g}{ends}"
 
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([0, 1])

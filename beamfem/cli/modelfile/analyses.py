@@ -119,7 +119,11 @@ class Buckling:
 
     def run(self, model: Model) -> Found:
         found = solve_buckling(model, self.count)
-        values = {"load_factors": found.load_factors.tolist(), "linearised": found.linearised.tolist()}
+        values = {
+            "load_factors": found.load_factors.tolist(),
+            "kinds": list(found.kinds),
+            "linearised": found.linearised.tolist(),
+        }
         return Found(found.solution(self.mode - 1), values)
 
 

@@ -1,0 +1,116 @@
+"""What rounded coordinates leave in each row of the residual: strains cancel digits, stiffness multiplies what is left.
+
+A position of size |r| carries an error eps |r|, a slope of the axis over an element of length l therefore eps |r| / l;
+a unit vector or an angle carries eps, whatever the size of the model.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from beamfem.element.coordinates import labels
+from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, STRUCTURAL, Block, PointLoads, Springs
+
+
+def residual_errors(
+    blocks: Sequence[Block],
+    vectors: Sequence[tuple[str, ...]],
+    springs: Springs,
+    points: Sequence[PointLoads],
+    size: int,
+) -> np.ndarray:
+    """Return the residual (2, n) that a relative error of one leaves: in positions of one metre [1/m], in directions.
+
+    vectors: names of the nodal vectors of each block.
+    """
+    result = np.zeros((2, size))
+    for block, names, loads in zip(blocks, vectors, points, strict=True):
+        errors = np.array([_of_slots(block, names, part) for part in (True, False)])
+        nodes = _of_nodes(block, errors)
+        for element, position, spring in zip(loads.element, loads.position, loads.spring, strict=True):
+            own = block.node[element]
+            nodes[0][own] += spring.max() * np.abs(position).reshape(len(own), -1)
+        for carrier in np.unique(block.carrier).tolist():
+            here = np.flatnonzero(block.carrier == carrier)
+            for column, label in enumerate(labels(carrier, names)):
+                slots = [_slot(label, names)]
+                if label == "theta" and carrier in (STRETCH, SHEAR_RIGID):
+                    slots.append(1)
+                # nodes that share a coordinate add what they leave in it
+                for part, values in zip(result, nodes, strict=True):
+                    np.add.at(part, block.dof[here, column], values[here][:, slots].sum(axis=1))
+    np.add.at(result[0], springs.dof, springs.stiffness)
+    return result
+
+
+def _slot(label: str, names: tuple[str, ...]) -> int:
+    """Number of the nodal vector that a coordinate moves."""
+    if label == "theta":
+        return len(names) - 1
+    return 1 if label == "s" else names.index(label.split("^")[0])
+
+
+def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
+    """Return the stress resultants (nc, nq, ns) that unit errors leave, of positions or of all other vectors."""
+    per_node = len(names)
+    slot = np.arange(block.scale.shape[1]) % per_node
+    erring = slot == 0 if positions else (slot > 0) & (slot < per_node - 1)
+    across, slope = slot == per_node - 1, np.abs(block.slope)
+    of_r = slope[:, :, erring].sum(axis=2)
+    of_d = np.zeros_like(of_r) if positions else np.abs(block.director).sum(axis=1) + np.zeros_like(of_r)
+    of_e = np.zeros_like(of_r) if positions else slope[:, :, across].sum(axis=2)
+    if block.measures == ELASTIC_LINE:
+        of_e = np.abs(block.second)[:, :, erring].sum(axis=2)
+    strain = np.zeros(block.reference.shape)
+    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
+        strain[:, :, measure] = error
+    return np.einsum("cqij,cqj->cqi", np.abs(block.stiffness), strain)
+
+
+def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
+    """Return the force (nc, nv) on nodal vectors that unit errors leave, of positions or of all other vectors."""
+    per_node = len(names)
+    slot = np.arange(block.scale.shape[1]) % per_node
+    along, across = slot < per_node - 1, slot == per_node - 1
+    slope, stress = np.abs(block.slope), np.moveaxis(stress_errors(block, names, positions), 2, 0)
+    on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
+    result = np.zeros(block.scale.shape)
+    result[:, along] = np.einsum("cq,cqi->ci", on_r, slope[:, :, along])
+    if block.measures == ELASTIC_LINE:
+        result[:, along] += np.einsum("cq,cqi->ci", on_e, np.abs(block.second)[:, :, along])
+    else:
+        result[:, across] = np.einsum("cq,cqi->ci", on_e, slope[:, :, across])
+    result[:, across] += np.einsum("cq,qi->ci", on_d, np.abs(block.director))
+    return result
+
+
+def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Errors of the strain measures with those of r0', d and the third argument, where these are of size one."""
+    if measures == STRUCTURAL:
+        return of_r + of_d, of_r + of_d, of_e, of_d
+    if measures == ELASTIC_LINE:
+        return of_r, of_e, of_r + of_d, of_d
+    return of_r, of_e, np.zeros_like(of_r), of_d, of_r + of_d, of_e
+
+
+def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sizes of the forces on r0', d and the third argument of stress resultants (ns, nc, nq)."""
+    if measures == STRUCTURAL:
+        return s[0] + s[1], s[0] + s[1] + s[3], s[2]
+    if measures == ELASTIC_LINE:
+        return s[0] + s[2], s[2] + s[3], s[1]
+    return s[0] + s[4], s[3] + s[4], s[1] + s[5]
+
+
+def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
+    """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv) of the classes of elements."""
+    count, nodes = block.node.shape[1], len(block.carrier)
+    own = errors.reshape(len(errors), errors.shape[1], count, -1)
+    result = np.zeros((len(errors), nodes, own.shape[3]))
+    for place in range(count):
+        found = own[:, :, place]
+        for part, values in zip(result, found, strict=True):
+            spread = values[block.kind] if len(values) > 1 else np.broadcast_to(values, (len(block.kind), own.shape[3]))
+            for slot in range(own.shape[3]):
+                part[:, slot] += np.bincount(block.node[:, place], spread[:, slot], nodes)
+    return result

@@ -1,0 +1,195 @@
+"""Critical points of frames: named, at any rotation, up to the number asked for."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.sparse.linalg import ArpackNoConvergence
+
+import beamfem as bf
+from beamfem.analysis import eigenpairs, linearised
+from beamfem.analysis.pencil import Pencil
+from beamfem.model.system import system_of
+
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+STRIP = bf.Rectangle(0.02, 0.01)
+EI = STEEL.youngs_modulus * STRIP.second_moment
+
+
+def turned(degrees, mirror=1.0):
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[c, -s], [s, c]]) @ np.diag([mirror, 1.0])
+
+
+def portal(place, loads, degrees=0.0, mirror=1.0, section=STRIP, elements=4, support=bf.Pin):
+    """A portal, 1 m high and wide; loads (fraction of the beam, newtons downwards)."""
+    turn = turned(degrees, mirror)
+    corners = [tuple(turn @ corner) for corner in ((0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0))]
+    bars = [bf.Beam(bf.Line(a, b), elements, bf.CRBF(3), section, STEEL) for a, b in pairwise(corners)]
+    joints = [bf.Rigid(bars[0].end, bars[1].start), bf.Rigid(bars[1].end, bars[2].start)]
+    forces = [bf.PointForce(bars[1].at(at), tuple(turn @ (0.0, -size))) for at, size in zip(place, loads, strict=True)]
+    return bf.Model(bars, [support(bars[0].start), support(bars[2].end)], forces, joints)
+
+
+def column(degrees, slenderness, elements=10, order=3, moduli=(2e11,)):
+    """Hinged columns side by side, each of length 1, under its own load of E I of the first."""
+    turn = turned(degrees)
+    section = bf.Rectangle(0.1, 1.0 / slenderness, 1.0)
+    beams, supports, loads = [], [], []
+    for number, modulus in enumerate(moduli):
+        foot, head = turn @ (0.0, number), turn @ (1.0, number)
+        beam = bf.Beam(
+            bf.Line(tuple(foot), tuple(head)), elements, bf.CRBF(order), section, bf.Material(modulus, 0.3, 1)
+        )
+        beams.append(beam)
+        supports += [bf.Pin(beam.start), bf.Roller(beam.end, tuple(turn @ (0.0, 1.0)))]
+        loads.append(bf.PointForce(beam.end, tuple(turn @ (-moduli[0] * section.second_moment, 0.0))))
+    return bf.Model(beams, supports, loads)
+
+
+def reissner(slenderness, number, shear_factor=1.0):
+    """P L^2/EI of the n-th mode of a hinged column that is compressed and sheared; see test_buckling."""
+    axial = 12.0 * slenderness**2
+    shear = axial * shear_factor / 2.6
+    exact = (number * np.pi) ** 2
+
+    def missing(load):
+        return load * (1.0 - load / axial + load / shear) - exact
+
+    return brentq(missing, 0.5 * exact, 2.0 * exact, xtol=1e-13, rtol=1e-14)
+
+
+def require_counts(model, found):
+    """Assert that one more pivot is negative behind each bifurcation, at states of the traced path on both sides."""
+    system = system_of(model, static=True)
+    for kind, load in zip(found.kinds, found.load_factors, strict=True):
+        if kind == "bifurcation":
+            sides = [bf.trace_equilibrium(model, until=float(load * share))[-1] for share in (0.998, 1.002)]
+            counts = [Pencil(system, side.p, side.at).below(0.0) for side in sides]
+            assert counts[1] == counts[0] + 1
+
+
+@pytest.mark.parametrize("degrees", [0, 10, 30, 45, 60, 90, 123])
+def test_a_pinned_column_buckles_at_any_angle(degrees):
+    """E I = 166.7 N m^2, 10 CRBF(2): 1644.7 N, where the path was said to end at 10, 30, 45, 60 and 123 degrees."""
+    turn, section = turned(degrees), bf.Rectangle(0.01, 0.01)
+    beam = bf.Beam(bf.Line((0, 0), tuple(turn @ (1.0, 0.0))), 10, bf.CRBF(2), section, STEEL)
+    supports = [bf.Pin(beam.start), bf.Roller(beam.end, tuple(turn @ (0.0, 1.0)))]
+    model = bf.Model([beam], supports, [bf.PointForce(beam.end, tuple(turn @ (-1.0, 0.0)))])
+    found = bf.solve_buckling(model, 2)
+    exact = 2e11 * section.second_moment * np.array([reissner(100, 1, 5 / 6), reissner(100, 2, 5 / 6)])
+    # 10 elements of order 2
+    assert found.load_factors == pytest.approx(exact, rel=1e-3)
+    assert found.load_factors == pytest.approx([1644.69163, 6577.93457], rel=1e-7)
+    assert found.kinds == ("bifurcation", "bifurcation")
+    assert found.uncertainty.max() < 1e-9
+    require_counts(model, found)
+
+
+@pytest.mark.parametrize(("degrees", "mirror"), [(0, 1.0), (17, 1.0), (200, 1.0), (33, -1.0)])
+def test_a_portal_sways_and_then_has_a_limit_point(degrees, mirror):
+    """Loaded at midspan; the path, traced by arc length, has the same two points."""
+    model = portal([0.5], [EI], degrees, mirror)
+    path = bf.trace_equilibrium(portal([0.5], [EI]), until=4.0)
+    found = bf.solve_buckling(model, 5)
+    assert found.kinds == ("bifurcation", "limit point")
+    assert found.load_factors[0] == pytest.approx(path.bifurcations[0].load_factor, rel=1e-7)
+    assert found.load_factors[1] == pytest.approx(28.135857, rel=1e-6)
+    assert "largest load factor" in found.ended
+    assert len(found.linearised) >= 2
+    assert len(bf.solve_buckling(model).load_factors) == 1
+    require_counts(model, found)
+
+
+@pytest.mark.parametrize("degrees", [0, 17, 90])
+def test_a_portal_loaded_beside_its_middle_has_a_limit_point(degrees):
+    path = bf.trace_equilibrium(portal([0.25], [EI]), until=lambda state: state.load_factor < 0.0, points=80)
+    found = bf.solve_buckling(portal([0.25], [EI], degrees), 2)
+    assert found.kinds == ("limit point",)
+    assert found.load_factors == pytest.approx([path.limit_points[0].load_factor], rel=1e-7)
+    assert found.linearised == pytest.approx(bf.solve_buckling(portal([0.25], [EI]), 2).linearised, rel=1e-8)
+
+
+@pytest.mark.parametrize("degrees", [0, 71])
+@pytest.mark.parametrize(
+    ("support", "equation", "low", "high"),
+    [
+        (bf.Pin, lambda u: u * np.tan(u) - 6.0, 1.2, 1.5),
+        (bf.Clamp, lambda u: u / np.tan(u) + 6.0, 2.2, 3.0),
+    ],
+    ids=["pinned", "clamped"],
+)
+def test_portals_under_loads_on_their_columns_sway_at_the_root_of_their_equation(support, equation, low, high, degrees):
+    """u tan u = 6 and u cot u = -6 of equal bars, u^2 = P h^2/EI (Timoshenko and Gere 1961)."""
+    thin = bf.Rectangle(0.02, 0.001)
+    size = STEEL.youngs_modulus * thin.second_moment
+    found = bf.solve_buckling(portal([0.0, 1.0], [size, size], degrees, section=thin, support=support))
+    # the columns get shorter by 1e-6, and carry a little of the bending
+    assert found.load_factors == pytest.approx([brentq(equation, low, high) ** 2], rel=2e-5)
+    assert found.linearised == pytest.approx([brentq(equation, low, high) ** 2], rel=2e-5)
+    assert found.kinds == ("bifurcation",)
+
+
+@pytest.mark.parametrize("degrees", [0, 30])
+@pytest.mark.parametrize("slenderness", [1e2, 1e3, 1e4, 1e5])
+def test_columns_of_any_slenderness_buckle_at_eulers_load(slenderness, degrees):
+    """At L/h = 1e5 it was off by 1.2e-3."""
+    found = bf.solve_buckling(column(degrees, slenderness, 24, 4), 2)
+    exact = [reissner(slenderness, number) for number in (1, 2)]
+    # strains of positions of size 1 have an error eps, and P/EA is 0.8 / slenderness^2
+    round_off = 20.0 * np.finfo(float).eps * slenderness**2
+    assert found.load_factors == pytest.approx(exact, rel=1e-9 + min(round_off, 2e-7))
+    assert found.linearised == pytest.approx(exact, rel=2.0 / slenderness**2 * 20 + 1e-7)
+    assert found.uncertainty.max() < 1e-9 + round_off
+
+
+@pytest.mark.parametrize("apart", [3e-3, 1e-4, 1e-6, 0.0])
+@pytest.mark.parametrize("degrees", [0, 25])
+def test_columns_of_nearly_the_same_load_are_told_apart(apart, degrees):
+    model = column(degrees, 100.0, 8, 4, moduli=(2e11, 2e11 * (1.0 + apart)))
+    found = bf.solve_buckling(model, 2)
+    first = reissner(100.0, 1)
+    # each strain is the load over the modulus, so that the load factor is proportional to it
+    assert found.load_factors == pytest.approx([first, first * (1.0 + apart)], rel=2e-8)
+    assert found.kinds == ("bifurcation", "bifurcation")
+    if apart > 1e-5:
+        moved = np.abs([found.solution(i).displacement(model.beams[j].at(0.5))[1] for i in (0, 1) for j in (0, 1)])
+        sizes = moved.max(axis=1).reshape(2, 2)
+        assert sizes[0, 0] > 10.0 * sizes[0, 1]
+        assert sizes[1, 1] > 10.0 * sizes[1, 0]
+
+
+def test_a_model_that_no_load_makes_critical_says_so():
+    """An L-shaped frame, loaded near its corner, turns about until it hangs; Lee's frame is loaded elsewhere."""
+    lower = bf.Beam(bf.Line((0, 0), (0, 1.0)), 5, bf.CRBF(3), STRIP, STEEL)
+    upper = bf.Beam(bf.Line((0, 1.0), (1.0, 1.0)), 5, bf.CRBF(3), STRIP, STEEL)
+    model = bf.Model(
+        [lower, upper],
+        [bf.Pin(lower.start), bf.Pin(upper.end)],
+        [bf.PointForce(upper.at(0.5), (0.0, EI))],
+        [bf.Rigid(lower.end, upper.start)],
+    )
+    found = bf.solve_buckling(model)
+    path = bf.trace_equilibrium(model, until=20.0)
+    assert not path.limit_points
+    assert not path.bifurcations
+    assert len(found) == 0
+    assert len(found.linearised) == 1
+    assert "no critical point" in repr(found)
+    with pytest.raises(bf.InputError, match="there is no critical point"):
+        found.solution()
+
+
+@pytest.mark.parametrize("elements", [4, 8], ids=["dense", "sparse"])
+def test_buckling_is_found_where_the_iteration_does_not_converge(monkeypatch, elements):
+    exact = bf.solve_buckling(portal([0.5], [EI], elements=elements), 2)
+
+    def never(*args, **options):
+        raise ArpackNoConvergence("no convergence", np.empty(0), np.empty((0, 0)))
+
+    monkeypatch.setattr(eigenpairs, "eigsh", never)
+    monkeypatch.setattr(linearised, "eigs", never)
+    found = bf.solve_buckling(portal([0.5], [EI], elements=elements), 2)
+    assert found.load_factors == pytest.approx(exact.load_factors, rel=1e-8)
+    assert found.linearised == pytest.approx(exact.linearised, rel=1e-8)

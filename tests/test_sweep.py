@@ -258,7 +258,10 @@ def same_name(x):
 def test_labels_tell_elements_apart():
     continuum, plane = bf.ContinuumMechanics(), bf.ContinuumMechanics(True)
     assert labels([bf.CRBF(1), bf.CRBF(2)]) == ("CRBF-1", "CRBF-2")
-    assert labels([bf.ANCF(bf.Structural()), bf.ANCF()]) == ("ANCF (structural)", "ANCF (continuum)")
+    assert labels([bf.ANCF(bf.Structural()), bf.ANCF()]) == (
+        "ANCF (structural, lobatto)",
+        "ANCF (continuum, full)",
+    )
     assert labels([bf.ANCF(continuum), bf.ANCF(plane)]) == (
         "ANCF (continuum (plane_stress=False))",
         "ANCF (continuum (plane_stress=True))",

@@ -27,6 +27,7 @@ from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import (
     BeamfemError,
+    ChangedCodeWarning,
     ConvergenceError,
     FreeMotionError,
     InputError,
@@ -67,6 +68,7 @@ __all__ = [
     "BilinearCRBF",
     "Buckling",
     "Chain",
+    "ChangedCodeWarning",
     "Circle",
     "Clamp",
     "ContinuumMechanics",

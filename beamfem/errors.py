@@ -42,5 +42,9 @@ class UnstableWarning(UserWarning):
     """Some rows of a static solution are equilibria that the structure would leave."""
 
 
+class ChangedCodeWarning(UserWarning):
+    """Stored results of a sweep were computed before code that its function runs was changed."""
+
+
 class RoundOffWarning(UserWarning):
     """Round-off leaves few digits of the forces of a solution."""

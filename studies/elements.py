@@ -17,7 +17,8 @@ from elastica import tip_displacement
 from terminal import show
 
 import beamfem as bf
-from beamfem.convergence.orders import extrapolate, fit_order, order_of_three
+from beamfem.convergence.extrapolation import extrapolate
+from beamfem.convergence.orders import fit_order, order_of_three
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.view.page import Entry, Part, Table
@@ -141,7 +142,7 @@ def compare(element: bf.Element, slenderness: int, repeats: int = 3) -> Found:
 
 def _extrapolated(sizes: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return the tip displacement (2,) [m] for size 0 of values (meshes, 2)."""
-    return np.array([extrapolate(sizes, component).limit for component in values.T])
+    return np.array([extrapolate(sizes[-3:], component[-3:]).limit for component in values.T])
 
 
 def main(

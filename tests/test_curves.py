@@ -279,7 +279,7 @@ BAD = {
     "chain of nothing": (lambda: Chain(()), "at least one curve"),
     "chain of points": (lambda: Chain(((0, 0), (1, 1))), r"curves\[0\]"),
     "chain with a gap": (
-        lambda: Chain((Line((0, 0), (1, 0)), Line((1, 1e-8), (2, 0)))),
+        lambda: Chain((Line((0, 0), (1, 0)), Line((1, 1e-4), (2, 0)))),
         r"curves\[1\] of a Chain must start where curves\[0\] ends",
     ),
     "degree zero": (lambda: BSpline(0, (0, 1), ((0, 0),)), "degree"),

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.convergence.extrapolation import Extrapolation, extrapolate
 from beamfem.convergence.orders import (
-    Extrapolation,
     OrderFit,
+    chance_hits,
     clean_points,
     errors,
-    extrapolate,
     fit_order,
     grid_convergence_index,
     is_relative,
@@ -26,8 +26,8 @@ class Curve:
     size h (n,): 1/refinement of counts, the refinement itself of step sizes. error (n,): against `limit`, relative
     where that is not zero; nan where the value is the limit itself. order (n,): of each point and the one before it.
     gci (n,): grid convergence index, Roache. fit: order of the asymptotic part with its band, None where there is
-    none. estimated_error: of the finest value, nan where nothing can be said. others: the function's other numbers
-    (n,) by name. texts: what the varied parameters are called.
+    none. estimated_error: of the finest value, nan where nothing can be said; notes tell what it stands on.
+    others: the function's other numbers (n,) by name. texts: what the varied parameters are called.
     """
 
     refinement: tuple[Any, ...]
@@ -48,16 +48,17 @@ class Curve:
     seconds: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
-def judge(refinement: tuple[Any, ...], size: np.ndarray, value: np.ndarray, reference: float | None) -> Curve:
-    """Return errors, orders, index and the fitted order of at least one value, without names and seconds."""
-    found = extrapolate(size, value) if reference is None else Extrapolation(reference, np.nan, True, "")
+def judge(
+    refinement: tuple[Any, ...], size: np.ndarray, value: np.ndarray, reference: float | None, highest: float
+) -> Curve:
+    """Return errors, orders, index and the fitted order of at least one value, without names and seconds.
+
+    highest: no order above it is believed.
+    """
+    found = extrapolate(size, value, highest) if reference is None else Extrapolation(reference, np.nan, True, "")
     error = errors(value, found.limit)
-    fit = fit_order(size, error) if found.settled else None
-    notes = [found.note] if found.note else []
-    if reference is not None and clean_points(size, error) < len(error):
-        notes.append("the finest errors are round-off and left out of the order")
-    elif reference is not None and fit is None and len(value) > 1:
-        notes.append("the finest error does not fall: the reference may not be the limit of these values")
+    fit = fit_order(size, error, highest) if found.settled else None
+    notes = [found.note] if found.note else _notes(refinement, size, error, fit, highest)
     order = neighbour_orders(size, error)
     estimate = found.error if reference is None else float(error[-1])
     if reference is None and found.limit == value[-1]:
@@ -69,9 +70,22 @@ def judge(refinement: tuple[Any, ...], size: np.ndarray, value: np.ndarray, refe
         error=error,
         relative=is_relative(found.limit, value),
         order=order,
-        gci=grid_convergence_index(size, value),
+        gci=grid_convergence_index(size, value, highest),
         fit=fit,
         limit=found.limit,
         estimated_error=estimate,
         notes=tuple(notes),
     )
+
+
+def _notes(
+    refinement: tuple[Any, ...], size: np.ndarray, error: np.ndarray, fit: OrderFit | None, highest: float
+) -> list[str]:
+    """What is to be said of errors against a reference."""
+    hits = [refinement[i] for i in np.flatnonzero(chance_hits(size, error, highest))]
+    notes = [f"the error at {', '.join(map(str, hits))} is small by chance and left out of the order"] if hits else []
+    if clean_points(size, error, highest) < len(error):
+        notes.append("the finest errors are round-off and left out of the order")
+    elif fit is None and len(error) > 1 + len(hits):
+        notes.append("the finest error does not fall: the reference may not be the limit of these values")
+    return notes

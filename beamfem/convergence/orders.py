@@ -1,20 +1,22 @@
-"""Observed order, Richardson extrapolation and grid convergence index of values over sizes.
+"""Observed order of values or errors over sizes, and the grid convergence index.
 
 Sizes h (n,) fall, values q (n,) belong to them. Sources: P. J. Roache, Verification and Validation in Computational
 Science and Engineering, 1998; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001 for ratios that vary.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import stdtrit
 
 SAFETY = 1.25  # Roache's factor for three or more meshes
-_ROUND_OFF = 64 * np.finfo(float).eps
-_PLATEAU_BELOW = 1e-6  # relative; an error that stagnates above it is not round-off
+ROUND_OFF = 64 * np.finfo(float).eps
+HIGHEST_ORDER = 16.0  # of any element here: order 8, twice
+PLATEAU_BELOW = 1e-6  # relative; an error that stagnates above it is not round-off
+WINDOW = 0.15  # orders that differ by less agree; also how far an observed order may lie above the highest possible
 _SUDDEN = 0.7  # of the order just before: a drop to less is no part of a smooth curve
-_WINDOW = 0.15  # of the finest order: how far others may lie from it and still count as asymptotic
-_LARGEST_ORDER = 60.0
+_SMALLEST_ORDER, _LARGEST_ORDER = 1e-9, 60.0
 
 
 @dataclass(frozen=True)
@@ -30,77 +32,76 @@ class OrderFit:
     last: int
 
 
-@dataclass(frozen=True)
-class Extrapolation:
-    """Limit of values for size 0, the relative error of the finest value (nan where nothing can be said), and how.
-
-    settled: whether the limit is more than a guess.
-    """
-
-    limit: float
-    error: float
-    settled: bool
-    note: str
-
-
 def order_of_three(h: np.ndarray, q: np.ndarray) -> float:
     """Solve (q1 - q2)/(q2 - q3) = (h1^p - h2^p)/(h2^p - h3^p) for p > 0; nan where the values do not close in."""
     coarse, fine = q[0] - q[1], q[1] - q[2]
-    from scipy.optimize import brentq  # slow to import, and seldom needed
-
     up, down = np.log(h[0] / h[1]), np.log(h[2] / h[1])
     if fine == 0.0 or coarse / fine <= up / -down:  # the right side for p -> 0
         return float("nan")
+    return _root(lambda p: float(np.log(np.expm1(p * up) / -np.expm1(p * down)) - np.log(coarse / fine)))
 
-    def mismatch(p: float) -> float:
-        return float(np.log(np.expm1(p * up) / -np.expm1(p * down)) - np.log(coarse / fine))
 
-    if mismatch(_LARGEST_ORDER) <= 0.0:
+def order_of_bracket(h: np.ndarray, q: np.ndarray) -> float:
+    """Solve (q1 - q2)/(q3 - q2) = (h1^p + h2^p)/(h2^p + h3^p) for p > 0: values on either side of the limit in turn."""
+    coarse, fine = q[0] - q[1], q[2] - q[1]
+    up, down = np.log(h[0] / h[1]), np.log(h[2] / h[1])
+    if fine == 0.0 or coarse / fine <= 1.0:
         return float("nan")
-    return float(brentq(mismatch, 1e-9, _LARGEST_ORDER, xtol=1e-13))
+    return _root(lambda p: float(np.log((np.exp(p * up) + 1.0) / (1.0 + np.exp(p * down))) - np.log(coarse / fine)))
 
 
-def clean_points(h: np.ndarray, error: np.ndarray) -> int:
+def _root(mismatch: Callable[[float], float]) -> float:
+    from scipy.optimize import brentq  # slow to import, and seldom needed
+
+    if mismatch(_SMALLEST_ORDER) >= 0.0 or mismatch(_LARGEST_ORDER) <= 0.0:
+        return float("nan")
+    return float(brentq(mismatch, _SMALLEST_ORDER, _LARGEST_ORDER, xtol=1e-13))
+
+
+def believable(order: float, highest: float) -> bool:
+    """Whether elements whose highest order is given can show this order; what is above it is an accident."""
+    return bool(0.0 < order <= (1.0 + WINDOW) * highest)
+
+
+def chance_hits(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> np.ndarray:
+    """Return which relative errors (n,) are small by chance.
+
+    They fall faster than elements can and either are the last or the errors come back above round-off.
+    """
+    hit = np.zeros(len(error), dtype=bool)
+    before = 0
+    for i in range(1, len(error)):
+        ratio = error[before] / error[i] if error[i] > 0.0 else np.inf
+        sudden = np.log(ratio) > (1.0 + WINDOW) * highest * np.log(h[before] / h[i]) if ratio > 1.0 else False
+        last = i == len(error) - 1
+        hit[i] = sudden and error[before] > PLATEAU_BELOW and (last or error[i + 1 :].max() > ROUND_OFF)
+        if not hit[i]:
+            before = i
+    return hit
+
+
+def clean_points(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> int:
     """Return how many points, from the coarsest on, stand above the round-off plateau.
 
-    error: relative. The plateau begins where an error below 1e-6 falls with less than 0.7 times the order just before.
+    error: relative. The plateau begins where an error below 1e-6 falls with less than 0.7 times the order just before;
+    points that are small by chance are passed over.
     """
-    before = 0.0
-    for i in range(len(error)):
-        if error[i] <= _ROUND_OFF:
+    order_before, before = 0.0, -1
+    for i in np.flatnonzero(~chance_hits(h, error, highest)).tolist():
+        if error[i] <= ROUND_OFF:
             return i
-        if i:
-            order = np.log(error[i - 1] / error[i]) / np.log(h[i - 1] / h[i])
-            if error[i] < _PLATEAU_BELOW and order < _SUDDEN * before:
+        if before >= 0:
+            order = np.log(error[before] / error[i]) / np.log(h[before] / h[i])
+            if error[i] < PLATEAU_BELOW and order < _SUDDEN * order_before:
                 return i
-            before = order
+            order_before = order
+        before = i
     return len(error)
-
-
-def extrapolate(h: np.ndarray, q: np.ndarray) -> Extrapolation:
-    """Return q3 + (q3 - q2)/((h2/h3)^p - 1) of the three finest with the order they show.
-
-    Values whose differences have reached round-off have the finest value for limit; so have values that do not close
-    in steadily, and fewer than three.
-    """
-    finest = float(q[-1])
-    if len(q) < 3:
-        return Extrapolation(finest, np.nan, False, "fewer than three values: errors are against the finest")
-    change = np.abs(np.diff(q)) / _scale(finest, q)
-    if clean_points(h[1:], change) < len(change):
-        return Extrapolation(finest, float(change[-1]), True, "the finest values differ by round-off and are the limit")
-    order = order_of_three(h[-3:], q[-3:])
-    if np.isnan(order):
-        return Extrapolation(
-            finest, np.nan, False, "the values do not close in steadily: errors are against the finest"
-        )
-    limit = float(finest + (finest - q[-2]) / np.expm1(order * np.log(h[-2] / h[-1])))
-    return Extrapolation(limit, float(errors(q, limit)[-1]), True, "Richardson limit")
 
 
 def errors(q: np.ndarray, limit: float) -> np.ndarray:
     """Return |q - limit| (n,), relative to the limit where that is not zero."""
-    return np.abs(q - limit) / _scale(limit, q)
+    return np.abs(q - limit) / scale_of(limit, q)
 
 
 def is_relative(limit: float, q: np.ndarray) -> bool:
@@ -108,7 +109,8 @@ def is_relative(limit: float, q: np.ndarray) -> bool:
     return bool(abs(limit) > 1e-10 * np.abs(q).max())
 
 
-def _scale(limit: float, q: np.ndarray) -> float:
+def scale_of(limit: float, q: np.ndarray) -> float:
+    """What errors are taken relative to: the limit, or 1."""
     return abs(limit) if is_relative(limit, q) else 1.0
 
 
@@ -121,20 +123,22 @@ def neighbour_orders(h: np.ndarray, error: np.ndarray) -> np.ndarray:
     return orders
 
 
-def fit_order(h: np.ndarray, error: np.ndarray) -> OrderFit | None:
+def fit_order(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> OrderFit | None:
     """Fit the order of the finest points above round-off, back to where it differs by 15 % from that of the finest.
 
-    None where fewer than two points are left or the finest error does not fall.
+    Points that are small by chance end the range. None where fewer than two points are left or the finest error does
+    not fall.
     """
-    clean = clean_points(h, np.nan_to_num(error, nan=0.0))
-    if clean < 2:
+    known = np.nan_to_num(error, nan=0.0)
+    first, clean = _finest_run(clean_points(h, known, highest), chance_hits(h, known, highest))
+    if clean - first < 2:
         return None
     orders = neighbour_orders(h[:clean], error[:clean])
     finest = orders[-1]
     if not finest > 0.0:
         return None
-    first = clean - 2
-    while first > 0 and abs(orders[first] - finest) <= _WINDOW * finest:
+    start, first = first, clean - 2
+    while first > start and abs(orders[first] - finest) <= WINDOW * finest:
         first -= 1
     x, y = np.log(h[first:clean]), np.log(error[first:clean])
     x, y = x - x.mean(), y - y.mean()
@@ -146,15 +150,28 @@ def fit_order(h: np.ndarray, error: np.ndarray) -> OrderFit | None:
     return OrderFit(slope, float(stdtrit(freedom, 0.975) * deviation), first, clean - 1)
 
 
-def grid_convergence_index(h: np.ndarray, q: np.ndarray) -> np.ndarray:
+def _finest_run(clean: int, hit: np.ndarray) -> tuple[int, int]:
+    """Return begin and end of the finest two or more points in a row that are clean and no hit."""
+    end = clean
+    while end > 0:
+        hits = np.flatnonzero(hit[:end])
+        first = int(hits[-1]) + 1 if len(hits) else 0
+        if end - first >= 2 or first == 0:
+            return first, end
+        end = first - 1
+    return 0, 0
+
+
+def grid_convergence_index(h: np.ndarray, q: np.ndarray, highest: float = HIGHEST_ORDER) -> np.ndarray:
     """Return 1.25 |q2 - q3| / |q3| / ((h2/h3)^p - 1) (n,), p of a point and the two before it; nan where it has none.
 
-    Roache's estimate of the relative error of each value (absolute where the value is zero).
+    Roache's estimate of the relative error of each value (absolute where the value is zero). Orders above the highest
+    that the elements can have give none.
     """
     index = np.full(len(h), np.nan)
     for i in range(2, len(h)):
         change = abs(q[i] - q[i - 1])
         order = order_of_three(h[i - 2 : i + 1], q[i - 2 : i + 1])
-        if change > _ROUND_OFF * abs(q[i]) and not np.isnan(order):
+        if change > ROUND_OFF * abs(q[i]) and believable(order, highest):
             index[i] = SAFETY * change / (abs(q[i]) or 1.0) / np.expm1(order * np.log(h[i - 1] / h[i]))
     return index

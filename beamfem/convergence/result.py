@@ -17,7 +17,8 @@ EXPLANATION = (
     "log h through its asymptotic part (the finest points above round-off, as far back as the orders between "
     "neighbours stay within 15 % of the finest one), with the 95 % confidence interval of the slope, which does not "
     "hold the uncertainty of the limit. GCI: grid convergence index of Roache with safety factor 1.25, an estimate of "
-    "the relative error that needs no reference."
+    "the relative error that needs no reference but takes the order of three values as it is. Estimated error: of the "
+    "finest value; it trusts an order only where four values agree on it, else it is the change between levels."
 )
 
 
@@ -76,7 +77,7 @@ class Convergence:
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
         """Return header and rows of text, one a curve: order with band, where it was fitted, limit, remarks."""
-        header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "finest error", "remark"]
+        header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
         rows = []
         for curve in self.curves:
             fit = curve.fit

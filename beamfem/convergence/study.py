@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.convergence.curve import Curve, judge
+from beamfem.convergence.expected import highest_order
 from beamfem.convergence.result import Convergence
 from beamfem.errors import InputError
 from beamfem.progress import progress
@@ -43,10 +44,12 @@ def converge(
     """Call a function along one refinement and judge how its value converges.
 
     function: returns a number or a mapping of named numbers; quantity: the one whose error is meant, the others become
-    columns. refine: the parameter along which it converges, rising counts (h = 1/n) or falling step sizes (h); every
-    other list, tuple, range or array of one dimension gives a curve for each of its values, the rest is passed on.
-    reference: the limit, if known; without it each curve is extrapolated (Richardson). Errors are relative to the
-    limit where that is not zero.
+    columns. refine: the parameter along which it converges, counts (whole numbers, h = 1/n) or falling step sizes (h);
+    every other list, tuple, range or array of one dimension gives a curve for each of its values, the rest is passed
+    on. reference: the limit, if known; without it each curve is extrapolated (Richardson). Errors are relative to the
+    limit where that is not zero. An order is believed where the last four values agree on it and it is not above twice
+    the degree of an `Element` among the parameters (16 where there is none); else the changes between levels are the
+    estimate, or there is none (nan), as the notes of a curve say.
     until: double the last count (or halve the last step) of each curve until its estimated error is below, at most 8
     times. executor: as in `sweep`. A call that fails is kept in `failures`, the others go on.
     Raises InputError; BeamfemError where no worker starts.
@@ -54,8 +57,7 @@ def converge(
     varied, fixed = split(parameters)
     if refine not in varied:
         raise InputError(f"refine names the parameter {refine!r}, which must be given as a list of values")
-    refinement = varied.pop(refine)
-    counts = _counts(refine, refinement)
+    refinement, counts = _from_coarse_to_fine(refine, varied.pop(refine))
     reference = None if reference is None else finite("reference", reference)
     goal = None if until is None else positive("until", until)
     lines = _lines(function, varied, fixed)
@@ -79,15 +81,23 @@ def converge(
     return Convergence(name, quantity or name, refine, reference, tuple(curves), tuple(failures))
 
 
-def _counts(refine: str, values: Sequence[Any]) -> bool:
-    """Whether the refinement rises (counts) or falls (step sizes). Raises InputError for anything else."""
-    numbers = [positive(refine, value) for value in values]
-    steps = np.diff(numbers)
-    if (steps > 0).all() and (len(steps) or isinstance(values[0], int | np.integer)):
-        return True
-    if (steps < 0).all():
-        return False
-    raise InputError(f"{refine} must be rising counts or falling step sizes, got {', '.join(map(str, values))}")
+def _from_coarse_to_fine(refine: str, values: Sequence[Any]) -> tuple[tuple[Any, ...], bool]:
+    """Return the refinement in order and whether it counts; whole numbers count in whatever order they are given.
+
+    Raises InputError for what is neither rising counts nor falling step sizes.
+    """
+    numbers = np.array([positive(refine, value) for value in values])
+    whole = all(isinstance(value, int | np.integer) for value in values)
+    steps = np.diff(np.sort(numbers) if whole else numbers)
+    if whole and (steps > 0).all():
+        return tuple(sorted(values)), True
+    if not whole and (steps < 0).all():
+        return tuple(values), False
+    if not whole and (steps > 0).all() and (numbers % 1.0 == 0.0).all():
+        return tuple(values), True
+    raise InputError(
+        f"{refine} must be counts (whole numbers, each once) or falling step sizes, got {', '.join(map(str, values))}"
+    )
 
 
 def _lines(function: Callable[..., Any], varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) -> list[_Line]:
@@ -156,6 +166,7 @@ def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | N
         size=sizes,
         value=np.array([_number(outcome.value, quantity) for outcome in outcomes], dtype=float),
         reference=reference,
+        highest=highest_order(line.parameters),
     )
     return replace(
         curve,

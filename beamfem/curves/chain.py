@@ -6,18 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from beamfem.curves.curve import Curve, turned
+from beamfem.curves.curve import GAP, Curve, turned
 from beamfem.errors import InputError
-
-# largest gap between two curves, as a share of the length of the whole
-_GAP = 1e-9
 
 
 @dataclass(frozen=True)
 class Chain:
     """Axis that runs through curves one after the other; a corner wherever the tangent jumps between two.
 
-    Raises InputError where a curve begins further than 1e-9 of the whole length from the end of the one before.
+    A gap of up to 1e-5 of the whole length is rounding: it is closed by moving the curves behind it. Raises InputError
+    where one is larger.
     """
 
     curves: tuple[Curve, ...]
@@ -31,10 +29,10 @@ class Chain:
         object.__setattr__(self, "curves", tuple(self.curves))
         for i, (one, other) in enumerate(zip(self.curves, self.curves[1:], strict=False)):
             end, start = one.position(np.array([one.length]))[0], other.position(np.array([0.0]))[0]
-            if np.hypot(*(start - end)) > _GAP * self.length:
+            if np.hypot(*(start - end)) > GAP * self.length:
                 raise InputError(
                     f"curves[{i + 1}] of a Chain must start where curves[{i}] ends, at ({end[0]:.12g}, {end[1]:.12g}); "
-                    f"it starts at ({start[0]:.12g}, {start[1]:.12g})"
+                    f"it starts at ({start[0]:.12g}, {start[1]:.12g}), further than {GAP:g} of the whole length away"
                 )
 
     @property
@@ -50,22 +48,27 @@ class Chain:
         return tuple(sorted(float(corner) for corner in found))
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        return self._each(arc_length, lambda curve, arc: curve.position(arc))
+        return self._each(arc_length, lambda i, arc: self.curves[i].position(arc) + self._moves[i])
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        return self._each(arc_length, lambda curve, arc: curve.tangent(arc))
+        return self._each(arc_length, lambda i, arc: self.curves[i].tangent(arc))
 
     @cached_property
     def _ends(self) -> np.ndarray:
         """Arc lengths at which the curves begin, and the whole length (n + 1,)."""
         return np.append(0.0, np.cumsum([curve.length for curve in self.curves]))
 
-    def _each(self, arc_length: np.ndarray, ask: Callable[[Curve, np.ndarray], np.ndarray]) -> np.ndarray:
+    @cached_property
+    def _moves(self) -> np.ndarray:
+        """What closes the gaps before each curve (n, 2) [m]."""
+        ends = np.array([curve.position(np.array([0.0, curve.length])) for curve in self.curves])
+        return np.concatenate([np.zeros((1, 2)), np.cumsum(ends[:-1, 1] - ends[1:, 0], axis=0)])
+
+    def _each(self, arc_length: np.ndarray, ask: Callable[[int, np.ndarray], np.ndarray]) -> np.ndarray:
         arc_length = np.asarray(arc_length, dtype=float)
         piece = np.clip(np.searchsorted(self._ends, arc_length, side="right") - 1, 0, len(self.curves) - 1)
         values = np.empty((len(arc_length), 2))
         for i in np.unique(piece):
             here = piece == i
-            curve = self.curves[i]
-            values[here] = ask(curve, np.clip(arc_length[here] - self._ends[i], 0.0, curve.length))
+            values[here] = ask(int(i), np.clip(arc_length[here] - self._ends[i], 0.0, self.curves[i].length))
         return values

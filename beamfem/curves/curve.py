@@ -11,6 +11,9 @@ from beamfem.validation import finite, vector
 # A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
 CORNER = 1e-8
 
+# Ends that meet may be apart by this share of the length, as drawings rounded to 6 decimals leave them.
+GAP = 1e-5
+
 
 @runtime_checkable
 class Curve(Protocol):

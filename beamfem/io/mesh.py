@@ -9,15 +9,18 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError
 from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
+from beamfem.io.touching import divided, parts_of
 from beamfem.material import Material
 
-# distances from the plane z = 0 and between nodes that count as none, as a share of the size of the mesh
+# distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
+_SHORT = 1e-2  # of the shortest line: nodes further apart than this are two
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +62,11 @@ def read_mesh(path: str | PathLike[str]) -> LineMesh:
     Gmsh .msh (physical groups of curves and points are the sets, by number where they have no name), Abaqus and
     CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
+    A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
+    its end.
     Raises FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another kind, nodes
-    off the plane z = 0, lines of no length, lines given twice, and nodes at the same place.
+    off the plane z = 0, lines of no length, lines given twice, lines that end inside a line3, and nodes at the same
+    place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
     """
     source = Path(path)
     if not source.is_file():
@@ -96,7 +102,9 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     size = float(np.max(np.ptp(points, axis=0)))
     _check_nodes(points, size)
     nodes = points[:, :2].copy()
-    _check_cells(nodes, cells, size)
+    near = _check_ends(nodes, cells, size)
+    parts, owner = divided(nodes, cells, near)
+    _refuse_repeated(nodes, parts, owner, size)
     member = np.full(counted, -1)
     member[number] = np.arange(len(number))
     member_sets, point_sets = {}, {}
@@ -109,7 +117,7 @@ def _line_mesh(content: MeshFile) -> LineMesh:
             point_sets[name] = np.unique(place[own])
     for name, chosen in content.point_sets.items():
         point_sets[name] = np.unique(place[chosen])
-    return LineMesh(nodes, cells, member_sets, point_sets)
+    return LineMesh(nodes, parts, parts_of(member_sets, owner), point_sets)
 
 
 def _refuse_other_cells(content: MeshFile) -> None:
@@ -135,24 +143,33 @@ def _check_nodes(points: np.ndarray, size: float) -> None:
         raise InputError(f"beams lie in the plane z = 0, but {count} node(s) do not, such as ({x:g}, {y:g}, {z:g})")
 
 
-def _check_cells(nodes: np.ndarray, cells: np.ndarray, size: float) -> None:
+def _check_ends(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
+    """Return the distance [m] below which places are the same. Raises InputError for ends that are not joined."""
     chord = np.linalg.norm(nodes[cells[:, 1]] - nodes[cells[:, 0]], axis=1)
     short = np.flatnonzero(chord <= _SAME * size)
     if len(short):
         raise InputError(
             f"line {short[0]} (counted from 0) has no length, both ends are at {_at(nodes, cells[short[0], 0])}"
         )
+    near = min(GAP * size, _SHORT * float(chord.min()))
     ends = np.unique(cells[:, :2])
-    pairs = cKDTree(nodes[ends]).query_pairs(_SAME * size, output_type="ndarray")
+    pairs = cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")
     if len(pairs):
+        one, other = ends[pairs[0]]
+        apart = np.linalg.norm(nodes[one] - nodes[other])
         raise InputError(
-            f"two nodes are at {_at(nodes, ends[pairs[0, 0]])}, so that lines which meet there are not joined (and "
-            f"{len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name the node"
+            f"two nodes are at {_at(nodes, one)}, {apart:.1g} apart, so that lines which meet there are not joined "
+            f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name it"
         )
     middle = cells[:, 2][cells[:, 2] >= 0]
     crossed = np.intersect1d(middle, ends)
     if len(crossed):
         raise InputError(f"a line ends in the middle of a line3 at {_at(nodes, crossed[0])}; split the line3 there")
+    return near
+
+
+def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, size: float) -> None:
+    """Raise InputError for two lines at one place; owner: number of the line that each cell is a part of."""
     curved = cells[:, 2] >= 0
     half = nodes[cells[:, :2]].mean(axis=1)
     half[curved] = nodes[cells[curved, 2]]
@@ -162,7 +179,9 @@ def _check_cells(nodes: np.ndarray, cells: np.ndarray, size: float) -> None:
     if len(again):
         other = first[inverse.ravel()[again[0]]]
         where = f"{_at(nodes, cells[other, 0])} to {_at(nodes, cells[other, 1])}"
-        raise InputError(f"lines {other} and {again[0]} (counted from 0) are the same line from {where}; remove one")
+        raise InputError(
+            f"lines {owner[other]} and {owner[again[0]]} (counted from 0) are the same line from {where}; remove one"
+        )
 
 
 def _at(nodes: np.ndarray, node: int) -> str:

@@ -57,7 +57,7 @@ def equilibrate(
     held_change: first step (n,) of the held coordinates and what it changes in the residual (n,), zero to go on.
     limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
     iterations, 1 to take predicted stresses for the geometric tangent, and the count of negative pivots where it stops
-    if the third tangent or a later one has another (the stresses of the second are those of a whole linear step), or -1.
+    if the third tangent or a later one has another (the stresses of the second are those of a linear step), or -1.
     rows (unknown, width): the band. found (7,): iterations so far, last correction and the one before; then largest
     residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
     whose residual (n,) is filled; negative pivots of the last tangent. Stops where corrections are small or

@@ -1,7 +1,7 @@
 """The mesh of one beam in its reference: elements over the arc length, nodes, and where they stand."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from skfem import MeshLine
@@ -16,7 +16,8 @@ class Grid:
 
     vertices: arc lengths of the ends of the elements (ne + 1,) [m]; parameter: mesh coordinates there (ne + 1,), the
     arc lengths or the knots of a spline; rate: mesh length [m] of a unit of the parameter; node: nodes of each element
-    (ne, nn); arc (nodes,) [m], position (nodes, 2) [m], unit tangent (nodes, 2) and |r_x| (nodes,) of the nodes.
+    (ne, nn); arc (nodes,) [m], position (nodes, 2) [m], unit tangent (nodes, 2) and |r_x| (nodes,) of the nodes;
+    moved: whether a node has been moved off the curve to the one it is joined to.
     """
 
     beam: Beam
@@ -28,6 +29,7 @@ class Grid:
     position: np.ndarray
     tangent: np.ndarray
     speed: np.ndarray
+    moved: bool = field(default=False, kw_only=True)
 
     @property
     def skfem(self) -> MeshLine:
@@ -49,7 +51,7 @@ class Grid:
 
     @property
     def straight(self) -> bool:
-        return isinstance(self.beam.curve, Line)
+        return isinstance(self.beam.curve, Line) and not self.moved
 
     def locate(self, fraction: float) -> tuple[int, float]:
         """Return element and xi in [0, 1] of a point of the beam."""

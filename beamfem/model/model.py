@@ -6,9 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
 from beamfem.model.joints import Hinge, Joint, Rigid
@@ -25,7 +27,8 @@ _ON_BEAM = DistributedLoad | Foundation
 class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports and joints put a mesh node at their point; loads act anywhere. Raises InputError, UnknownPointError.
+    Supports and joints put a mesh node at their point; loads act anywhere. Points that are joined may be apart by 1e-5
+    of the longer beam: the second is moved to the first, free of stress. Raises InputError, UnknownPointError.
     """
 
     beams: Sequence[Beam]
@@ -87,9 +90,10 @@ class Model:
         kind = type(joint).__name__
         if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
             raise InputError(f"{kind} joins the point {joint.a} with itself")
-        if gap > 1e-9 * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
+        if gap > GAP * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
             raise InputError(
-                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide"
+                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide, "
+                f"to {GAP:g} of the longer beam"
             )
 
     @cached_property
@@ -108,7 +112,9 @@ class Model:
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
         rigid, hinged = (self._pairs(grids, kind) for kind in (Rigid, Hinge))
         turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
-        nodes, size = number_nodes(grids, angled, np.concatenate([turning, hinged]), turning)
+        moving = np.concatenate([turning, hinged])
+        grids = close_gaps(grids, moving)
+        nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {element: number for number, element in enumerate(self.groups)}
         meshes = []

@@ -40,8 +40,8 @@ def number_nodes(
     own_code = np.array([grid.beam.element.coordinates.code for grid in grids])
     follows_slope = np.array([grid.beam.element.forces.turns_with == "r_x" for grid in grids])
     carrier = own_code[owner]
-    moves = _groups(total, first, moving)
-    turns = _groups(total, first, turning)
+    moves = groups(total, first, moving)
+    turns = groups(total, first, turning)
 
     as_angle = np.zeros(total, dtype=bool)
     as_angle[first[angled[:, 0]] + angled[:, 1]] = True
@@ -54,7 +54,7 @@ def number_nodes(
     sloped = angle & follows_slope[owner] & ((carrier == GRADIENTS) | (carrier == ROTATION))
     carrier = np.where(sloped, STRETCH, np.where(angle & (carrier == GRADIENTS), ROTATION, carrier))
 
-    leader_moves, leader_turns = _leaders(moves), _leaders(turns)
+    leader_moves, leader_turns = first_of_group(moves), first_of_group(turns)
     turned = joined & all_plain & (leader_turns != np.arange(total))
     carrier = np.where(turned, TURNED_GRADIENTS, carrier)
 
@@ -82,7 +82,7 @@ def number_nodes(
     return nodes, int(own.sum())
 
 
-def _groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+def groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Number of the group (total,) that each node belongs to."""
     if not len(pairs):
         return np.arange(total)
@@ -90,7 +90,7 @@ def _groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     return connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(total, total)), directed=False)[1]
 
 
-def _leaders(group: np.ndarray) -> np.ndarray:
+def first_of_group(group: np.ndarray) -> np.ndarray:
     """First node (total,) of the group of each node."""
     leader = np.full(group.max() + 1, len(group))
     np.minimum.at(leader, group, np.arange(len(group)))

@@ -23,10 +23,9 @@ def point_key(function_form: Any, point: Mapping[str, Any]) -> str:
 
 
 def function_form(function: Callable[..., Any]) -> Any:
-    """Return what a function is known by: module, qualified name, hash of its source and what it closes over.
+    """Return what a function is known by: module, qualified name and what it closes over; its content is `Sources`.
 
-    A change in what the function calls is not noticed. Raises InputError for lambdas, methods and functions without
-    a source file: another one may look the same.
+    Raises InputError for lambdas, methods and functions without a source file: another one may look the same.
     """
     return canonical(function, "the function")
 
@@ -74,13 +73,13 @@ def _function(function: FunctionType, where: str) -> Any:
     if function.__name__ == "<lambda>":
         raise InputError(f"{where} is a lambda, which has no name to be found again by; define it with def")
     try:
-        source = inspect.getsource(function)
+        inspect.getsource(function)
     except (OSError, TypeError):
         raise InputError(
             f"the source of {name} cannot be read, so that a change would go unnoticed; put it in a file"
         ) from None
     closed = [cell.cell_contents for cell in function.__closure__ or ()]
-    return ["function", name, _digest(source), canonical(closed, f"what {name} closes over")]
+    return ["function", name, canonical(closed, f"what {name} closes over")]
 
 
 def _array(value: np.ndarray, where: str) -> Any:

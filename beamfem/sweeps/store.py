@@ -1,5 +1,9 @@
-"""Results of calls on disk: a file of JSON lines, one a result, that a killed process leaves readable."""
+"""Results of calls on disk: a file of JSON lines, one a result, that a killed process leaves readable.
 
+A row names the code that computed it by a digest; another line tells once what files that code is.
+"""
+
+import hashlib
 import json
 from collections.abc import Mapping
 from os import PathLike
@@ -21,7 +25,8 @@ class Store:
     def __init__(self, path: str | PathLike[str]) -> None:
         given = Path(path)
         self.path = given / "results.jsonl" if given.is_dir() or not given.suffix else given
-        self._known: dict[str, tuple[Any, float]] = {}
+        self._known: dict[str, dict[str, tuple[Any, float]]] = {}
+        self._sources: dict[str, Mapping[str, str]] = {}
 
     def __enter__(self) -> "Store":
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -34,7 +39,10 @@ class Store:
         for line in data.splitlines():
             try:
                 record = json.loads(line)
-                self._known[record["key"]] = (record["value"], record["seconds"])
+                if "sources" in record:
+                    self._sources[record["code"]] = record["sources"]
+                else:
+                    self._keep(record["key"], record["code"], record["value"], record["seconds"])
             except (ValueError, KeyError, TypeError):
                 continue
         return self
@@ -42,17 +50,43 @@ class Store:
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
         self._file.close()
 
-    def find(self, key: str) -> Outcome | None:
-        """Return the outcome kept under a key."""
-        if key not in self._known:
+    def find(self, key: str, sources: Mapping[str, str]) -> Outcome | None:
+        """Return the outcome kept under a key that this code computed."""
+        return self._outcome(key, _digest(sources))
+
+    def find_other(self, key: str, sources: Mapping[str, str]) -> tuple[Outcome, set[str]] | None:
+        """Return the last outcome of other code under a key, and the modules in which the two codes differ."""
+        for code in reversed(self._known.get(key, {})):
+            outcome, then = self._outcome(key, code), self._sources.get(code, {})
+            if outcome is not None and code != _digest(sources):
+                return outcome, {name for name in {*then, *sources} if then.get(name) != sources.get(name)}
+        return None
+
+    def add(self, key: str, sources: Mapping[str, str], about: Mapping[str, str], outcome: Outcome) -> None:
+        """Write the outcome of a call; about: texts for people who read the file."""
+        code = _digest(sources)
+        if code not in self._sources:
+            self._sources[code] = dict(sources)
+            self._write({"code": code, "sources": self._sources[code]})
+        self._write({"key": key, "code": code, **about, "value": _encode(outcome.value), "seconds": outcome.seconds})
+
+    def _write(self, record: Mapping[str, Any]) -> None:
+        self._file.write(json.dumps(record).encode() + b"\n")
+
+    def _keep(self, key: str, code: str, value: Any, seconds: float) -> None:
+        rows = self._known.setdefault(key, {})
+        rows.pop(code, None)  # the last one written stands last
+        rows[code] = value, seconds
+
+    def _outcome(self, key: str, code: str) -> Outcome | None:
+        if code not in self._known.get(key, {}):
             return None
-        value, seconds = self._known[key]
+        value, seconds = self._known[key][code]
         return Outcome(_decode(value), seconds)
 
-    def add(self, key: str, about: Mapping[str, str], outcome: Outcome) -> None:
-        """Write the outcome of a call; about: texts for people who read the file."""
-        record = {"key": key, **about, "value": _encode(outcome.value), "seconds": outcome.seconds}
-        self._file.write(json.dumps(record).encode() + b"\n")
+
+def _digest(sources: Mapping[str, str]) -> str:
+    return hashlib.sha256(json.dumps(sorted(sources.items())).encode()).hexdigest()[:24]
 
 
 def _encode(value: Any) -> Any:

@@ -11,9 +11,8 @@ import numpy as np
 from beamfem import tabulate
 from beamfem.errors import InputError
 from beamfem.progress import progress
-from beamfem.sweeps.keys import function_form, point_key
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
-from beamfem.sweeps.store import Store
+from beamfem.sweeps.stored import StoredCalls
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 
@@ -106,6 +105,7 @@ def sweep(
     *,
     executor: ExecutorFactory | None = None,
     store: str | PathLike[str] | None = None,
+    keep_stale: bool = False,
     **parameters: Any,
 ) -> Sweep:
     """Call a function at every combination of the values in lists; return all results.
@@ -114,7 +114,9 @@ def sweep(
     one dimension are varied, everything else is passed on as it is.
     executor: a class or a function without arguments that makes a `concurrent.futures.Executor`; None calls here, one
     after the other. store: a file or a folder where results are kept as they come and found again by the next run of
-    the same function (its own source unchanged; what it calls is not looked at) with the same parameters.
+    the same function with the same parameters. Where one of the user's own files that the function runs has changed
+    since (its constants, helpers, what they import), a `ChangedCodeWarning` says so and the points are computed again;
+    keep_stale: take the old results then.
     A call that fails or kills its worker is kept in `failures`, the others go on; the next run tries it again.
     Raises InputError; BeamfemError where no worker starts.
     """
@@ -124,13 +126,9 @@ def sweep(
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
     with ExitStack() as stack:
-        kept = None if store is None else Store(store)
-        keys: Sequence[str] = ()
+        kept = None if store is None else stack.enter_context(StoredCalls(store, function, points))
         if kept is not None:
-            form = function_form(function)
-            keys = [point_key(form, point) for point in points]
-            stack.enter_context(kept)
-            outcomes = [kept.find(key) for key in keys]
+            outcomes = kept.found(keep_stale)
         todo = [i for i, outcome in enumerate(outcomes) if outcome is None]
         runner = stack.enter_context(TaskRunner(function, executor))
         report = stack.enter_context(progress("points", len(todo)))
@@ -138,11 +136,7 @@ def sweep(
             i = todo[number]
             outcomes[i] = outcome
             if kept is not None and outcome.error is None:
-                kept.add(
-                    keys[i],
-                    {"function": getattr(function, "__qualname__", str(function)), "parameters": assignments(texts[i])},
-                    outcome,
-                )
+                kept.add(i, assignments(texts[i]), outcome)
             report(done)
     return _result(points, texts, [outcome for outcome in outcomes if outcome is not None], varied, len(todo))
 

@@ -1,0 +1,64 @@
+"""Lines of a mesh that end inside another line: the straight one is divided there, so that the two are joined."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from beamfem.errors import InputError
+
+
+def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells (m, 3) with straight lines divided where others end on them, and which cell each is a part of.
+
+    near [m]: how far from a line an end may be to lie on it. Raises InputError where a line ends inside a line3.
+    """
+    cell, node, share = _touches(nodes, cells, near)
+    curved = np.flatnonzero(cells[cell, 2] >= 0)
+    if len(curved):
+        x, y = nodes[node[curved[0]]]
+        raise InputError(
+            f"a line ends inside line {cell[curved[0]]}, a line3, at ({x:g}, {y:g}); split the line3 there"
+        )
+    if not len(cell):
+        return cells, np.arange(len(cells))
+    rows, owner = [], []
+    order = np.lexsort((share, cell))
+    inside = np.split(node[order], np.searchsorted(cell[order], np.arange(1, len(cells))))
+    for number, (own, between) in enumerate(zip(cells, inside, strict=True)):
+        stops = [own[0], *between, own[1]]
+        rows += [(a, b, own[2]) for a, b in pairwise(stops)]
+        owner += [number] * (len(stops) - 1)
+    return np.array(rows, dtype=np.int64), np.array(owner)
+
+
+def parts_of(sets: Mapping[str, np.ndarray], owner: np.ndarray) -> dict[str, np.ndarray]:
+    """Return sets of cells as sets of the parts that they have been divided into."""
+    return {name: np.flatnonzero(np.isin(owner, cells)) for name, cells in sets.items()}
+
+
+def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return cell, node and share of the way (n,) of ends that lie on a line between its own ends."""
+    ends = np.unique(cells[:, :2])
+    start, end = nodes[cells[:, 0]], nodes[cells[:, 1]]
+    chord = end - start
+    length = np.linalg.norm(chord, axis=1)
+    # a parabola is nowhere further from its chord than its middle node
+    middle = np.where(cells[:, 2] >= 0, cells[:, 2], cells[:, 0])
+    rise = np.abs(_cross(chord, nodes[middle] - start)) / length
+    within = cKDTree(nodes[ends]).query_ball_point(0.5 * (start + end), 0.5 * length + rise + near)
+    cell = np.repeat(np.arange(len(cells)), [len(found) for found in within])
+    node = ends[np.concatenate(within).astype(np.int64)]
+    own = (node == cells[cell, 0]) | (node == cells[cell, 1])
+    cell, node = cell[~own], node[~own]
+    away = nodes[node] - start[cell]
+    share = np.einsum("ni,ni->n", away, chord[cell]) / length[cell] ** 2
+    off = _cross(chord[cell], away) / length[cell]
+    bow = _cross(chord, nodes[middle] - start)[cell] / length[cell] * 4.0 * share * (1.0 - share)
+    on = (np.abs(off - bow) <= near) & (share > 0.0) & (share < 1.0)
+    return cell[on], node[on], share[on]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])

@@ -1,0 +1,73 @@
+"""The calls of a sweep that are kept on disk: which are there, by which code, and the new ones."""
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from beamfem.errors import ChangedCodeWarning
+from beamfem.sweeps.keys import function_form, point_key
+from beamfem.sweeps.sources import SCRIPT, Sources
+from beamfem.sweeps.store import Store
+from beamfem.sweeps.workers import Outcome
+
+_NAMED = 5
+
+
+class StoredCalls:
+    """Outcomes of a function at points, on disk; a context manager.
+
+    Raises InputError for a function or parameters that are not known again in the next run, before any file is made.
+    """
+
+    def __init__(
+        self, path: str | PathLike[str], function: Callable[..., Any], points: Sequence[Mapping[str, Any]]
+    ) -> None:
+        form, sources = function_form(function), Sources()
+        self._keys = [point_key(form, point) for point in points]
+        self._code = [sources.behind(function, point) for point in points]
+        self._about = {"function": getattr(function, "__qualname__", str(function))}
+        self._store = Store(path)
+
+    def __enter__(self) -> "StoredCalls":
+        self._store.__enter__()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+        self._store.__exit__(kind, error, trace)
+
+    def found(self, keep_stale: bool) -> list[Outcome | None]:
+        """Return the outcome of each point, None where there is none; what other code computed only with keep_stale."""
+        outcomes = [self._store.find(key, code) for key, code in zip(self._keys, self._code, strict=True)]
+        stale, changed = 0, set()
+        for i, outcome in enumerate(outcomes):
+            other = None if outcome else self._store.find_other(self._keys[i], self._code[i])
+            if other is not None:
+                stale += 1
+                changed |= other[1]
+                outcomes[i] = other[0] if keep_stale else None
+        if stale:
+            warnings.warn(_said(stale, len(outcomes), changed, keep_stale), ChangedCodeWarning, stacklevel=3)
+        return outcomes
+
+    def add(self, number: int, parameters: str, outcome: Outcome) -> None:
+        """Keep the outcome of a point; parameters: as text, for people who read the file."""
+        about = self._about | {"parameters": parameters}
+        self._store.add(self._keys[number], self._code[number], about, outcome)
+
+
+def _said(stale: int, points: int, changed: set[str], keep: bool) -> str:
+    names = [_title(name) for name in sorted(changed)]
+    shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
+    done = "the old results are kept" if keep else "they are computed again; keep_stale=True keeps the old results"
+    return f"{stale} of {points} points in the store were computed before {shown} changed: {done}"
+
+
+def _title(module: str) -> str:
+    import __main__
+
+    if module != SCRIPT:
+        return module
+    return Path(__main__.__file__).name if getattr(__main__, "__file__", None) else "the code in this notebook"

@@ -1,0 +1,249 @@
+"""Stored results of a sweep and the code that computed them: what counts as changed, and what is said of it."""
+
+import ast
+import importlib
+import shutil
+import subprocess
+import sys
+import textwrap
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+import beamfem as bf
+from beamfem.sweeps.slicing import needed
+from beamfem.sweeps.sources import Sources
+
+SCRIPT = """
+import numpy as np
+import beamfem as bf
+import helper
+
+E = 2e11
+TABLE = {"factor": 1.0}
+
+def inertia(height):
+    return 0.1 * height**3 / 12
+
+def stiffness(height):
+    return helper.scale * TABLE["factor"] * E * inertia(height)
+
+if __name__ == "__main__":
+    found = bf.sweep(stiffness, height=[0.1, 0.2], store="store")
+    print(found.computed, found["value"].tolist())
+"""
+
+
+def run_script(folder, *changes, helper=None, deep=None):
+    """Run the script with changes (old, new) to it and its files; return points computed, value over first, stderr."""
+    text = SCRIPT
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "study.py").write_text(text)
+    for name, content in (("helper", helper), ("deep", deep)):
+        if content is not None:
+            (folder / f"{name}.py").write_text(content)
+    done = subprocess.run([sys.executable, "-B", "study.py"], cwd=folder, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    computed, values = done.stdout.split(" ", 1)
+    first = float(values.strip("[]\n").split(",")[0])
+    return int(computed), first / (2e11 * 0.1**4 / 12), done.stderr
+
+
+@pytest.fixture(scope="module")
+def once(tmp_path_factory):
+    """The script after its first run."""
+    folder = tmp_path_factory.mktemp("script")
+    helper = "from deep import factor\nscale = factor\n"
+    assert run_script(folder, helper=helper, deep="factor = 1.0\n") == (2, pytest.approx(1.0), "")
+    return folder
+
+
+@pytest.fixture
+def script(once, tmp_path):
+    """Run the script again, in a copy of its folder."""
+    return partial(run_script, shutil.copytree(once, tmp_path / "copy"))
+
+
+def test_a_changed_constant_of_the_script_is_computed_again(script):
+    """The values of E I, by hand: E from 2e11 to 7e10 takes them to 0.35 of what they were."""
+    assert script() == (0, pytest.approx(1.0), "")
+    computed, value, said = script(("E = 2e11", "E = 7e10"))
+    assert (computed, value) == (2, pytest.approx(0.35))
+    assert "ChangedCodeWarning: 2 of 2 points in the store were computed before study.py changed" in said
+    # both are kept
+    assert script() == (0, pytest.approx(1.0), "")
+    assert script(("E = 2e11", "E = 7e10")) == (0, pytest.approx(0.35), "")
+
+
+@pytest.mark.parametrize(
+    ("changes", "files", "factor", "names"),
+    [
+        ([("/ 12", "/ 6")], {}, 2.0, "study.py"),
+        ([("def inertia", 'TABLE["factor"] = 3.0\ndef inertia')], {}, 3.0, "study.py"),
+        ([("def inertia", "helper.scale = 5.0\ndef inertia")], {}, 5.0, "study.py"),
+        ([], {"helper": "from deep import factor\nscale = 4.0\n"}, 4.0, "helper"),
+        ([], {"deep": "factor = 6.0\n"}, 6.0, "deep"),
+    ],
+    ids=[
+        "a function it calls",
+        "a member of a table",
+        "a member of a module",
+        "another file",
+        "a file behind that one",
+    ],
+)
+def test_whatever_the_function_needs_counts(script, changes, files, factor, names):
+    computed, value, said = script(*changes, **files)
+    assert (computed, value) == (2, pytest.approx(factor))
+    assert f"before {names} changed" in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("height=[0.1, 0.2]", "height=[0.1]"),
+        ('"__main__":', '"__main__":\n    title = "a picture"'),
+        ("E = 2e11", "E = 2e11  # Pa"),
+        ("import helper\n", "import helper\n\n\nother = [height for height in range(3)]\n"),
+    ],
+    ids=["fewer points", "what the script does besides", "a comment", "names that are local to the function"],
+)
+def test_what_the_function_does_not_need_does_not_count(script, old, new):
+    assert script((old, new)) == (0, pytest.approx(1.0), "")
+
+
+def test_old_results_are_kept_where_that_is_asked(script):
+    keep = ("store=", "keep_stale=True, store=")
+    computed, value, said = script(("E = 2e11", "E = 7e10"), keep)
+    assert (computed, value) == (0, pytest.approx(1.0))
+    assert "the old results are kept" in said
+
+
+def loaded(folder, **files):
+    """Import the first of some modules anew."""
+    for name, text in files.items():
+        (folder / f"{name}.py").write_text(textwrap.dedent(text))
+    importlib.invalidate_caches()
+    for name in files:
+        sys.modules.pop(name, None)
+    return importlib.import_module(next(iter(files)))
+
+
+def test_a_changed_function_in_a_module_is_called_again(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    module = loaded(tmp_path, changing_module="def value(x):\n    return x\n")
+    assert bf.sweep(module.value, x=[1, 2], store=tmp_path / "s").values == (1, 2)
+    module = loaded(tmp_path, changing_module="def value(x):\n    return x + 10\n")
+    with pytest.warns(bf.ChangedCodeWarning, match="2 of 3 points in the store were computed before changing_module"):
+        assert bf.sweep(module.value, x=[1, 2, 3], store=tmp_path / "s").values == (11, 12, 13)
+
+
+def test_what_parameters_bring_along_counts(tmp_path, monkeypatch):
+    """A dataclass with a method and a function, each from a file of its own, one imported only when it is called."""
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    shapes = "from dataclasses import dataclass\n@dataclass(frozen=True)\nclass Square:\n    a: float\n"
+    shapes += "    def area(self):\n        return self.a**2\n"
+    lazy = "def twice(x):\n    import behind_lazy\n    return behind_lazy.two * x\n"
+    main = "def area(shape, by):\n    return by(shape.area())\n"
+    loaded(tmp_path, behind_lazy="two = 2\n")
+    module, shape, by = (
+        loaded(tmp_path, **{name: text})
+        for name, text in (("asked_module", main), ("shapes_module", shapes), ("lazy_module", lazy))
+    )
+    arguments = {"shape": shape.Square(3.0), "by": by.twice, "store": tmp_path / "s"}
+    assert bf.sweep(module.area, **arguments).values == (18.0,)
+    assert bf.sweep(module.area, **arguments).computed == 0
+    loaded(tmp_path, behind_lazy="two = 20\n")
+    with pytest.warns(bf.ChangedCodeWarning, match="before behind_lazy changed"):
+        assert bf.sweep(module.area, **arguments).values == (180.0,)
+    shape = loaded(tmp_path, shapes_module=shapes.replace("self.a**2", "self.a"))
+    with pytest.warns(bf.ChangedCodeWarning, match="before shapes_module changed"):
+        assert bf.sweep(module.area, **arguments | {"shape": shape.Square(3.0)}).values == (60.0,)
+
+
+def test_packages_with_relative_imports(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    package = tmp_path / "own_package"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "data.py").write_text("k = 2\n")
+    (package / "run.py").write_text("from . import data\ndef value(x):\n    return data.k * x\n")
+    module = importlib.import_module("own_package.run")
+    assert bf.sweep(module.value, x=[1], store=tmp_path / "s").values == (2,)
+    (package / "data.py").write_text("k = 5\n")
+    importlib.reload(sys.modules["own_package.data"])
+    with pytest.warns(bf.ChangedCodeWarning, match=r"before own_package\.data changed"):
+        assert bf.sweep(module.value, x=[1], store=tmp_path / "s").values == (5,)
+
+
+def test_a_cell_of_a_notebook(tmp_path):
+    """Code without a file: its source and the values that it takes from other cells."""
+    cells = """
+        import linecache, sys, warnings
+        import beamfem as bf
+        sys.modules["__main__"].__dict__.pop("__file__", None)
+        warnings.simplefilter("always")
+
+        def cell(text, number):
+            name = f"<cell {number}>"
+            linecache.cache[name] = (len(text), None, text.splitlines(True), name)
+            exec(compile(text, name, "exec"), globals())
+
+        cell("E = 2.0\\ndef helped(x):\\n    return E * x\\n", 1)
+        cell("def value(x):\\n    return helped(x)\\n", 2)
+        for run in (1, 2):
+            print(bf.sweep(value, x=[1.0], store="s").computed)
+        E = 3.0
+        found = bf.sweep(value, x=[1.0], store="s")
+        print(found.computed, found.values)
+    """
+    script = tmp_path / "cells.py"
+    script.write_text(textwrap.dedent(cells))
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.stdout.split("\n")[:3] == ["1", "0", "1 (3.0,)"], done.stderr
+    assert "the code in this notebook changed" in done.stderr
+
+
+def lines(text, *names):
+    return [line for line in ast.unparse(needed(ast.parse(textwrap.dedent(text)), names)).splitlines() if line]
+
+
+def test_the_part_of_a_script_that_a_function_needs():
+    text = textwrap.dedent("""
+        import numpy as np
+        import os
+        a = 1
+        b = a + 1
+        c = 3
+        def f(x):
+            c = x
+            return b + c
+        class Case:
+            size = a
+        def change():
+            Case.size = 4
+        change()
+        result = f(2)
+    """)
+    assert lines(text, "f") == ["a = 1", "b = a + 1", "def f(x):", "    c = x", "    return b + c"]
+    assert [line for line in lines(text, "Case") if not line.startswith(" ")] == [
+        "a = 1",
+        "class Case:",
+        "def change():",
+        "change()",
+    ]
+    assert lines(text, "os") == ["import os"]
+    everything = ast.unparse(ast.parse(textwrap.dedent(text))).splitlines()
+    assert lines(text, "unknown") == [line for line in everything if line]
+    assert "result = f(2)" in lines(text + "from numpy import *\n", "f")
+
+
+def test_only_files_of_the_user_are_looked_at(tmp_path):
+    behind = Sources().behind(loaded, {"element": bf.CRBF(2), "function": Path})
+    assert set(behind) == {__name__}

@@ -8,10 +8,10 @@ run: $(VENV)/.ready
 	$(BIN)/python studies/all.py
 
 test: $(VENV)/.ready lint
-	$(BIN)/python -m pytest -n auto --maxprocesses 2
+	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup
 
 verify: $(VENV)/.ready
-	$(BIN)/python -m pytest -n auto --maxprocesses 2 -m "slow or not slow"
+	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup -m "slow or not slow"
 
 bench: $(VENV)/.bench
 	$(BIN)/python studies/peers.py

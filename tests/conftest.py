@@ -36,6 +36,15 @@ def element(request):
     return request.param
 
 
+def pytest_collection_modifyitems(items):
+    """Give all tests of a field and its forces to one worker, so that no two compile the same kernels."""
+    for item in items:
+        parameters = getattr(item, "callspec", None)
+        element = parameters.params.get("element") if parameters else None
+        if isinstance(element, bf.Element):
+            item.add_marker(pytest.mark.xdist_group(f"{element.field.name}-{element.forces.name}"))
+
+
 @pytest.fixture
 def rng():
     return np.random.default_rng(20160101)

@@ -134,6 +134,7 @@ LINES = {
 
 
 @pytest.mark.parametrize("curve", LINES.values(), ids=LINES)
+@pytest.mark.parametrize("element", [element for element in ELEMENTS if element.integration == "full"], ids=identify)
 def test_a_line_in_disguise_is_the_line(element, curve):
     def tip(axis):
         beam = bf.Beam(axis, [0.0, 0.1, 0.3, 1.0], element, bf.Rectangle(0.2, 0.3), SOFT)

@@ -16,7 +16,7 @@ from beamfem.analysis.linearised import linearised_loads
 from beamfem.analysis.loading_path import LoadingPath, PathLostError
 from beamfem.analysis.newton import Newton, solve_equilibrium
 from beamfem.analysis.shapes import largest_translation, upright
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.solution import Solution, State, Statistics

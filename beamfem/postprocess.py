@@ -4,14 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.element import coordinates
+from beamfem.element import coordinates, lobatto
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import (
     energy_points,
+    energy_stiffness_at,
     inertia_points,
     interpolate,
+    jacobians,
     reference_angle,
     reference_axis,
     stations,
@@ -188,8 +190,9 @@ def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:
     Where the curvature comes from r_xx the shear force is the moment's change along the beam, -M' / |r_x|.
     """
     element, xi = stations(mesh)
-    now = axis(mesh, nodal_vectors(mesh, p), element, xi)
-    force, moment, along = mesh.beam.element.forces.conjugates(_resultants(mesh, now, element, xi), now)
+    vectors = nodal_vectors(mesh, p)
+    now = axis(mesh, vectors, element, xi)
+    force, moment, along = mesh.beam.element.forces.conjugates(_resultants(mesh, vectors, now, element, xi), now)
     normal, shear = dot(force, along), dot(force, coordinates.across(along))
     arc = mesh.arc_length(element, xi)
     if mesh.beam.element.forces.turns_with == "r_x":
@@ -202,10 +205,10 @@ def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:
 
 def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     """Return the strain energy of a beam (steps,) [J]."""
-    element, xi, weight, counted = energy_points(mesh)
+    element, xi, weight = energy_points(mesh)
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
-    stiffness, reference = stiffness_at(mesh, element, xi)
-    strains = np.where(counted, mesh.beam.element.forces.strains(now) - reference, 0.0)
+    stiffness, reference = energy_stiffness_at(mesh, element, xi)
+    strains = mesh.beam.element.forces.strains(now) - reference
     return np.asarray(0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight)
 
 
@@ -236,9 +239,25 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     return Momenta(kinetic, linear, angular, moment)
 
 
-def _resultants(mesh: BeamMesh, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+def _resultants(mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Stress resultants (steps, stations, ns) of nodal vectors (steps, nodes, vectors, 2), axis `now` at stations."""
+    own = mesh.beam.element
     stiffness, reference = stiffness_at(mesh, element, xi)
-    return np.einsum("qij,sqj->sqi", stiffness, mesh.beam.element.forces.strains(now) - reference)
+    strains = _recovered(mesh, vectors) if own.integration == "lobatto" else own.forces.strains(now) - reference
+    return np.einsum("qij,sqj->sqi", stiffness, strains)
+
+
+def _recovered(mesh: BeamMesh, vectors: np.ndarray) -> np.ndarray:
+    """Strains (steps, stations, ns) from those at the Lobatto points; between these the stretch waves."""
+    own = mesh.beam.element
+    where, at = np.repeat(np.arange(mesh.elements), len(lobatto.POINTS)), np.tile(lobatto.POINTS, mesh.elements)
+    strains = own.forces.strains(axis(mesh, vectors, where, at)) - own.forces.strains(reference_axis(mesh, where, at))
+    shape = (mesh.elements, len(lobatto.POINTS))
+    table = lobatto.assumed(own.forces, own.coordinates, jacobians(mesh, where, at)[0].reshape(shape))
+    strains = np.einsum("epij,sepj->sepi", table, strains.reshape(len(vectors), *shape, -1))
+    return np.einsum("iqp,sepi->seqi", lobatto.recovery(own.forces), strains).reshape(
+        len(vectors), -1, strains.shape[-1]
+    )
 
 
 def _derivative(values: np.ndarray, at: np.ndarray) -> np.ndarray:

@@ -114,10 +114,12 @@ class Solution:
         """How the solve ended."""
         return self.statistics.status
 
-    @property
+    @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what to know before using the numbers; empty where there is nothing to say."""
-        return self.statistics.warnings
+        """Sentences on what to know before using the numbers, of locking too; empty where there is nothing to say."""
+        from beamfem.analysis.locking import locking_warnings
+
+        return (*self.statistics.warnings, *locking_warnings(self))
 
     @cached_property
     def stable(self) -> np.ndarray:

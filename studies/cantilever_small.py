@@ -50,7 +50,7 @@ def linear() -> float:
 def main(meshes: tuple[int, ...] = (3, 6, 12, 24, 48, 96)) -> Deflections:
     """Return the deflections [m] over the meshes for each element name and kind of forces."""
     return {
-        (make().name, kind): [deflection(make(forces=forces), count) for count in meshes]
+        (make().name, kind): [deflection(make(forces=forces, integration="full"), count) for count in meshes]
         for make in (bf.ANCF, bf.ANCFCRBF, bf.BilinearCRBF)
         for kind, forces in FORCES.items()
         if not (make is bf.BilinearCRBF and kind == LINE)  # r_xx vanishes in it: refused

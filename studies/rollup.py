@@ -45,13 +45,11 @@ class Rolled:
 def combinations() -> Iterator[tuple[bf.Element, int]]:
     """Every combination that is not refused, in the integration it is meant for, and how many elements."""
     for field, coordinates, forces in product(FIELDS, COORDINATES, FORCES):
-        plain_cubic = field == Cubic() and not isinstance(coordinates, ShearFree)
-        for integration in ("full",) if plain_cubic else ("reduced", "full"):
-            try:
-                yield bf.Element(field, coordinates, forces, integration), FIELDS[field]
-            except bf.InputError:
-                continue
-            break
+        reduced = field != Cubic() or (isinstance(coordinates, ShearFree) and forces.fills_body)
+        try:
+            yield bf.Element(field, coordinates, forces, "reduced" if reduced else None), FIELDS[field]
+        except bf.InputError:
+            continue
 
 
 def bending_factor(forces: Forces) -> float:
@@ -216,8 +214,9 @@ def _tables(result: RollUp) -> list[Table]:
         "Rolled up, L/h = 100",
         header,
         rows,
-        "Reduced integration (k points, 2 of shear-rigid ones), full where it is refused and for cubic fields with "
-        "gradients or rotations. Expected: structural forces and elastic line as many as the moment says; continuum "
+        "Reduced integration (k points, 2 of shear-rigid ones); on the cubic field the Lobatto points with structural "
+        "forces and the elastic line, full with continuum forces on gradients or rotations. Expected: structural "
+        "forces and elastic line as many as the moment says; continuum "
         "forces a little more, the energy of uniform bending (at the clamp gradients bend a little differently). Load "
         f"steps and iterations for one circle: fewest of beginning with {', '.join(map(str, STARTS))} steps.",
     )

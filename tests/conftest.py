@@ -16,7 +16,7 @@ FORCES = (bf.ContinuumMechanics(), bf.ContinuumMechanics(True), bf.SplitContinuu
 
 def combinations():
     """Every combination of field, coordinates, forces and integration that is not refused."""
-    for parts in product(FIELDS, COORDINATES, FORCES, ("full", "reduced")):
+    for parts in product(FIELDS, COORDINATES, FORCES, ("full", "reduced", "lobatto")):
         try:
             yield bf.Element(*parts)
         except bf.InputError:

@@ -177,7 +177,7 @@ def test_nothing_but_failures_is_shown_too(tmp_path):
 def test_table_csv_markdown_picture_and_page(tmp_path):
     elements = [bf.CRBF(2), bf.ANCF(bf.Structural()), bf.ANCF()]
     study = bf.converge(of_element, quantity="tip", refine="elements", element=elements, elements=[2, 4, 8])
-    names = ["CRBF-2", "ANCF (structural)", "ANCF (continuum)"]
+    names = ["CRBF-2", "ANCF (structural, lobatto)", "ANCF (continuum, full)"]
     assert [curve.label for curve in study.curves] == names
     assert study.curves[1].parameters == {"element": elements[1]}
     header = ["element", "elements", "tip", "relative error", "order", "GCI", "coordinates", "seconds"]

@@ -66,7 +66,7 @@ def test_a_moved_and_turned_beam_has_neither_strain_nor_force(element):
         p = moved(system, angle, np.array(shift))
         assert np.abs(residual(system, p, rest, rest, 0.0)).max() < 1e-14 * stiffness
         for mesh in system.model.meshes:
-            where, xi, _, _ = energy_points(mesh)
+            where, xi, _ = energy_points(mesh)
             now, then = axis(mesh, nodal_vectors(mesh, p[None]), where, xi), reference_axis(mesh, where, xi)
             strains = mesh.beam.element.forces.strains(now) - mesh.beam.element.forces.strains(then)
             assert np.abs(strains).max() < 2e-12
@@ -135,13 +135,14 @@ def density(element, material, green, normal, across, shear_factor):
     return 0.5 * material.youngs_modulus * (xx**2 + yy**2) + 2.0 * shear_factor * material.shear_modulus * xy**2
 
 
-# the split forces of gradients add a term on the centreline, a reduced stretch coordinate has two rules
+# the split forces of gradients add a term on the centreline, a reduced stretch coordinate has two rules, and what is
+# taken at the nodes is checked term by term in test_locking
 BODIES = [
     element
     for element in ELEMENTS
     if element.forces.name == "continuum"
     or (element.forces.name == "split" and element.coordinates.name != "gradients")
-    if len(element.energy_rules()) == 1
+    if element.integration != "lobatto" and len(element.energy_rules()) == 1
 ]
 
 

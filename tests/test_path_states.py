@@ -89,7 +89,7 @@ def test_what_rows_say_of_stability_is_what_vibration_about_them_says(follower):
     section = bf.Rectangle(0.02, 0.02)
     arch = bf.Beam(
         bf.Parametric(lambda u: (u, 0.08 * np.sin(np.pi * u)), 0.0, 1.0),
-        12,
+        6,
         bf.CRBF(3),
         section,
         bf.Material(1e9, 0.3, 1e3),

@@ -77,7 +77,12 @@ def test_the_cut_converges_on_the_cubic_field(element, curve):
     assert fine.max() < 0.55 * coarse.max()
 
 
-@pytest.mark.parametrize("element", [e for e in ELEMENTS if e.forces.name != "elastic-line"], ids=identify)
+# strains of the Lobatto points are those of a whole element; their section forces are cut by hand, here and in slender
+# beams in test_locking
+POINTWISE = [e for e in ELEMENTS if e.forces.name != "elastic-line" and e.integration != "lobatto"]
+
+
+@pytest.mark.parametrize("element", POINTWISE, ids=identify)
 @pytest.mark.parametrize("curve", ["straight", "arc"])
 def test_section_forces_do_the_work_of_the_strain_energy(element, curve, rng):
     """Normal, shear and moment are dW/dr0' and d x dW/dd': turn, shift or move all that follows a cut, and W changes.

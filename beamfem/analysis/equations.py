@@ -118,10 +118,16 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     return reach, max(float(np.max(np.abs(p[~system.positions]), initial=0.0)), 1.0)
 
 
-def predicted_stresses(system: System, p: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns)."""
-    stresses = system.stress_tables()
-    for form, block, work, stress in zip(system.forms, system.blocks, system.workspaces(), stresses, strict=True):
+def predicted_stresses(
+    system: System, p: np.ndarray, step: np.ndarray, blocks: tuple[Block, ...] | None = None
+) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
+
+    blocks: to take instead of those of the system.
+    """
+    own = blocks or system.blocks
+    stresses = tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in own)
+    for form, block, work, stress in zip(system.forms, own, system.workspaces(), stresses, strict=True):
         predict_stress(form, block, work, p, step, stress)
     return stresses
 

@@ -52,6 +52,13 @@ class Modes:
         """Frequencies [Hz] without those of the rigid modes."""
         return self.frequencies[len(self.rigid) :]
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the elements say against the digits of these frequencies, in sentences; empty if nothing."""
+        from beamfem.analysis.locking import frequency_warnings
+
+        return frequency_warnings(self)
+
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
         """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
 

@@ -6,13 +6,14 @@ from typing import Literal
 
 import numpy as np
 
+from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, Structural
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.errors import InputError
 from beamfem.validation import count
 
-Integration = Literal["full", "reduced"]
+Integration = Literal["full", "reduced", "lobatto"]
 
 
 @dataclass(frozen=True)
@@ -20,24 +21,34 @@ class Element:
     """A field, the nodal coordinates that carry it and the elastic forces that resist it.
 
     integration: "full" integrates the energy of a straight element exactly, "reduced" takes as many Gauss points as
-    the order of the field, and 2 where its nodes have no shear (3 for all but shear, with a stretch coordinate).
+    the order of the field, and 2 where its nodes have no shear (3 for all but shear, with a stretch coordinate);
+    "lobatto" takes strains of the cubic field at its nodes and its middle, where it does not lock however slender the
+    beam is: the default there with structural forces and the elastic line, elsewhere "full".
     Raises InputError for a combination that makes no sense.
     """
 
     field: Field
     coordinates: Coordinates
     forces: Forces
-    integration: Integration = "full"
+    integration: Integration | None = None
     label: str | None = None
 
     def __post_init__(self) -> None:
-        if self.integration not in ("full", "reduced"):
-            raise InputError(f'integration must be "full" or "reduced", got {self.integration!r}')
+        if self.integration not in (None, "full", "reduced", "lobatto"):
+            raise InputError(f'integration must be "full", "reduced" or "lobatto", got {self.integration!r}')
         kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
         for name, kind in kinds:
             if not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {getattr(self, name)!r}")
         has_slope = "r_x" in self.field.vectors
+        if self.integration is None:
+            free_of_locking = has_slope and isinstance(self.forces, Structural | ElasticLine)
+            object.__setattr__(self, "integration", "lobatto" if free_of_locking else "full")
+        if self.integration == "lobatto" and not has_slope:
+            raise InputError(
+                f'integration="lobatto" is for the cubic field, whose nodes have r_x; on the {self.field.name} field '
+                '"reduced" does not lock'
+            )
         if isinstance(self.coordinates, ShearFree) and not has_slope:
             raise InputError(
                 f"coordinates without shear tie r_x to the angle of a node, but the {self.field.name} field has no r_x "
@@ -60,12 +71,28 @@ class Element:
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
         """Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
+        if self.integration == "lobatto":
+            return _gauss(len(lobatto.STATIONS))
         reduced = 2 if isinstance(self.coordinates, ShearFree) else self.field.degree
         full = self.forces.points(self.field.degree, self.field.director_degree)
         return _gauss(reduced if self.integration == "reduced" else full)
 
+    def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
+        if self.integration == "lobatto":
+            return lobatto.energy_points(self.forces)
+        rules = self.energy_rules()
+        return np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+
+    def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
+        """Return what of the section stiffness (ne, nq, ns, ns) counts at these points; jacobian (ne, nq) [m]."""
+        if self.integration == "lobatto":
+            return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)
+        counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in self.energy_rules()])
+        return stiffness * (counted[:, :, None] & counted[:, None, :])
+
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
-        """Points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one rule where all agree.
+        """Gauss points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one where all agree.
 
         With 2 points alone a stretch coordinate could change without resistance: r_x + c at every node leaves r0' as it
         is at both of them. So all but shear takes 3 there. What resists a change of |d| alone is taken at the nodes of
@@ -90,12 +117,12 @@ def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     return xi, weights
 
 
-def ANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
+def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
     return Element(Cubic(), Gradients(), forces or ContinuumMechanics(), integration, "ANCF")
 
 
-def ANCFCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
+def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
     return Element(Cubic(), Rotation(), forces or ContinuumMechanics(), integration, "ANCF-CRBF")
 
@@ -120,11 +147,16 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")
 
 
-def ShearRigid(stretchable: bool = True, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
+def ShearRigid(
+    stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
+) -> Element:
     """Cubic field without shear at its nodes, 4 coordinates a node, or 3; paper, sections 1.5 and 3.5.
 
     stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in shear, and
-    in stretch where the length is none.
+    in stretch where the length is none; without it, as any cubic field, and "reduced" with continuum forces.
     """
     label = "shear-rigid-stretchable" if stretchable else "shear-rigid"
-    return Element(Cubic(), ShearFree(stretchable), forces or Structural(), integration, label)
+    chosen = forces or Structural()
+    if integration is None and isinstance(chosen, ContinuumMechanics | SplitContinuum):
+        integration = "reduced"
+    return Element(Cubic(), ShearFree(stretchable), chosen, integration, label)

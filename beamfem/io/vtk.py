@@ -111,8 +111,11 @@ class _Series:
         """Rewrite the .pvd with the steps so far; readers see the old file or the new one, never a part."""
         temporary = self.path.with_name(self.path.name + ".tmp")
         head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-        temporary.write_text(head + "".join(self.lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
-        os.replace(temporary, self.path)
+        try:
+            temporary.write_text(head + "".join(self.lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
+            os.replace(temporary, self.path)
+        finally:
+            temporary.unlink(missing_ok=True)
 
 
 def _named(name: str, values: np.ndarray) -> object:

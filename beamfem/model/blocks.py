@@ -16,7 +16,7 @@ _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kin
 def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
     """Return the block of all beams (number, mesh) that share an element."""
     field = element.field
-    xi = np.concatenate([rule[0] for rule in element.energy_rules()])
+    xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of the elements of like beams

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.grid import Grid
-from beamfem.model.reference import energy_points, inertia_points, jacobians, length_points, scales, stiffness_at
+from beamfem.model.reference import energy_points, energy_stiffness_at, inertia_points, jacobians, length_points, scales
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,10 @@ def element_classes(grid: Grid) -> Classes:
         )
     else:
         first = kind = np.arange(grid.elements)
-    element, xi, weight, counted = energy_points(grid, first)
+    element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
     jacobian, jacobian_xi = jacobians(grid, element, xi)
-    stiffness, reference = stiffness_at(grid, element, xi)
-    stiffness = stiffness * (counted[:, :, None] & counted[:, None, :])
+    stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
 

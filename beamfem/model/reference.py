@@ -93,16 +93,19 @@ def stations(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     return element, xi
 
 
-def energy_points(
-    grid: Grid, element: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return element, xi, weight [m] (n,) and which strain measures (n, ns) count there, of all elements or some."""
-    rules = grid.beam.element.energy_rules()
-    xi = np.concatenate([rule[0] for rule in rules])
-    weights = np.concatenate([rule[1] for rule in rules])
-    counts = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in rules])
-    where, at, weight = _points(grid, element, xi, weights)
-    return where, at, weight, np.tile(counts, (len(where) // len(xi), 1))
+def energy_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return element, xi and weight [m] (n,) of the points of the strain energy, of all elements or some."""
+    return _points(grid, element, *grid.beam.element.energy_points())
+
+
+def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the stiffness (n, ns, ns) that counts in the energy and the reference's strains (n, ns) at its points."""
+    own = grid.beam.element
+    stiffness, reference = stiffness_at(grid, element, xi)
+    jacobian, _ = jacobians(grid, element, xi)
+    points = len(own.energy_points()[0])
+    by_element = stiffness.reshape(-1, points, *stiffness.shape[1:])
+    return own.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
 
 
 def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -43,4 +43,4 @@ class UnstableWarning(UserWarning):
 
 
 class RoundOffWarning(UserWarning):
-    """Round-off leaves few digits of the forces of a solution."""
+    """Round-off leaves few digits of the forces of a solution, or of a critical load."""

@@ -114,10 +114,9 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         )
     uncertainty = np.array([point.uncertainty for point in found])
     if np.any(uncertainty > _UNCERTAIN):
-        digits = ", ".join(f"{value:.0e}" for value in uncertainty)
-        warn(
-            f"round-off leaves few digits of these critical load factors, relative errors up to {digits}", stacklevel=2
-        )
+        errors = ", ".join(f"{value:.0e}" for value in uncertainty)
+        said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
+        warn(said, RoundOffWarning, stacklevel=2)
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
     return Buckling(
         model,

@@ -118,4 +118,6 @@ def _read(file: Any) -> Solution:
 def _statistics(saved: dict[str, Any]) -> Statistics:
     """Return the statistics of a file; older ones know no status and no warnings."""
     status = Status[saved.pop("status", Status.COMPLETED.name)]
+    if np.isnan(saved.get("digits", np.nan)):
+        saved.pop("digits", None)  # not known: that of the default, which equals itself
     return Statistics(**saved | {"status": status, "warnings": tuple(saved.get("warnings", ()))})

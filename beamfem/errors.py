@@ -47,4 +47,4 @@ class ChangedCodeWarning(UserWarning):
 
 
 class RoundOffWarning(UserWarning):
-    """Round-off leaves few digits of the forces of a solution."""
+    """Round-off leaves few digits of the forces of a solution, or of a critical load."""

@@ -16,7 +16,7 @@ from beamfem.analysis.linearised import linearised_loads
 from beamfem.analysis.loading_path import LoadingPath, PathLostError
 from beamfem.analysis.newton import Newton, solve_equilibrium
 from beamfem.analysis.shapes import largest_translation, upright
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.solution import Solution, State, Statistics
@@ -114,10 +114,9 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         )
     uncertainty = np.array([point.uncertainty for point in found])
     if np.any(uncertainty > _UNCERTAIN):
-        digits = ", ".join(f"{value:.0e}" for value in uncertainty)
-        warn(
-            f"round-off leaves few digits of these critical load factors, relative errors up to {digits}", stacklevel=2
-        )
+        errors = ", ".join(f"{value:.0e}" for value in uncertainty)
+        said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
+        warn(said, RoundOffWarning, stacklevel=2)
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
     return Buckling(
         model,

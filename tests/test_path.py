@@ -214,6 +214,8 @@ def test_the_largest_compression_of_a_material_is_a_limit_point_and_the_path_end
     assert path.limit_points[0].load_factor == pytest.approx(0.125 * stretch * (1.0 - stretch**2), rel=1e-12)
     assert 0.0 < path.position(beam.end)[-1, 0] < 1e-2
     assert "inside out" in path.statistics.ended
+    assert path.status is bf.Status.STOPPED
+    assert trace_equilibrium(model, points=3).status is bf.Status.COMPLETED
 
 
 def test_a_state_answers_as_its_row_of_the_path():

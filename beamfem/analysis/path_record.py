@@ -13,6 +13,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Statistics
+from beamfem.status import Status
 
 
 class PathRecord:
@@ -29,10 +30,15 @@ class PathRecord:
         self.iterations = 0
         self.cuts = 0
         self.ended = "the path was not followed to its end"
+        self.status = Status.STOPPED
 
     def add(self, y: np.ndarray, stable: bool) -> None:
         self.points.append(y)
         self.stable.append(stable)
+
+    def end(self, why: str) -> None:
+        """Note that the path is complete, and why it ends where it does."""
+        self.ended, self.status = why, Status.COMPLETED
 
     @property
     def last(self) -> PathState:
@@ -62,7 +68,7 @@ class PathRecord:
         ended = self.ended
         if digits < FEW_DIGITS:
             ended += f"; round-off leaves {digits:.0f} digits of the forces"
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, digits=digits)
+        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, self.status, digits=digits)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
         return Path(

@@ -80,7 +80,7 @@ def trace_equilibrium(
         landed = False
         while not (landed or _met(until, record.last)):
             if len(record.points) >= points:
-                record.ended = f"the {points} points are used up"
+                record.end(f"the {points} points are used up")
                 break
             taken = _step(line, point, size, record)
             size = taken.next_size
@@ -91,7 +91,7 @@ def trace_equilibrium(
             record.add_critical(line, taken, point)
             report(len(record.points))
         else:
-            record.ended = "the path has come to where it shall end"
+            record.end("the path has come to where it shall end")
     return record.path()
 
 

@@ -2,8 +2,10 @@
 
 from typing import Literal
 
+import numpy as np
+
 from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
-from beamfem.analysis.newton import Ended, Newton, solve_equilibrium
+from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
 from beamfem.analysis.snap import rest_state
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError, LimitPointError
@@ -12,6 +14,7 @@ from beamfem.progress import progress
 
 Snap = Literal["error", "jump"]
 
+_OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
 _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
@@ -31,7 +34,7 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
             target = 1.0 if done.reached + step > 1.0 - 1e-12 else done.reached + step
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
             done.iterations += result.iterations
-            if result.ended.good:
+            if result.ended.good and not _overshot(system, done, result, newton):
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -51,6 +54,17 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
                 refused = 1.0
                 step *= 2.0
             report(done.reached)
+
+
+def _overshot(system: System, done: StaticRecord, result: NewtonResult, newton: Newton) -> bool:
+    """Tell whether the tangent at the start of a step goes far beyond its end, as beside a limit point.
+
+    From the reference a straight beam does so where its own tension stiffens it.
+    """
+    if done.reached == 0.0:
+        return False
+    moved = float(np.max(np.abs(result.state - done.state) / system.scale))
+    return result.first > _OVERSHOOT * moved + newton.tolerance
 
 
 def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:

@@ -55,7 +55,7 @@ class NewtonResult:
     """The last state (n,) of an iteration, how many iterations it took and why it ended.
 
     negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
-    digits: how many of the forces are sure at least.
+    digits: how many of the forces are sure at least; first: size of the first correction [-].
     """
 
     state: np.ndarray
@@ -63,6 +63,7 @@ class NewtonResult:
     ended: Ended
     negative_pivots: int = 0
     digits: float = np.nan
+    first: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
     scale = system.scale
     free = system.free_dofs
     stresses = None
-    last = np.inf
+    last = first = np.inf
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
         step = held_step if iteration == 1 else np.zeros(len(p))
@@ -149,12 +150,13 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
             stresses = after or predicted_stresses(system, p, step)
         p = p + step
         size = float(np.max(np.abs(step) / scale, initial=0.0))
+        first = size if iteration == 1 else first
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
         if ended is not None:
             if keep not in (None, factors.negative_pivots):
                 ended = Ended.LOST
             state = p if ended.good else start
-            return NewtonResult(state, iteration, ended, factors.negative_pivots)
+            return NewtonResult(state, iteration, ended, factors.negative_pivots, first=first)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
@@ -179,7 +181,7 @@ def _solve_band(
         system.turned,
     )
     body = system.body(load_factor)
-    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0])
+    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0])
     bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
     limits = np.array(
         (*bounds, newton.iterations, newton.independent_stresses, -1 if keep is None else keep), dtype=float
@@ -199,7 +201,7 @@ def _solve_band(
             left = _Left(unbalanced, found[3], max(found[4], load))
             ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
-                return NewtonResult(p, iterations, ended, negative, left.digits)
+                return NewtonResult(p, iterations, ended, negative, left.digits, found[7])
         change = np.zeros(len(p)), np.zeros(len(p))
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
@@ -210,7 +212,7 @@ def _solve_halves(
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
-    load, before = load_size(system, system.point_values(load_factor)), np.inf
+    load, before, first = load_size(system, system.point_values(load_factor)), np.inf, np.inf
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
             change = (held_step, held_force) if iteration == 1 else None
@@ -218,6 +220,7 @@ def _solve_halves(
                 size, pivots = correct(halves, pool, newton.independent_stresses, change)
             except LinAlgError:
                 return None
+            first = size if iteration == 1 else first
             negative = negative_pivots(halves, pivots) if keep is not None or _grown(size) else 0
             if iteration > 2 and keep not in (None, negative):
                 return NewtonResult(start, iteration, Ended.LOST, negative)
@@ -231,7 +234,7 @@ def _solve_halves(
                     negative = negative_pivots(halves, pivots)
                     lost = keep not in (None, negative)
                     reached, ended = (start, Ended.LOST) if lost else (p, ended)
-                    return NewtonResult(reached, iteration, ended, negative, left.digits)
+                    return NewtonResult(reached, iteration, ended, negative, left.digits, first)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)

@@ -58,10 +58,10 @@ def equilibrate(
     limits: tolerance, correction below which it may be stagnant, one beyond which it diverges, smallest pivot ratio,
     iterations, 1 to take predicted stresses for the geometric tangent, and the count of negative pivots where it stops
     if the third tangent or a later one has another (the stresses of the second are those of a linear step), or -1.
-    rows (unknown, width): the band. found (7,): iterations so far, last correction and the one before; then largest
+    rows (unknown, width): the band. found (8,): iterations so far, last correction and the one before; then largest
     residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
-    whose residual (n,) is filled; negative pivots of the last tangent. Stops where corrections are small or
-    stagnant, or have grown.
+    whose residual (n,) is filled; negative pivots of the last tangent; size of the first correction. Stops
+    where corrections are small or stagnant, or have grown.
     """
     n, unknown, window = p.shape[0], free.shape[0], forms[0].window
     matrix, coefficients = rows.reshape(rows.size), np.array([1.0, 0.0, 0.0])
@@ -98,6 +98,8 @@ def equilibrate(
             _predict(forms, blocks, work, p, step)
         found[0] += 1.0
         found[2], found[1] = found[1], take(step, p, scale)
+        if found[0] == 1.0:
+            found[7] = found[1]
         if not found[1] <= limits[2]:
             return True
         stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]

@@ -50,7 +50,8 @@ def test_500_random_models_end_where_their_paths_end(first, capsys):
             count[outcome.verdict + (" at a limit point" if expected.limit is not None else "")] += 1
             if not outcome.right:
                 wrong.append(f"steps={steps}: {outcome.verdict}, {outcome.said}\n    {recipe}")
-            if before.get(seed, {}).get(steps):
+            # a critical point on the way was passed without a word before; to find it takes iterations
+            if before.get(seed, {}).get(steps) and expected.limit is None and not expected.crossed:
                 iterations["before"] += int(before[seed][steps])
                 iterations["now"] += outcome.iterations
     with capsys.disabled():

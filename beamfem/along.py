@@ -1,16 +1,22 @@
-"""Fields along the axes of beams at points fit for drawing and export: between the stations of section forces too."""
+"""Fields along the axes of beams at points fit for drawing and export."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem import postprocess
 from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
+from beamfem.free_bodies import Cuts
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.reference import faces, reference_axis, stations
+from beamfem.model.reference import faces, reference_axis
+from beamfem.section_forces import at_points
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,28 +67,11 @@ class AxisPoints:
         return postprocess.axis(self.mesh, rates, self.element, self.xi).r
 
 
-def section_forces(points: AxisPoints, p: np.ndarray) -> dict[str, np.ndarray]:
-    """Return normal and shear force [N] and moment [N m] (steps, points) of the states p (steps, n).
-
-    In each element the polynomial that comes nearest to the values at its Gauss points in the mean square, of one
-    degree less than the field: these values are what an element knows, and full integration adds waves to them.
-    """
-    mesh = points.mesh
-    found = postprocess.section_forces(mesh, p)
-    xi, weight = mesh.beam.element.quadrature()
-    gauss = mesh.arc_length(*stations(mesh))
-    at = np.abs(found.arc_length[:, None] - gauss).argmin(axis=0)
-    degree = min(len(xi), mesh.beam.element.field.degree) - 1
-    legendre = np.polynomial.legendre.legvander
-    norm = 2 * np.arange(degree + 1) + 1
-    project = (legendre(2.0 * xi - 1.0, degree) * weight[:, None] * norm).T
-    own = np.arange(points.pieces + 1) / points.pieces
-    table = legendre(2.0 * own - 1.0, degree) @ project
-    shape = (len(p), mesh.elements, len(xi))
-    return {
-        name: np.einsum("iq,seq->sei", table, getattr(found, name)[:, at].reshape(shape)).reshape(len(p), -1)
-        for name in ("normal", "shear", "moment")
-    }
+def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
+    """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
+    cuts = Cuts(points.element, points.xi, np.zeros(len(points.xi), dtype=bool))
+    found = at_points(solution, points.mesh, cuts, rows)
+    return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
 
 
 def rotation(points: AxisPoints, p: np.ndarray) -> np.ndarray:
@@ -93,40 +82,40 @@ def rotation(points: AxisPoints, p: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A field along the axis: its name for people, its unit, and values(points, p, v, rows) -> (rows, points)."""
+    """A field along the axis: its name for people, its unit, and values(points, solution, rows) -> (rows, points)."""
 
     label: str
     unit: str
-    values: Callable[[AxisPoints, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    values: Callable[[AxisPoints, "Solution", np.ndarray], np.ndarray]
 
 
 def _section_force(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, p: np.ndarray, v: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        return section_forces(points, p[rows])[name]
+    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+        return section_forces(points, solution, rows)[name]
 
     return values
 
 
 def _field(pick: Callable[[postprocess.Fields], np.ndarray]) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, p: np.ndarray, v: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        return pick(postprocess.fields(points.mesh, p[rows], points.element, points.xi))
+    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+        return pick(postprocess.fields(points.mesh, solution.p[rows], points.element, points.xi))
 
     return values
 
 
-def _rotation(points: AxisPoints, p: np.ndarray, v: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def _rotation(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
     # gradients count full turns from row to row and must see them all
     if isinstance(points.mesh.beam.element.coordinates, Gradients):
-        return rotation(points, p)[rows]
-    return rotation(points, p[rows])
+        return rotation(points, solution.p)[rows]
+    return rotation(points, solution.p[rows])
 
 
-def _displacement(points: AxisPoints, p: np.ndarray, v: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(points.positions(p[rows])[0] - points.reference, axis=-1))
+def _displacement(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
 
 
-def _speed(points: AxisPoints, p: np.ndarray, v: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(points.velocities(p[rows], v[rows]), axis=-1))
+def _speed(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
 
 
 QUANTITIES = {

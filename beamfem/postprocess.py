@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.element import coordinates, lobatto
+from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
 from beamfem.model.mesh import BeamMesh
@@ -13,11 +13,8 @@ from beamfem.model.reference import (
     energy_stiffness_at,
     inertia_points,
     interpolate,
-    jacobians,
     reference_angle,
     reference_axis,
-    stations,
-    stiffness_at,
 )
 
 
@@ -50,10 +47,12 @@ class Components:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Work conjugates (steps, stations) at the start, the Gauss points and the end of a beam.
+    """Section forces (steps, stations) at the start, the Gauss points and the end of every element of a beam.
 
-    normal (> 0 in tension) and shear force [N], moment [N m].
-    arc_length (stations,) [m].
+    normal force along the section's normal (> 0 in tension) and shear force across it [N], moment about the axis [N m]
+    (> 0 where it raises the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads act,
+    are there twice: just before and just behind them. In equilibrium with each other and with all that acts on the beam
+    where it is, inertia included: exactly, however coarse the mesh is.
     """
 
     arc_length: np.ndarray
@@ -184,25 +183,6 @@ def stress(mesh: BeamMesh, strain: Components, y: np.ndarray) -> Components:
     return Components(*result)
 
 
-def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:
-    """Return normal and shear force dW/dr0' along and across the section's normal, and the moment d x dW/dd'.
-
-    Where the curvature comes from r_xx the shear force is the moment's change along the beam, -M' / |r_x|.
-    """
-    element, xi = stations(mesh)
-    vectors = nodal_vectors(mesh, p)
-    now = axis(mesh, vectors, element, xi)
-    force, moment, along = mesh.beam.element.forces.conjugates(_resultants(mesh, vectors, now, element, xi), now)
-    normal, shear = dot(force, along), dot(force, coordinates.across(along))
-    arc = mesh.arc_length(element, xi)
-    if mesh.beam.element.forces.turns_with == "r_x":
-        points = len(element) // mesh.elements
-        steps = (len(p), mesh.elements, points)
-        change = _derivative(moment.reshape(steps), arc.reshape(steps[1:])).reshape(len(p), -1)
-        shear = shear - change / np.linalg.norm(now.r_s, axis=-1)
-    return SectionForces(arc, normal, shear, moment)
-
-
 def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     """Return the strain energy of a beam (steps,) [J]."""
     element, xi, weight = energy_points(mesh)
@@ -237,36 +217,3 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
     moment = np.einsum("sqc,q->sc", now.r, mass) + np.einsum("sqc,q->sc", now.d, first)
     return Momenta(kinetic, linear, angular, moment)
-
-
-def _resultants(mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Stress resultants (steps, stations, ns) of nodal vectors (steps, nodes, vectors, 2), axis `now` at stations."""
-    own = mesh.beam.element
-    stiffness, reference = stiffness_at(mesh, element, xi)
-    strains = _recovered(mesh, vectors) if own.integration == "lobatto" else own.forces.strains(now) - reference
-    return np.einsum("qij,sqj->sqi", stiffness, strains)
-
-
-def _recovered(mesh: BeamMesh, vectors: np.ndarray) -> np.ndarray:
-    """Strains (steps, stations, ns) from those at the Lobatto points; between these the stretch waves."""
-    own = mesh.beam.element
-    where, at = np.repeat(np.arange(mesh.elements), len(lobatto.POINTS)), np.tile(lobatto.POINTS, mesh.elements)
-    strains = own.forces.strains(axis(mesh, vectors, where, at)) - own.forces.strains(reference_axis(mesh, where, at))
-    shape = (mesh.elements, len(lobatto.POINTS))
-    table = lobatto.assumed(own.forces, own.coordinates, jacobians(mesh, where, at)[0].reshape(shape))
-    strains = np.einsum("epij,sepj->sepi", table, strains.reshape(len(vectors), *shape, -1))
-    return np.einsum("iqp,sepi->seqi", lobatto.recovery(own.forces), strains).reshape(
-        len(vectors), -1, strains.shape[-1]
-    )
-
-
-def _derivative(values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Derivative (steps, ne, nq) of the polynomial through the values at the points (ne, nq) of each element."""
-    count = at.shape[1]
-    local = (at - at[:, :1]) / (at[:, -1:] - at[:, :1])
-    nodes = local[0]
-    powers = np.vander(nodes, count, increasing=True)
-    slopes = np.zeros_like(powers)
-    slopes[:, 1:] = powers[:, :-1] * np.arange(1, count)
-    table = slopes @ np.linalg.inv(powers)
-    return np.einsum("qp,sep->seq", table, values) / (at[:, -1] - at[:, 0])[None, :, None]

@@ -206,11 +206,11 @@ class Solution:
         return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
-        from beamfem.end_forces import with_ends
+        """Return normal and shear force and moment at both ends of every element of a beam, and inside."""
+        from beamfem.section_forces import section_forces
 
         self.model.number_of(beam)  # refuses what is no beam of this model
-        return with_ends(self, beam)
+        return section_forces(self, beam)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:

@@ -83,7 +83,7 @@ def test_section_forces_between_their_stations(element):
     solution = cantilever(load, 4, element)
     mesh = solution.model.meshes[0]
     points = AxisPoints(mesh, 5)
-    found = section_forces(points, solution.p)
+    found = section_forces(points, solution, slice(None))
     s = points.arc_length
     # order 1 knows one value an element: that of its middle
     known = 0.5 * (mesh.vertices[points.element] + mesh.vertices[points.element + 1]) if element.name == "CRBF-1" else s

@@ -1,6 +1,7 @@
 """What ParaView files hold: points of bodies and centrelines by cells, and the fields there."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from beamfem.element.coordinates import Gradients
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
 
 _LINES_PER_ELEMENT = 12
 
@@ -34,9 +38,9 @@ class Samples:
         """Number of points."""
         return self.mesh.elements * len(self.order)
 
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return numbers (steps, points) and vectors (steps, points, 3) of the states p, v (steps, n)."""
-        element, xi = self.points.element, self.points.xi
+    def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
+        """Return numbers (steps, points) and vectors (steps, points, 3) of some rows of a solution."""
+        element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
         rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
         position = self._at_heights(now.r, now.d)
@@ -53,7 +57,7 @@ class Samples:
             result[f"stress_{component}"] = getattr(stress, component)
         if not self.whole:
             names = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
-            for name, values in section_forces(self.points, p).items():
+            for name, values in section_forces(self.points, solution, rows).items():
                 result[names[name]] = values[..., None]
         return {name: self._by_cell(values) for name, values in result.items()}
 
@@ -116,9 +120,9 @@ class Cells:
         """Degrees of the Lagrange cells (cells, 3)."""
         return np.stack([self.degree, np.ones_like(self.degree), np.ones_like(self.degree)], axis=1).astype(float)
 
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the fields at all points, (steps, points) and (steps, points, 3), of the states p, v (steps, n)."""
-        parts = [beam.arrays(p, v) for beam in self.beams]
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return the fields at all points, (steps, points) and (steps, points, 3), of some rows of a solution."""
+        parts = [beam.arrays(solution, rows) for beam in self.beams]
         # a section given by its stiffness or by layers knows no stress at y = 0 or at its faces
         known = [name for name in parts[0] if not name.startswith("stress") or self._stressed]
         return {name: np.concatenate([part[name] for part in parts], axis=1) for name in known}

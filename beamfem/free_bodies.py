@@ -11,8 +11,8 @@ from scipy.sparse import coo_array, csr_array
 
 from beamfem.acting import NEAR, Acting, Rows, acting_on
 from beamfem.element.axis import cross, dot
+from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import Block
-from beamfem.kernels.form import ANY
 from beamfem.kernels.resist import resist
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import interpolate
@@ -104,7 +104,9 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     shape = len(p), len(elements) * nodes, 2 * block.scale.shape[1] // nodes
     e, acceleration, force = np.empty(shape), np.empty(shape), np.empty(shape)
     states = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
-    resist(ANY, _parted(block, number), *states, np.zeros((rows.body.shape[1], 4)), e, acceleration, force)
+    # compiled as for the solver, so that both round alike
+    form = rows.system.forms[mesh.block]._replace(window=ANY_WIDTH)
+    resist(form, _parted(block, number), *states, np.zeros((rows.body.shape[1], 4)), e, acceleration, force)
     e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in (e, acceleration, force))
     acting = acting_on(rows, mesh, elements, e, acceleration)
     force -= acting.nodal(len(elements))

@@ -34,6 +34,10 @@ class Distribution:
         """Whether the section has a material and ends at known heights, so that its faces have a stress."""
         return bool(self.parts) and all(part.outline.known for part in self.parts)
 
+    def layer_at(self, y: float) -> int:
+        """Return the layer at a height [m], on a face between two layers the upper one, beyond all the nearest."""
+        return int(np.clip(np.searchsorted([low for low, _ in self.layers], y, side="right") - 1, 0, None))
+
     def normal_stress(self, layer: int, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
         """Return the stress along the beam [Pa] at heights y [m] of a layer under N [N] and M [N m] about the axis.
 

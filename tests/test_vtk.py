@@ -122,7 +122,7 @@ def test_body_data(written):
 
 def test_strain_belongs_to_the_height_of_its_point():
     """Bent counter-clockwise: the lower face is stretched and the upper one compressed, and so is the stress."""
-    element = bf.BilinearCRBF(integration="reduced")
+    element = bf.CRBF(3)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, element, bf.Rectangle(0.02, HEIGHT), bf.Material(2e6, 0.0, 1.0))
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e-3)]))
     (samples,) = cells.body(solution.model.meshes[0])
@@ -130,7 +130,7 @@ def test_strain_belongs_to_the_height_of_its_point():
     strain, stress = data["green_strain_xx"][-1].reshape(2, 12), data["stress_xx"][-1].reshape(2, 12)
     assert (strain[:, SIDE < 0.0] > 0.0).all()
     assert (strain[:, SIDE > 0.0] < 0.0).all()
-    np.testing.assert_allclose(stress, np.tile(-1e-3 * Y / (0.02 * HEIGHT**3 / 12), (2, 1)), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(stress, np.tile(-1e-3 * Y / (0.02 * HEIGHT**3 / 12), (2, 1)), rtol=1e-6, atol=1e-6)
 
 
 def test_velocity_is_the_rate_of_the_points():

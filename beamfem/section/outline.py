@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -42,7 +42,7 @@ class RectangleOutline:
     breadth: float
     low: float
     high: float
-    known: bool = True
+    known: ClassVar[bool] = True
 
     def width(self, y: np.ndarray) -> np.ndarray:
         return np.full(np.shape(y), self.breadth)
@@ -63,7 +63,7 @@ class TubeOutline:
 
     outer: float
     inner: float = 0.0
-    known: bool = True
+    known: ClassVar[bool] = True
 
     @property
     def low(self) -> float:

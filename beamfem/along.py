@@ -11,6 +11,7 @@ from beamfem import postprocess
 from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
 from beamfem.free_bodies import Cuts
+from beamfem.model.distributions import Distributions, distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import faces, reference_axis
 from beamfem.section_forces import at_points
@@ -41,6 +42,11 @@ class AxisPoints:
     def arc_length(self) -> np.ndarray:
         """Arc length in the reference (points,) [m]."""
         return self.mesh.arc_length(self.element, self.xi)
+
+    @cached_property
+    def distributions(self) -> Distributions:
+        """The layers of the section at each point, and how they distribute forces over their height."""
+        return distributions(self.mesh, self.element, self.xi)
 
     @cached_property
     def faces(self) -> np.ndarray:

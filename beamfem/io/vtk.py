@@ -28,7 +28,7 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
 
     .pvd: a collection of .vtu files, one a step, in the folder <stem>; .vtkhdf: all steps in one file, for ParaView
     5.12 or newer. Fields, names and units: docs/paraview.md. Raises InputError for another suffix; BeamfemError where
-    .vtkhdf is asked for without h5py.
+    .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
     """
     path = Path(path)
     if path.suffix not in (".pvd", ".vtkhdf"):
@@ -36,8 +36,10 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to write")
+    bodies = Cells(solution.model, True)
+    bodies.warn_of_unknown_stress()
     for target, cells in (
-        (path, Cells(solution.model, True)),
+        (path, bodies),
         (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False)),
     ):
         if path.suffix == ".pvd":
@@ -75,7 +77,8 @@ class _Series:
         self.grid.SetCells(VTK_LAGRANGE_QUADRILATERAL if cells.whole else VTK_POLY_LINE, table)
         if cells.whole:
             self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
-        self.grid.GetCellData().AddArray(_named("beam", cells.beam.astype(np.int32)))
+        for name_of_cells, values in cells.numbers.items():
+            self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))
         self.writer = vtkXMLUnstructuredGridWriter()
         self.writer.SetInputData(self.grid)
         self.writer.EncodeAppendedDataOff()

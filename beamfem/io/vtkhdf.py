@@ -51,7 +51,8 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
     root["Offsets"] = cells.offsets
     root["Types"] = np.full(number, _LAGRANGE_QUADRILATERAL if cells.whole else _POLY_LINE, dtype=np.uint8)
     cell_data = root.create_group("CellData")
-    cell_data["beam"] = cells.beam.astype(np.int32)
+    for numbers, values in cells.numbers.items():
+        cell_data[numbers] = values.astype(np.int32)
     if cells.whole:
         cell_data["HigherOrderDegrees"] = cells.degrees
         cell_data["HigherOrderDegrees"].attrs.create("Attribute", np.bytes_("HigherOrderDegrees"))

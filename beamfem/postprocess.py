@@ -16,9 +16,11 @@ from beamfem.model.reference import (
     jacobians,
     reference_angle,
     reference_axis,
+    sections_at,
     stations,
     stiffness_at,
 )
+from beamfem.section.protocol import CrossSection
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,7 @@ def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...)."""
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
-    at_axis = stress(mesh, strain, np.zeros(1))
+    at_axis = stress(mesh, strain, np.zeros(1), element, xi)
     strain, at_axis = (Components(part.xx[..., 0], part.yy[..., 0], part.xy[..., 0]) for part in (strain, at_axis))
     return Fields(
         now.r,
@@ -171,16 +173,25 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
 
 
-def stress(mesh: BeamMesh, strain: Components, y: np.ndarray) -> Components:
-    """Return the stress [Pa] that the elastic forces give to a strain (..., heights) at y (..., heights) [m].
+def stress(mesh: BeamMesh, strain: Components, y: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Components:
+    """Return the stress [Pa] that the elastic forces give to a strain (steps, points, heights) at y [m].
 
-    nan where the section is known by its stiffness only.
+    Sections and their layers are those at the points (element, xi); nan where one is known by its stiffness only.
     """
     result = np.full((3, *strain.xx.shape), np.nan)
     heights = np.broadcast_to(y, strain.xx.shape)
-    for material, here in mesh.beam.section_at(0.0).materials_at(heights, mesh.beam.material):
-        found = mesh.beam.element.forces.stress(strain.xx[here], strain.yy[here], strain.xy[here], material)
-        result[:, here] = np.array(found)
+    beam = mesh.beam
+    groups: list[tuple[CrossSection, slice]]
+    if isinstance(beam.section, CrossSection):
+        groups = [(beam.section, slice(None))]
+    else:
+        groups = [(section, slice(i, i + 1)) for i, section in enumerate(sections_at(mesh, element, xi))]
+    for section, points in groups:
+        parts = [part[:, points] for part in (strain.xx, strain.yy, strain.xy)]
+        for material, here in section.materials_at(heights[:, points], beam.material):
+            result[:, :, points][:, here] = np.array(
+                beam.element.forces.stress(*(part[here] for part in parts), material)
+            )
     return Components(*result)
 
 

@@ -64,8 +64,12 @@ class AxisPoints:
 
     def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return r and d (steps, points, 2) of the states p (steps, n)."""
-        now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
+        now = self.now(p)
         return now.r, now.d
+
+    def now(self, p: np.ndarray) -> postprocess.Axis:
+        """Return the axis at the points in the states p (steps, n)."""
+        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
 
     def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the velocity of the axis (steps, points, 2) [m/s]."""
@@ -82,8 +86,7 @@ def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.nd
 
 def rotation(points: AxisPoints, p: np.ndarray) -> np.ndarray:
     """Return the rotation of the section from the reference (steps, points) [rad]; steps must follow each other."""
-    now = postprocess.axis(points.mesh, postprocess.nodal_vectors(points.mesh, p), points.element, points.xi)
-    return postprocess.turning(points.mesh, p, now, points.element, points.xi)
+    return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi)
 
 
 @dataclass(frozen=True)
@@ -102,11 +105,12 @@ def _section_force(name: str) -> Callable[..., np.ndarray]:
     return values
 
 
-def _field(pick: Callable[[postprocess.Fields], np.ndarray]) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
-        return pick(postprocess.fields(points.mesh, solution.p[rows], points.element, points.xi))
+def _axial_strain(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
 
-    return values
+
+def _shear_angle(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return postprocess.shear_angle(points.now(solution.p[rows]))
 
 
 def _rotation(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
@@ -131,8 +135,8 @@ QUANTITIES = {
     "rotation": Quantity("rotation", "rad", _rotation),
     "displacement": Quantity("displacement", "m", _displacement),
     "speed": Quantity("speed", "m/s", _speed),
-    "axial_strain": Quantity("axial strain", "-", _field(lambda fields: fields.green_strain.xx)),
-    "shear_angle": Quantity("shear angle", "rad", _field(lambda fields: fields.shear_angle)),
+    "axial_strain": Quantity("axial strain", "-", _axial_strain),
+    "shear_angle": Quantity("shear angle", "rad", _shear_angle),
 }
 
 

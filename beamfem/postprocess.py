@@ -7,6 +7,7 @@ import numpy as np
 from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
+from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import (
     energy_points,
@@ -23,8 +24,9 @@ class Fields:
     """Fields at points of a beam's axis; the leading shape is (steps,) or (steps, points).
 
     position (..., 2) [m], r_x (..., 2) [-] by arc length, r_y (..., 2) [-], rotation [rad] of the section from the
-    reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain and second Piola-Kirchhoff stress [Pa]
-    at y = 0; the stress is nan where the section has no material there.
+    reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain of the field at y = 0 and stress [Pa]
+    there: Cauchy's, along the normal of the section as it stands (x) and in it (y), on its undeformed area, as the
+    section distributes the section forces; yy = 0, as beam theory has it, nan where the section tells no stress there.
     """
 
     position: np.ndarray
@@ -134,21 +136,30 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     return np.asarray(angle + (start - angle[:, 0])[:, None])
 
 
-def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Fields:
-    """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...)."""
+def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, forces: np.ndarray) -> Fields:
+    """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
+
+    forces (steps, 3, points): normal force, shear force and moment there.
+    """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
+    strain = strain_at_axis(mesh, now, element, xi)
+    own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
+    along = own.normal_stress(None, height, forces[:, 0], forces[:, 2])[..., 0]
+    sheared = own.shear_stress(None, height, forces[:, 1])[..., 0]
+    turned = turning(mesh, p, now, element, xi)
+    stress = Components(along, 0.0 * along, sheared)
+    return Fields(now.r, now.r_s, now.d, turned, shear_angle(now), strain, stress)
+
+
+def shear_angle(now: Axis) -> np.ndarray:
+    """Return the angle [rad] from r_x to r_y less a right angle."""
+    return np.asarray(np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)))
+
+
+def strain_at_axis(mesh: BeamMesh, now: Axis, element: np.ndarray, xi: np.ndarray) -> Components:
+    """Return the Green-Lagrange strain (steps, points) at y = 0 of points (element, xi)."""
     strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
-    at_axis = stress(mesh, strain, np.zeros(1))
-    strain, at_axis = (Components(part.xx[..., 0], part.yy[..., 0], part.xy[..., 0]) for part in (strain, at_axis))
-    return Fields(
-        now.r,
-        now.r_s,
-        now.d,
-        turning(mesh, p, now, element, xi),
-        np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)),
-        strain,
-        at_axis,
-    )
+    return Components(strain.xx[..., 0], strain.yy[..., 0], strain.xy[..., 0])
 
 
 def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
@@ -168,19 +179,6 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     yy = np.broadcast_to(0.5 * (dot(d, d) - dot(d0, d0)), xx.shape)
     xy = 0.5 * (dot(r_x, d) - dot(first, d0))
     return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
-
-
-def stress(mesh: BeamMesh, strain: Components, y: np.ndarray) -> Components:
-    """Return the stress [Pa] that the elastic forces give to a strain (..., heights) at y (..., heights) [m].
-
-    nan where the section is known by its stiffness only.
-    """
-    result = np.full((3, *strain.xx.shape), np.nan)
-    heights = np.broadcast_to(y, strain.xx.shape)
-    for material, here in mesh.beam.section_at(0.0).materials_at(heights, mesh.beam.material):
-        found = mesh.beam.element.forces.stress(strain.xx[here], strain.yy[here], strain.xy[here], material)
-        result[:, here] = np.array(found)
-    return Components(*result)
 
 
 def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:

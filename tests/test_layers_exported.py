@@ -37,17 +37,18 @@ def stresses(grid, rest, layer):
 
 
 def test_a_steel_core_between_rubber_shows_the_stress_of_steel(tmp_path):
-    """M = 40 N m on a core of 3.39 mm: 6 M / (b t^2) = 1044 MPa, while the faces of rubber carry next to nothing."""
-    width, core, cover = 0.02, 0.00339, 0.01
+    """A core of 3.4 mm bent to 1044 MPa at its faces, with rubber of a 21,000th of its modulus on both sides."""
+    width, core, cover = 0.02, 0.0034, 0.01
     section = bf.Layered([bf.Layer(RUBBER, cover), bf.Layer(STEEL, core), bf.Layer(RUBBER, cover)], width)
-    rest, *_, grid = rows(bent(section, 40.0), tmp_path)
     centroid, stiffness = transformed([(RUBBER, cover), (STEEL, core), (RUBBER, cover)], width, cover + core / 2)
+    moment = 1044e6 * stiffness / (2.1e11 * core / 2)
+    rest, *_, grid = rows(bent(section, moment), tmp_path)
     assert sorted(set(grid["layer"])) == [0, 1, 2]
     assert grid.n_cells == 9
     for layer, modulus in enumerate((1e7, 2.1e11, 1e7)):
         _, y, stress = stresses(grid, rest, layer)
-        np.testing.assert_allclose(stress, -modulus * 40.0 * (y - centroid) / stiffness, rtol=1e-4, atol=1.0)
-    assert stresses(grid, rest, 1)[2].max() / 1e6 == pytest.approx(1044, abs=2)
+        np.testing.assert_allclose(stress, -modulus * moment * (y - centroid) / stiffness, rtol=1e-4, atol=1.0)
+    assert stresses(grid, rest, 1)[2].max() / 1e6 == pytest.approx(1044, abs=0.1)
 
 
 @pytest.mark.parametrize("element", [bf.CRBF(4), bf.ANCFCRBF(bf.ElasticLine()), bf.CRBF(3, bf.SplitContinuum())])
@@ -93,6 +94,18 @@ def test_the_axis_shows_the_stress_of_the_layer_it_is_in(tmp_path):
     expected = np.array([1e3 * c / ei for c, ei in own]) * modulus
     here = np.abs(s - 0.4) > 1e-6
     np.testing.assert_allclose(line["stress_xx"][here], expected[here], atol=2e-3 * np.abs(expected).max())
+
+
+def test_fields_take_the_layer_that_the_axis_is_in():
+    """E times the strain there: at s = 0.2 the axis is in rubber, at 0.9 in steel, 2e4 times stiffer."""
+
+    def section(s):
+        return bf.Layered((bf.Layer(STEEL, 0.05 + 0.05 * s), bf.Layer(RUBBER, 0.05)), 0.1, axis=0.07)
+
+    solution = bent(section, 1e3, elements=8)
+    for at, modulus in ((0.2, 1e7), (0.9, 2.1e11)):
+        fields = solution.fields(solution.model.beams[0].at(at))
+        assert fields.stress.xx[-1] == pytest.approx(modulus * fields.green_strain.xx[-1], rel=1e-12)
 
 
 def test_shear_stress_between_layers_is_that_of_the_transformed_section(tmp_path):

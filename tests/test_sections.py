@@ -293,7 +293,7 @@ def test_the_stress_of_a_layer_is_that_of_its_own_material():
     now = axis(mesh, nodal_vectors(mesh, state.p[-1:]), where, xi)
     y = np.array([-0.015, 0.0, 0.004, 0.006, 0.015])
     strain = green_strain(now, reference_axis(mesh, where, xi), y)
-    found = stress(mesh, strain, y)
+    found = stress(mesh, strain, y, where, xi)
     moduli = np.array([1e9, 1e9, 1e9, 3e9, 3e9])
     assert found.xx[0, 0] == pytest.approx(moduli * strain.xx[0, 0], rel=1e-12)
     assert np.isfinite(state.fields(beam.at(0.3)).stress.xx).all()

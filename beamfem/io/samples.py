@@ -14,6 +14,7 @@ from beamfem.errors import UnknownStressWarning
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
+from beamfem.stresses import in_the_plane, von_mises
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -50,7 +51,7 @@ class Samples:
         return len(self.element) * len(self.order)
 
     def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
-        """Return numbers (steps, points) and vectors (steps, points, 3) of some rows of a solution."""
+        """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
         element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
         rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
@@ -66,6 +67,9 @@ class Samples:
             result[f"green_strain_{component}"] = getattr(strain, component)
         forces = section_forces(self.points, solution, rows)
         result |= self._stress(forces)
+        result["cauchy_stress"] = in_the_plane(
+            result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
+        )
         if self.layer is None:
             names = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
             for name, values in forces.items():
@@ -85,7 +89,8 @@ class Samples:
         along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"])
         sheared = own.shear_stress(self.layer, self.y, forces["shear"])
         # beam theory: fibres do not press on each other
-        return {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
+        found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
+        return found | {"von_mises_stress": von_mises(along, sheared)}
 
     def _rotation(self, p: np.ndarray, now: postprocess.Axis) -> np.ndarray:
         """Rotation (steps, points of the axis) [rad], continuous from one call to the next."""
@@ -100,11 +105,11 @@ class Samples:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
 
     def _by_cell(self, values: np.ndarray) -> np.ndarray:
-        """Order values (steps, points of the axis, heights, ...) by cells; vectors get z = 0."""
+        """Order values (steps, points of the axis, heights, ...) by cells; vectors of the plane get z = 0."""
         steps, tail = len(values), values.shape[3:]
         by_element = values.reshape(steps, self.mesh.elements, -1, *tail)[:, self.element]
         cells = by_element[:, :, self.order].reshape(steps, -1, *tail)
-        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail else cells
+        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail == (2,) else cells
 
 
 def body(mesh: BeamMesh) -> list[Samples]:
@@ -169,13 +174,13 @@ class Cells:
             )
 
     def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
-        """Return the fields at all points, (steps, points) and (steps, points, 3), of some rows of a solution.
+        """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
 
         A stress that is known nowhere is left out.
         """
         parts = [part.arrays(solution, rows) for part in self.samples]
         known = {name for part in self.samples for name, told in part.known.items() if told}
-        names = [name for name in parts[0] if not name.startswith("stress") or name in known]
+        names = [name for name in parts[0] if "stress" not in name or name in known]
         return {name: np.concatenate([part[name] for part in parts], axis=1) for name in names}
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from beamfem import postprocess
 from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
-from beamfem.model.distributions import Distributions, distributions
+from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.reference import faces, reference_axis, stations
+from beamfem.model.reference import reference_axis, stations
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +43,14 @@ class AxisPoints:
         return distributions(self.mesh, self.element, self.xi)
 
     @cached_property
+    def layers(self) -> np.ndarray:
+        """Lower and upper y of each layer of the body (points, layers, 2) [m], from the bottom up."""
+        return layers(self.mesh, self.element, self.xi)
+
+    @cached_property
     def faces(self) -> np.ndarray:
         """Lower and upper y of the body (points, 2) [m]."""
-        return faces(self.mesh, self.element, self.xi)
+        return self.layers[:, [0, -1], [0, 1]]
 
     @cached_property
     def reference(self) -> np.ndarray:

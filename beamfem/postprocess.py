@@ -187,11 +187,10 @@ def stress(mesh: BeamMesh, strain: Components, y: np.ndarray, element: np.ndarra
     else:
         groups = [(section, slice(i, i + 1)) for i, section in enumerate(sections_at(mesh, element, xi))]
     for section, points in groups:
-        parts = [part[:, points] for part in (strain.xx, strain.yy, strain.xy)]
+        xx, yy, xy = (part[:, points] for part in (strain.xx, strain.yy, strain.xy))
         for material, here in section.materials_at(heights[:, points], beam.material):
-            result[:, :, points][:, here] = np.array(
-                beam.element.forces.stress(*(part[here] for part in parts), material)
-            )
+            found = beam.element.forces.stress(xx[here], yy[here], xy[here], material)
+            result[:, :, points][:, here] = np.array(found)
     return Components(*result)
 
 

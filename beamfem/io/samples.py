@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,10 @@ from beamfem.errors import UnknownStressWarning
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
+from beamfem.stresses import in_the_plane, von_mises
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
 
 _LINES_PER_ELEMENT = 12
 _NAMED = 10  # beams that a warning names
@@ -45,9 +50,9 @@ class Samples:
         """Number of points."""
         return len(self.element) * len(self.order)
 
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return numbers (steps, points) and vectors (steps, points, 3) of the states p, v (steps, n)."""
-        element, xi = self.points.element, self.points.xi
+    def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
+        """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
+        element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
         rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
         position = self._at_heights(now.r, now.d)
@@ -60,8 +65,11 @@ class Samples:
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
-        forces = section_forces(self.points, p)
+        forces = section_forces(self.points, solution, rows)
         result |= self._stress(forces)
+        result["cauchy_stress"] = in_the_plane(
+            result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
+        )
         if self.layer is None:
             names = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
             for name, values in forces.items():
@@ -81,7 +89,8 @@ class Samples:
         along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"])
         sheared = own.shear_stress(self.layer, self.y, forces["shear"])
         # beam theory: fibres do not press on each other
-        return {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
+        found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
+        return found | {"von_mises_stress": von_mises(along, sheared)}
 
     def _rotation(self, p: np.ndarray, now: postprocess.Axis) -> np.ndarray:
         """Rotation (steps, points of the axis) [rad], continuous from one call to the next."""
@@ -96,11 +105,11 @@ class Samples:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
 
     def _by_cell(self, values: np.ndarray) -> np.ndarray:
-        """Order values (steps, points of the axis, heights, ...) by cells; vectors get z = 0."""
+        """Order values (steps, points of the axis, heights, ...) by cells; vectors of the plane get z = 0."""
         steps, tail = len(values), values.shape[3:]
         by_element = values.reshape(steps, self.mesh.elements, -1, *tail)[:, self.element]
         cells = by_element[:, :, self.order].reshape(steps, -1, *tail)
-        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail else cells
+        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail == (2,) else cells
 
 
 def body(mesh: BeamMesh) -> list[Samples]:
@@ -164,14 +173,14 @@ class Cells:
                 stacklevel=4,
             )
 
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the fields at all points, (steps, points) and (steps, points, 3), of the states p, v (steps, n).
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
 
         A stress that is known nowhere is left out.
         """
-        parts = [part.arrays(p, v) for part in self.samples]
+        parts = [part.arrays(solution, rows) for part in self.samples]
         known = {name for part in self.samples for name, told in part.known.items() if told}
-        names = [name for name in parts[0] if not name.startswith("stress") or name in known]
+        names = [name for name in parts[0] if "stress" not in name or name in known]
         return {name: np.concatenate([part[name] for part in parts], axis=1) for name in names}
 
 

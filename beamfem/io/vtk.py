@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,7 +56,7 @@ def _write_series(solution: "Solution", path: Path, cells: Cells) -> None:
     try:
         for first in range(0, len(solution), chunk):
             rows = slice(first, first + chunk)
-            series.write(solution.at[rows], solution.p[rows], solution.v[rows])
+            series.write(solution, rows)
         series.clean()
     finally:
         series.publish()
@@ -84,10 +83,10 @@ class _Series:
         self.writer.SetInputData(self.grid)
         self.writer.EncodeAppendedDataOff()
 
-    def write(self, at: Sequence[float] | np.ndarray, p: np.ndarray, v: np.ndarray) -> None:
-        """Write a file a step, of the states p, v (steps, n) at (steps,)."""
-        arrays = self.cells.arrays(p, v)
-        for row, value in enumerate(at):
+    def write(self, solution: "Solution", rows: slice) -> None:
+        """Write a file a step, of some rows of a solution."""
+        arrays = self.cells.arrays(solution, rows)
+        for row, value in enumerate(solution.at[rows]):
             now = {name: numpy_to_vtk(values[row]) for name, values in arrays.items()}
             self.grid.GetPoints().SetData(now.pop("points"))
             for name, array in now.items():

@@ -61,7 +61,7 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
     point_data = root.create_group("PointData")
     for first in range(0, steps, chunk):
         rows = slice(first, min(first + chunk, steps))
-        for array, values in cells.arrays(solution.p[rows], solution.v[rows]).items():
+        for array, values in cells.arrays(solution, rows).items():
             place = root if array == "points" else point_data
             key = "Points" if array == "points" else array
             if key not in place:

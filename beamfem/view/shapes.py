@@ -71,8 +71,7 @@ class Shapes:
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""
         assert self.quantity is not None
-        states = self.solution.p, self.solution.v
-        return [self.quantity.values(points, *states, self.rows) for points in self.points]
+        return [self.quantity.values(points, self.solution, self.rows) for points in self.points]
 
     @cached_property
     def limits(self) -> tuple[float, float]:

@@ -99,15 +99,16 @@ def test_the_axis_shows_the_stress_of_the_layer_it_is_in(tmp_path):
 
 
 def test_fields_take_the_layer_that_the_axis_is_in():
-    """E times the strain there: at s = 0.2 the axis is in rubber, at 0.9 in steel, 2e4 times stiffer."""
+    """The transformed section: at s = 0.2 the axis is in rubber, at 0.9 in steel, 2e4 times stiffer."""
 
     def section(s):
         return bf.Layered((bf.Layer(STEEL, 0.05 + 0.05 * s), bf.Layer(RUBBER, 0.05)), 0.1, axis=0.07)
 
     solution = bent(section, 1e3, elements=8)
     for at, modulus in ((0.2, 1e7), (0.9, 2.1e11)):
-        fields = solution.fields(solution.model.beams[0].at(at))
-        assert fields.stress.xx[-1] == pytest.approx(modulus * fields.green_strain.xx[-1], rel=1e-12)
+        centroid, stiffness = transformed([(STEEL, 0.05 + 0.05 * at), (RUBBER, 0.05)], 0.1, 0.07)
+        found = solution.fields(solution.model.beams[0].at(at)).stress.xx[-1]
+        assert found == pytest.approx(modulus * 1e3 * centroid / stiffness, rel=1e-6)
 
 
 def test_shear_stress_between_layers_is_that_of_the_transformed_section(tmp_path):

@@ -11,9 +11,9 @@ from beamfem import postprocess
 from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
 from beamfem.free_bodies import Cuts
-from beamfem.model.distributions import Distributions, distributions
+from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.reference import faces, reference_axis
+from beamfem.model.reference import reference_axis
 from beamfem.section_forces import at_points
 
 if TYPE_CHECKING:
@@ -49,9 +49,14 @@ class AxisPoints:
         return distributions(self.mesh, self.element, self.xi)
 
     @cached_property
+    def layers(self) -> np.ndarray:
+        """Lower and upper y of each layer of the body (points, layers, 2) [m], from the bottom up."""
+        return layers(self.mesh, self.element, self.xi)
+
+    @cached_property
     def faces(self) -> np.ndarray:
         """Lower and upper y of the body (points, 2) [m]."""
-        return faces(self.mesh, self.element, self.xi)
+        return self.layers[:, [0, -1], [0, 1]]
 
     @cached_property
     def reference(self) -> np.ndarray:

@@ -5,6 +5,8 @@ import pytest
 import pyvista
 
 import beamfem as bf
+from beamfem.view import body
+from beamfem.view.shapes import Shapes
 
 STEEL, ALUMINIUM = bf.Material(2.1e11, 0.3, 7850.0), bf.Material(7e10, 0.33, 2700.0)
 RUBBER = bf.Material(1e7, 0.45, 1100.0)
@@ -97,15 +99,16 @@ def test_the_axis_shows_the_stress_of_the_layer_it_is_in(tmp_path):
 
 
 def test_fields_take_the_layer_that_the_axis_is_in():
-    """E times the strain there: at s = 0.2 the axis is in rubber, at 0.9 in steel, 2e4 times stiffer."""
+    """The transformed section: at s = 0.2 the axis is in rubber, at 0.9 in steel, 2e4 times stiffer."""
 
     def section(s):
         return bf.Layered((bf.Layer(STEEL, 0.05 + 0.05 * s), bf.Layer(RUBBER, 0.05)), 0.1, axis=0.07)
 
     solution = bent(section, 1e3, elements=8)
     for at, modulus in ((0.2, 1e7), (0.9, 2.1e11)):
-        fields = solution.fields(solution.model.beams[0].at(at))
-        assert fields.stress.xx[-1] == pytest.approx(modulus * fields.green_strain.xx[-1], rel=1e-12)
+        centroid, stiffness = transformed([(STEEL, 0.05 + 0.05 * at), (RUBBER, 0.05)], 0.1, 0.07)
+        found = solution.fields(solution.model.beams[0].at(at)).stress.xx[-1]
+        assert found == pytest.approx(modulus * 1e3 * centroid / stiffness, rel=1e-6)
 
 
 def test_shear_stress_between_layers_is_that_of_the_transformed_section(tmp_path):
@@ -158,6 +161,27 @@ def test_layers_of_an_arc_have_resultants_by_quadrature_over_their_cells(tmp_pat
         moment -= weights @ (y * values)
     assert moment == pytest.approx(20.0, rel=2e-3)
     assert normal * 0.03 == pytest.approx(0.0, abs=2e-3 * 20.0)
+
+
+def test_pictures_draw_each_layer_from_face_to_face():
+    """Two layers of a straight beam at rest, one growing along it; the bodies touch and fill the section."""
+
+    def section(s):
+        return bf.Layered((bf.Layer(STEEL, 0.05 + 0.05 * s), bf.Layer(RUBBER, 0.05)), 0.1, axis=0.07)
+
+    solution = bent(section, 1e3, elements=2)
+    drawn = Shapes(solution, np.array([0]))
+    ((steel, rubber),) = drawn.layers
+    s = steel[0, :, 0, 0]
+    np.testing.assert_allclose(steel[0, :, :, 1], np.stack([-0.07 + 0 * s, 0.05 * s - 0.02], axis=1), atol=1e-15)
+    np.testing.assert_allclose(rubber[0, :, :, 1], np.stack([0.05 * s - 0.02, 0.05 * s + 0.03], axis=1), atol=1e-15)
+    scene = body._Scene.__new__(body._Scene)
+    scene.shapes = drawn
+    surface = pyvista.PolyData(scene._points(0), body._faces(drawn)).triangulate()
+    assert surface.volume == pytest.approx(0.1 * (0.1 + 0.15) / 2, rel=1e-6)
+    figure = solution.plot(shapes=1)
+    fills = [artist for artist in figure.axes[0].collections if type(artist).__name__ == "PolyCollection"]
+    assert len({tuple(colour) for colour in fills[0].get_facecolors()}) == 2
 
 
 def test_vtkhdf_numbers_layers_as_the_vtu_files_do(tmp_path):

@@ -7,11 +7,8 @@ import pytest
 from scipy.integrate import dblquad, quad
 
 import beamfem as bf
-from beamfem.along import AxisPoints, section_forces
 from beamfem.analysis.equations import INERTIA, linearise
-from beamfem.model.reference import reference_axis
 from beamfem.model.system import System
-from beamfem.postprocess import green_strain
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 ALUMINIUM = bf.Material(7e10, 0.33, 2700.0)
@@ -283,20 +280,11 @@ def test_bad_input_is_named(case):
 
 
 def test_the_stress_of_a_layer_is_that_of_its_own_material():
-    """Pulled and bent, each face stretches alike and answers with its own modulus."""
+    """Pulled off its neutral axis, the axis stretches alike in both layers and each answers with its own modulus."""
     soft, stiff = bf.Material(1e9, 0.0, 1000.0), bf.Material(3e9, 0.0, 1000.0)
-    section = bf.Layered([bf.Layer(soft, 0.02), bf.Layer(stiff, 0.01)], width=0.05)
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(4), section)
-    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (100.0, 0.0))])
-    state = bf.solve_static(model)
-    points = AxisPoints(state.model.meshes[0], 2)
-    now, y = points.now(state.p[-1:]), np.array([-0.015, 0.0, 0.004, 0.006, 0.015])
-    strain = green_strain(now, reference_axis(points.mesh, points.element, points.xi), y)
-    forces = section_forces(points, state, slice(-1, None))
-    moduli = np.array([1e9, 1e9, 1e9, 3e9, 3e9])
-    for height, (layer, modulus) in enumerate(zip((0, 0, 0, 1, 1), moduli, strict=True)):
-        at = np.full((len(points.xi), 1), y[height])
-        found = points.distributions.normal_stress(layer, at, forces["normal"], forces["moment"])
-        np.testing.assert_allclose(found[0, :, 0], modulus * strain.xx[0, :, height], rtol=1e-3)
-    fields = state.fields(beam.at(0.3))
-    assert fields.stress.xx[-1] == pytest.approx(1e9 * fields.green_strain.xx[-1], rel=1e-3)
+    for axis, modulus in ((0.019, 1e9), (0.021, 3e9)):
+        section = bf.Layered([bf.Layer(soft, 0.02), bf.Layer(stiff, 0.01)], width=0.05, axis=axis)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), section)
+        state = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (1.0, 0.0))]))
+        fields = state.fields(beam.at(0.3))
+        assert fields.stress.xx[-1] == pytest.approx(modulus * fields.green_strain.xx[-1], rel=1e-4)

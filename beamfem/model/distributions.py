@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.model.grid import Grid
 from beamfem.model.reference import curvature, sections_at
-from beamfem.section.distribution import Distribution, distribution
+from beamfem.section.distribution import Distribution, distribution, layers_of
 from beamfem.section.protocol import CrossSection
 
 # points (n,) and how the section distributes forces at them
@@ -67,9 +67,18 @@ def distributions(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Distributi
             (np.array([i]), distribution(section, material, bend[i]))
             for i, section in enumerate(sections_at(grid, element, xi))
         ]
-    most = max(len(own.layers) for _, own in groups)
-    layers = np.empty((len(element), most, 2))
-    for here, own in groups:
-        layers[here, : len(own.layers)] = own.layers
-        layers[here, len(own.layers) :] = own.layers[-1][1]
-    return Distributions(tuple(groups), layers)
+    return Distributions(tuple(groups), layers(grid, element, xi))
+
+
+def layers(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return lower and upper y (n, layers, 2) [m] of the layers at points (element, xi); see `Distributions`."""
+    material = grid.beam.material
+    if isinstance(grid.beam.section, CrossSection):
+        own = np.array(layers_of(grid.beam.section, material))
+        return np.broadcast_to(own, (len(element), *own.shape))
+    found = [layers_of(section, material) for section in sections_at(grid, element, xi)]
+    result = np.empty((len(element), max(map(len, found)), 2))
+    for point, at in enumerate(found):
+        result[point, : len(at)] = at
+        result[point, len(at) :] = at[-1][1]
+    return result

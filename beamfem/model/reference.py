@@ -131,14 +131,6 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     return np.concatenate(parts), strains
 
 
-def faces(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return lower and upper y [m] of the body (n, 2) at points (element, xi)."""
-    section = grid.beam.section
-    if isinstance(section, CrossSection):
-        return np.broadcast_to(section.bounds, (len(element), 2))
-    return np.array([grid.beam.section_at(arc).bounds for arc in grid.arc_length(element, xi)])
-
-
 def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:
     """Return the section at each of the points (element, xi)."""
     return [grid.beam.section_at(arc) for arc in grid.arc_length(element, xi)]

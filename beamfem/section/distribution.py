@@ -91,18 +91,24 @@ def distribution(section: CrossSection, material: Material | None, curvature: fl
     its stiffness has no stress. Raises InputError without a material where the section needs one.
     """
     bend = np.asarray(curvature, dtype=float)
-    parts = _parts(section, material)
-    layers = tuple((part.outline.low, part.outline.high) for part in parts)
+    parts, layers = _parts(section, material), layers_of(section, material)
     if not parts:
         nothing = np.full(bend.shape, np.nan)
-        low, high = section.bounds
-        return Distribution(((low, high),), (), bend, (nothing, nothing, nothing))
+        return Distribution(layers, (), bend, (nothing, nothing, nothing))
     reach = np.maximum(bend * layers[0][0], bend * layers[-1][1])
     # a section that reaches the centre of curvature has fibres without a length
     flexibility = _flexibility(
         parts, np.where(reach < 1.0, bend, np.nan), np.max(reach, where=reach < 1.0, initial=0.0)
     )
     return Distribution(layers, parts, bend, flexibility)
+
+
+def layers_of(section: CrossSection, material: Material | None) -> tuple[tuple[float, float], ...]:
+    """Return lower and upper y [m] of each part of a section, from the bottom up."""
+    if isinstance(section, HasParts):
+        return tuple((part.outline.low, part.outline.high) for part in section.parts(material))
+    low, high = section.bounds
+    return ((float(low), float(high)),)
 
 
 def _parts(section: CrossSection, material: Material | None) -> tuple[Part, ...]:

@@ -33,7 +33,8 @@ def test_shear_stress_is_the_parabola_of_the_shear_force(element, tmp_path):
     rest, data = (point_data(read(tmp_path / "bent" / f"{row:04d}.vtu")) for row in (0, 1))
     grid = read(tmp_path / "bent" / "0000.vtu")
     s, y = np.array([grid.GetPoint(i)[:2] for i in range(grid.GetNumberOfPoints())]).T
-    assert not any(np.abs(rest[name]).max() for name in data if "stress" in name)
+    # round-off of strains is worth 1e-4 Pa
+    assert all(np.abs(rest[name]).max() < 1e-3 for name in data if "stress" in name)
     shear = 1.5 * 1e5 * (1.0 - (2.0 * y / 0.01) ** 2)
     # the sag turns the force by its slope
     np.testing.assert_allclose(data["stress_xy"], shear, atol=1e-3 * 1e5)
@@ -44,7 +45,7 @@ def test_shear_stress_is_the_parabola_of_the_shear_force(element, tmp_path):
     np.testing.assert_allclose(data["von_mises_stress"], mises, rtol=1e-12)
     middle = solution.fields(beam.at(0.3)).stress
     assert middle.xy[-1] == pytest.approx(1.5e5, rel=1e-3)
-    assert abs(middle.xx[-1]) < 1e3
+    assert abs(middle.xx[-1]) < 3e3
     assert middle.yy[-1] == 0.0
 
 
@@ -82,7 +83,7 @@ def test_traction_on_a_turned_section_is_the_force_per_area(tmp_path):
     element = bf.CRBF(4)
     solution, _ = cantilever(element, 4, (400.0, 900.0))
     solution.to_vtk(tmp_path / "bent.pvd")
-    data = point_data(read(tmp_path / "bent" / "0001.vtu"))
+    data = point_data(read(tmp_path / "bent" / f"{len(solution) - 1:04d}.vtu"))
     angle = data["rotation"]
     normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     assert np.ptp(angle) > 0.8

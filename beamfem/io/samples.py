@@ -81,7 +81,8 @@ class Samples:
         """Whether there is a place along the beam where a component of stress is known at all heights of a cell."""
         one = np.ones((1, len(self.points.xi)))
         unit = self._stress({"normal": one, "shear": one, "moment": one})
-        return {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
+        told = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
+        return told | {"cauchy_stress": told["von_mises_stress"]}
 
     def _stress(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis)."""

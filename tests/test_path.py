@@ -239,7 +239,8 @@ def test_a_path_is_saved_and_drawn_as_a_solution_and_a_motion_starts_from_its_st
     path.save(tmp_path / "path.h5")
     assert np.array_equal(bf.load(tmp_path / "path.h5").p, path.p)
     path.plot(tmp_path / "path.png")
-    path.to_vtk(tmp_path / "path.pvd")
+    with pytest.warns(bf.UnknownStressWarning):
+        path.to_vtk(tmp_path / "path.pvd")
     motion = bf.simulate(model, 0.01, 0.01, start=path.limit_points[0])
     assert np.array_equal(motion.p[0], path.limit_points[0].p)
 

@@ -100,12 +100,13 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
         return beam
     points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2])
     drawn = np.linspace(0.0, 1.0, _DRAWN + 1)
-    parts = [mesh.arc_length(element, xi) for element, xi in points]
-    parts.append((mesh.vertices[:-1, None] + np.diff(mesh.vertices)[:, None] * drawn).ravel())
+    parts = [mesh.section_arc_length(element, xi) for element, xi in points]
+    element, xi = np.repeat(np.arange(mesh.elements), len(drawn)), np.tile(drawn, mesh.elements)
+    parts.append(mesh.section_arc_length(element, xi))
     at = np.unique(np.concatenate([*parts, [0.0, 0.5 * beam.curve.length, beam.curve.length]]))
     at = at[np.append(True, np.diff(at) > 1e-9 * beam.curve.length)]
     values = tuple(beam.section_at(float(arc)) for arc in at)
-    return replace(beam, section=SampledSection(tuple(at.tolist()), values))
+    return replace(beam, section=SampledSection(tuple(at.tolist()), values, beam.jumps))
 
 
 class _Writer:

@@ -27,7 +27,7 @@ _ON_BEAM = DistributedLoad | Foundation
 class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports and joints put a mesh node at their point; loads act anywhere. Points that are joined may be apart by 1e-5
+    Supports, joints and point loads put a mesh node at their point. Points that are joined may be apart by 1e-5
     of the longer beam: the second is moved to the first, free of stress. Raises InputError, UnknownPointError.
     """
 
@@ -105,8 +105,11 @@ class Model:
         fractions: list[list[float]] = [[] for _ in self.beams]
         places = [support.point for support in self.point_supports]
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
+        places += [load.point for load in self.point_loads]
         for point in places:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
+        for beam, own in zip(self.beams, fractions, strict=True):
+            own += [jump / beam.curve.length for jump in beam.jumps]
         grids = make_grids(self.beams, fractions)
         angled = self._places(grids, [support.point for support in self.point_supports if _turns(support)])
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]

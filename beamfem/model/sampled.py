@@ -38,10 +38,14 @@ class Sampled:
 
 @dataclass(frozen=True)
 class SampledSection:
-    """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them."""
+    """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them.
+
+    kinks (nj,): arc lengths [m] at which it jumps.
+    """
 
     at: tuple[float, ...]
     values: tuple[CrossSection, ...]
+    kinks: tuple[float, ...] = ()
 
     def __call__(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError between two of different kinds."""

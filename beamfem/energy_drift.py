@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.model.loads import Gravity, PointMoment
+from beamfem.model.loads import Gravity, PointMoment, Pressure
 from beamfem.model.system import system_of
 from beamfem.solution import Solution
 
@@ -32,7 +32,7 @@ class EnergyDrift:
 def energy_drift(solution: Solution) -> EnergyDrift | None:
     """Return the drift of a motion's energy; None where something does work on it.
 
-    That is so under loads with an amplitude or that follow, and where supports move.
+    That is so under loads with an amplitude, loads that follow and pressures, and where supports move.
     """
     if solution.static or not _conservative(solution):
         return None
@@ -50,7 +50,9 @@ def _conservative(solution: Solution) -> bool:
     system = system_of(solution.model, static=False)
     moved = any(callable(item.value) for item in system.held)
     driven = any(
-        load.amplitude is not None or (not isinstance(load, Gravity | PointMoment) and load.follower)
+        load.amplitude is not None
+        or isinstance(load, Pressure)
+        or (not isinstance(load, Gravity | PointMoment) and load.follower)
         for load in solution.model.loads
     )
     return not moved and not driven

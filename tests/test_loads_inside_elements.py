@@ -1,4 +1,4 @@
-"""Loads and steps of the section that are no end of an element: closed forms of slender beams in small displacements."""
+"""Loads and steps of the section inside elements: closed forms of slender beams in small displacements."""
 
 import numpy as np
 import pytest

@@ -17,7 +17,7 @@ from beamfem.section.protocol import CrossSection
 from beamfem.validation import count, finite, fulfils, function_of_one
 
 Tapered = Callable[[float], CrossSection]
-_SAMPLES = 32  # parts of a beam, at least, among which jumps of its section are looked for
+_SAMPLES = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +29,8 @@ class Beam:
     or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
     own. Raises InputError.
 
-    Where supports, joints, point loads and jumps of the section need a node inside an element, that is divided; where an
-    end of one is very near (1 % of an element), it moves there. Jumps are found, or declared as `kinks` of the function.
+    Where a support, a joint, a point load or a jump of the section needs a node inside an element, that is divided; an
+    end of elements that is very near (1 % of one) moves there. Jumps are found, or declared as `kinks` of the function.
     """
 
     curve: Curve
@@ -95,9 +95,13 @@ class Beam:
         """Arc lengths (nj,) [m] at which the section jumps, or has a kink that it declares."""
         if self.prismatic:
             return ()
+        return find_jumps(self.section, self._measured, self.curve.length, self.samples)
+
+    @property
+    def samples(self) -> int:
+        """Number of equal parts among which jumps of functions of its arc length are looked for."""
         parts = 1 if isinstance(self.elements, str) else self.elements
-        parts = parts if isinstance(parts, int) else len(parts) - 1
-        return find_jumps(self.section, self._measured, self.curve.length, max(parts, _SAMPLES))
+        return max(parts if isinstance(parts, int) else len(parts) - 1, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
         """Return what elastic forces, inertia and drawing take of the section at an arc length, as numbers."""

@@ -12,9 +12,7 @@ _SMALLEST = 1e-9  # change that counts as a jump, of the largest value
 _CLOSE = 1e-12  # of the length, to which a jump is found
 
 
-def find_jumps(
-    function: Any, values: Callable[[float], np.ndarray], length: float, samples: int
-) -> tuple[float, ...]:
+def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: float, samples: int) -> tuple[float, ...]:
     """Return the arc lengths (nj,) [m] within (0, length) that a function declares as `kinks`, or at which it jumps.
 
     values: what counts of the function's result at an arc length, as numbers (k,). A function that declares kinks is

@@ -8,6 +8,7 @@ from scipy.optimize import fsolve
 
 import beamfem as bf
 from beamfem.analysis.equations import STATICS, linearise, residual
+from beamfem.cli.modelfile import ModelFileError, read_model_file
 from beamfem.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.model.system import System
 from beamfem.postprocess import nodal_vectors, nodal_velocities
@@ -363,3 +364,60 @@ def test_arrows_of_a_pressure_stand_normal_to_the_deformed_axis():
     for share, vector in zip(np.linspace(0.0, 1.0, len(vectors)), vectors, strict=True):
         r_x = solution.fields(beam.at(share)).r_x[-1]
         assert vector == pytest.approx(share * np.linalg.norm(vectors[-1]) * np.array([-r_x[1], r_x[0]]), rel=1e-3)
+
+
+MODEL_FILE = """
+[materials.steel]
+youngs_modulus = 1e12
+poisson_ratio = 0.3
+density = 1.0
+
+[sections.bar]
+kind = "rectangle"
+width = 0.1
+height = 0.1
+
+[functions.water]
+kind = "table"
+points = [[0.0, 30.0], [1.0, 0.0]]
+
+[beams.wall]
+curve = { kind = "line", start = [0, 0], end = [1, 0] }
+elements = 4
+element = { kind = "CRBF", order = 3 }
+section = "bar"
+material = "steel"
+
+[[supports]]
+kind = "clamp"
+point = "wall.start"
+
+[[loads]]
+kind = "pressure"
+beam = "wall"
+value = LOAD
+
+[[loads]]
+kind = "distributed"
+beam = "wall"
+vector = [1.0, { kind = "table", points = [[0.0, 0.0], [0.25, -8.0], [1.0, -2.0]] }]
+"""
+
+
+@pytest.mark.parametrize(("load", "force"), [('"water"', 15.0), ("40.0", 40.0)])
+def test_pressures_and_functions_of_the_arc_length_in_a_model_file(load, force, tmp_path):
+    """Reactions are what the tables hold: 1 N along x, and -(1 + 3.75) N less the pressure across."""
+    path = tmp_path / "wall.toml"
+    path.write_text(MODEL_FILE.replace("LOAD", load))
+    model = read_model_file(path).model
+    solution = bf.solve_static(model)
+    assert solution.reaction(model.beams[0].start)[-1, :2] == pytest.approx((-1.0, 4.75 - force), rel=2e-3)
+    assert model.meshes[0].elements == 4
+
+
+@pytest.mark.parametrize("load", ['"wate"', '"water', "[1.0, 2.0]", "true"])
+def test_a_pressure_that_makes_no_sense_is_named_in_a_model_file(load, tmp_path):
+    path = tmp_path / "wall.toml"
+    path.write_text(MODEL_FILE.replace("LOAD", load))
+    with pytest.raises(ModelFileError, match=r"wall.toml"):
+        read_model_file(path)

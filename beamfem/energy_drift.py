@@ -7,6 +7,7 @@ import numpy as np
 from beamfem.model.loads import Gravity, PointMoment, Pressure
 from beamfem.model.system import system_of
 from beamfem.solution import Solution
+from beamfem.turns import start_rotations
 
 _ROWS = 100  # at which energies are looked at, for what they are measured by
 
@@ -36,11 +37,9 @@ def energy_drift(solution: Solution) -> EnergyDrift | None:
     """
     if solution.static or not _conservative(solution):
         return None
-    # where moments act, rotations are followed from row to row
-    followed = any(isinstance(load, PointMoment) for load in solution.model.loads)
-    rows = np.arange(len(solution)) if followed else np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
+    rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    some = Solution(solution.model, False, at, p, v, a, solution.statistics)
+    some = Solution(solution.model, False, at, p, v, a, solution.statistics, turned=start_rotations(solution)[rows])
     energy = some.energy()
     total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))

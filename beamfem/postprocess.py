@@ -95,22 +95,25 @@ def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
     return section_frame(now.d)[0]
 
 
-def turning(mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Rotation of the section from the reference (steps, points) [rad], continuous over steps."""
+def turning(
+    mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
+) -> np.ndarray:
+    """Rotation of the section from the reference (steps, points) [rad]; turned: see `nodal_rotations`."""
     start = direction(mesh, reference_axis(mesh, element, xi))
     normal = direction(mesh, now)
     angle = np.arctan2(cross(start, normal), dot(start, normal))
     inner = mesh.node.shape[1] - 1
     node = mesh.node[element, np.round(xi * inner).astype(int)]
-    near = nodal_rotations(mesh, p)[:, node]
+    near = nodal_rotations(mesh, p, turned)[:, node]
     return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
 
 
-def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
+def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:
     """Return the rotation of each node's section from the reference (steps, nodes) [rad].
 
     Angles are coordinates of their own. Gradients know a rotation up to full turns only: it is continued along the beam
-    from its first angle, or else from its start, and there over the states, the first of them within half a turn.
+    from its first angle, or else from its start. There it is what is nearest to `turned` (steps,) [rad], as the solve
+    has counted it; else it is continued over the states, the first of them within half a turn.
     """
     table = mesh.table(p)
     result = np.empty(table.shape[:2])
@@ -130,13 +133,20 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
         anchor = int(np.flatnonzero(known)[0])
         shift = result[:, anchor] - angle[:, anchor]
         return np.asarray(angle + 2.0 * np.pi * np.round(shift / (2.0 * np.pi))[:, None])
+    if turned is not None:
+        return np.asarray(angle + 2.0 * np.pi * np.round((turned - angle[:, 0]) / (2.0 * np.pi))[:, None])
     start = np.unwrap(angle[:, 0])
     start -= 2.0 * np.pi * np.round(start[0] / (2.0 * np.pi))
     return np.asarray(angle + (start - angle[:, 0])[:, None])
 
 
-def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Fields:
-    """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...)."""
+def fields(
+    mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
+) -> Fields:
+    """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
+
+    turned: see `nodal_rotations`.
+    """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
     at_axis = stress(mesh, strain, np.zeros(1))
@@ -145,7 +155,7 @@ def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -
         now.r,
         now.r_s,
         now.d,
-        turning(mesh, p, now, element, xi),
+        turning(mesh, p, now, element, xi, turned),
         np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)),
         strain,
         at_axis,

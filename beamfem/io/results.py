@@ -19,6 +19,7 @@ _FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
 _STATES = ("at", "p", "v", "a")
+_OPTIONAL = ("stability", "turned")
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
@@ -41,8 +42,9 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         file.attrs["all_rows"] = len(solution)
         file.attrs["rows"] = 0
         file.create_dataset("model", data=description)
-        if solution.stability is not None:
-            file.create_dataset("stability", data=solution.stability)
+        for name in _OPTIONAL:
+            if getattr(solution, name) is not None:
+                file.create_dataset(name, data=getattr(solution, name))
         for name in _STATES:
             row = getattr(solution, name).shape[1:]
             file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
@@ -111,8 +113,8 @@ def _read(file: Any) -> Solution:
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
-    stability = np.asarray(file["stability"][:rows]) if "stability" in file else None
-    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, stability)
+    known = {name: np.asarray(file[name][:rows]) for name in _OPTIONAL if name in file}
+    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, **known)
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
+from beamfem.io.critical import load_path, save_critical
 from beamfem.io.description import describe, rebuild
+from beamfem.path import Path as EquilibriumPath
 from beamfem.solution import Solution, Statistics
 from beamfem.status import Status
 
@@ -51,6 +53,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         file.flush()
         for first in range(0, len(solution), block):
             _append(file, solution, slice(first, min(first + block, len(solution))))
+        if isinstance(solution, EquilibriumPath):
+            save_critical(file, solution)
 
 
 def load(path: str | PathLike[str]) -> Solution:
@@ -114,7 +118,7 @@ def _read(file: Any) -> Solution:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
     known = {name: np.asarray(file[name][:rows]) for name in _OPTIONAL if name in file}
-    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, **known)
+    return load_path(file, Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, **known))
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:

@@ -154,8 +154,7 @@ class System:
             if isinstance(support, Spring):
                 mesh = self.model.mesh_of(support.point)
                 known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-                given = {"r^x": support.stiffness[0], "r^y": support.stiffness[1], "theta": support.rotational}
-                for name, value in given.items():
+                for name, value in support.by_coordinate.items():
                     if value > 0.0:
                         dofs.append(known[name])
                         stiffness.append(value)

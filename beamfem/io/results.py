@@ -45,8 +45,9 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         file.attrs["rows"] = 0
         file.create_dataset("model", data=description)
         for name in _OPTIONAL:
-            if getattr(solution, name) is not None:
-                file.create_dataset(name, data=getattr(solution, name))
+            values = getattr(solution, name)
+            if values is not None and values.size:
+                file.create_dataset(name, data=values)
         for name in _STATES:
             row = getattr(solution, name).shape[1:]
             file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))

@@ -34,6 +34,7 @@ from beamfem.errors import (
     LimitPointError,
     RoundOffWarning,
     UnknownPointError,
+    UnknownStressWarning,
     UnstableWarning,
 )
 from beamfem.io.cad import read_dxf
@@ -127,6 +128,7 @@ __all__ = [
     "Structural",
     "Tube",
     "UnknownPointError",
+    "UnknownStressWarning",
     "UnstableWarning",
     "converge",
     "elliptic_arc",

@@ -48,3 +48,7 @@ class ChangedCodeWarning(UserWarning):
 
 class RoundOffWarning(UserWarning):
     """Round-off leaves few digits of the forces of a solution."""
+
+
+class UnknownStressWarning(UserWarning):
+    """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""

@@ -12,25 +12,29 @@ from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
 from beamfem.element.skfem_element import BeamMapping, FieldElement
 from beamfem.model.mesh import BeamMesh
-
-_HEIGHT_POINTS = 3  # the energy is quartic in y
+from beamfem.model.reference import sections_at
+from beamfem.section.protocol import CrossSection
 
 
 def beam_basis(mesh: BeamMesh, points: int | None = None) -> Basis:
-    """Return the basis of a beam, quadrature (s, y) over its length and its section's equivalent rectangle.
+    """Return the basis of a beam, quadrature (s, y) over its length and the strips of its sections where they are.
 
     points: Gauss points along an element; without it those of the beam's elastic forces.
     """
-    element, section = mesh.beam.element, mesh.beam.section_at(0.0)
-    low, high = section.bounds
-    area = sum(moments[0] for _, moments in section.moments(mesh.beam.material))
-    xi, along = element.quadrature() if points is None else _gauss(points)
-    eta, across = _gauss(_HEIGHT_POINTS)
-    y = low + (high - low) * eta
-    X = np.stack([np.repeat(xi, len(y)), np.tile(y, len(xi))])
-    W = np.outer(along, across * area).ravel()
+    own = mesh.beam.element
+    xi, along = own.quadrature() if points is None else _gauss(points)
+    element, at = np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements)
+    material = mesh.beam.material
+    if isinstance(mesh.beam.section, CrossSection):
+        strips = [mesh.beam.section.strips(material)] * len(at)
+    else:
+        strips = [section.strips(material) for section in sections_at(mesh, element, at)]
+    y, across = (np.array([np.concatenate([part[n] for part in parts]) for parts in strips]) for n in (1, 2))
+    shape = (mesh.elements, -1)
+    X = np.stack([np.repeat(at[:, None], y.shape[1], axis=1).reshape(shape), y.reshape(shape)])
+    W = (np.tile(along, mesh.elements)[:, None] * across).reshape(shape)
     line = mesh.skfem
-    return Basis(line, FieldElement(element.field), mapping=BeamMapping(line), quadrature=(X, W))
+    return Basis(line, FieldElement(own.field), mapping=BeamMapping(line), quadrature=(X, W))
 
 
 def mass_basis(mesh: BeamMesh) -> Basis:

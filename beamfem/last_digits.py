@@ -30,10 +30,13 @@ def remainders(solution: "Solution") -> np.ndarray:
     return result
 
 
-def exactly(solution: "Solution", values: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Return a function (steps, ...) of the coordinates (steps, n), the digits below their last one included."""
-    found, steps = values(solution.p), solution.remainders
+def exactly(
+    solution: "Solution", values: Callable[[np.ndarray], np.ndarray], rows: slice | np.ndarray = slice(None)
+) -> np.ndarray:
+    """Return a function (steps, ...) of the coordinates (steps, n) of rows, digits below their last one included."""
+    p, steps = solution.p[rows], solution.remainders[rows]
+    found = values(p)
     if not steps.any():
         return found
     system = system_of(solution.model, solution.static)
-    return found + differentiated(system, values, solution.p, steps)
+    return found + differentiated(system, values, p, steps)

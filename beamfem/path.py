@@ -60,7 +60,7 @@ class PathState(State):
         return Fields(*(_first(value) for value in values))
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force [N] and moment [N m] at start, Gauss points and end of a beam (stations,)."""
+        """Return normal and shear force [N] and moment [N m] of a beam (stations,), see `SectionForces`."""
         found = self._alone.section_forces(beam)
         return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
 

@@ -4,20 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.element import coordinates, lobatto
+from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
+from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
     inertia_points,
     interpolate,
-    jacobians,
     reference_angle,
     reference_axis,
-    stations,
-    stiffness_at,
 )
 
 
@@ -26,8 +24,9 @@ class Fields:
     """Fields at points of a beam's axis; the leading shape is (steps,) or (steps, points).
 
     position (..., 2) [m], r_x (..., 2) [-] by arc length, r_y (..., 2) [-], rotation [rad] of the section from the
-    reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain and second Piola-Kirchhoff stress [Pa]
-    at y = 0; the stress is nan where the section has no material there.
+    reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain of the field at y = 0 and stress [Pa]
+    there: Cauchy's, along the normal of the section as it stands (x) and in it (y), on its undeformed area, as the
+    section distributes the section forces; yy = 0, as beam theory has it, nan where the section tells no stress there.
     """
 
     position: np.ndarray
@@ -50,10 +49,12 @@ class Components:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Work conjugates (steps, stations) at the start, the Gauss points and the end of a beam.
+    """Section forces (steps, stations) at the start, the Gauss points and the end of every element of a beam.
 
-    normal (> 0 in tension) and shear force [N], moment [N m].
-    arc_length (stations,) [m].
+    normal force along the section's normal (> 0 in tension) and shear force across it [N], moment about the axis [N m]
+    (> 0 where it raises the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads act,
+    are there twice: just before and just behind them. In equilibrium with each other and with all that acts on the beam
+    where it is, inertia included: exactly, however coarse the mesh is.
     """
 
     arc_length: np.ndarray
@@ -141,25 +142,36 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = N
 
 
 def fields(
-    mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
+    mesh: BeamMesh,
+    p: np.ndarray,
+    element: np.ndarray,
+    xi: np.ndarray,
+    forces: np.ndarray,
+    turned: np.ndarray | None = None,
 ) -> Fields:
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
 
-    turned: see `nodal_rotations`.
+    forces (steps, 3, points): normal force, shear force and moment there; turned: see `nodal_rotations`.
     """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
+    strain = strain_at_axis(mesh, now, element, xi)
+    own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
+    along = own.normal_stress(None, height, forces[:, 0], forces[:, 2])[..., 0]
+    sheared = own.shear_stress(None, height, forces[:, 1])[..., 0]
+    angle = turning(mesh, p, now, element, xi, turned)
+    stress = Components(along, 0.0 * along, sheared)
+    return Fields(now.r, now.r_s, now.d, angle, shear_angle(now), strain, stress)
+
+
+def shear_angle(now: Axis) -> np.ndarray:
+    """Return the angle [rad] from r_x to r_y less a right angle."""
+    return np.asarray(np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)))
+
+
+def strain_at_axis(mesh: BeamMesh, now: Axis, element: np.ndarray, xi: np.ndarray) -> Components:
+    """Return the Green-Lagrange strain (steps, points) at y = 0 of points (element, xi)."""
     strain = green_strain(now, reference_axis(mesh, element, xi), np.zeros(1))
-    at_axis = stress(mesh, strain, np.zeros(1))
-    strain, at_axis = (Components(part.xx[..., 0], part.yy[..., 0], part.xy[..., 0]) for part in (strain, at_axis))
-    return Fields(
-        now.r,
-        now.r_s,
-        now.d,
-        turning(mesh, p, now, element, xi, turned),
-        np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)),
-        strain,
-        at_axis,
-    )
+    return Components(strain.xx[..., 0], strain.yy[..., 0], strain.xy[..., 0])
 
 
 def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
@@ -179,38 +191,6 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     yy = np.broadcast_to(0.5 * (dot(d, d) - dot(d0, d0)), xx.shape)
     xy = 0.5 * (dot(r_x, d) - dot(first, d0))
     return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
-
-
-def stress(mesh: BeamMesh, strain: Components, y: np.ndarray) -> Components:
-    """Return the stress [Pa] that the elastic forces give to a strain (..., heights) at y (..., heights) [m].
-
-    nan where the section is known by its stiffness only.
-    """
-    result = np.full((3, *strain.xx.shape), np.nan)
-    heights = np.broadcast_to(y, strain.xx.shape)
-    for material, here in mesh.beam.section_at(0.0).materials_at(heights, mesh.beam.material):
-        found = mesh.beam.element.forces.stress(strain.xx[here], strain.yy[here], strain.xy[here], material)
-        result[:, here] = np.array(found)
-    return Components(*result)
-
-
-def section_forces(mesh: BeamMesh, p: np.ndarray) -> SectionForces:
-    """Return normal and shear force dW/dr0' along and across the section's normal, and the moment d x dW/dd'.
-
-    Where the curvature comes from r_xx the shear force is the moment's change along the beam, -M' / |r_x|.
-    """
-    element, xi = stations(mesh)
-    vectors = nodal_vectors(mesh, p)
-    now = axis(mesh, vectors, element, xi)
-    force, moment, along = mesh.beam.element.forces.conjugates(_resultants(mesh, vectors, now, element, xi), now)
-    normal, shear = dot(force, along), dot(force, coordinates.across(along))
-    arc = mesh.arc_length(element, xi)
-    if mesh.beam.element.forces.turns_with == "r_x":
-        points = len(element) // mesh.elements
-        steps = (len(p), mesh.elements, points)
-        change = _derivative(moment.reshape(steps), arc.reshape(steps[1:])).reshape(len(p), -1)
-        shear = shear - change / np.linalg.norm(now.r_s, axis=-1)
-    return SectionForces(arc, normal, shear, moment)
 
 
 def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
@@ -247,36 +227,3 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
     moment = np.einsum("sqc,q->sc", now.r, mass) + np.einsum("sqc,q->sc", now.d, first)
     return Momenta(kinetic, linear, angular, moment)
-
-
-def _resultants(mesh: BeamMesh, vectors: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Stress resultants (steps, stations, ns) of nodal vectors (steps, nodes, vectors, 2), axis `now` at stations."""
-    own = mesh.beam.element
-    stiffness, reference = stiffness_at(mesh, element, xi)
-    strains = _recovered(mesh, vectors) if own.integration == "lobatto" else own.forces.strains(now) - reference
-    return np.einsum("qij,sqj->sqi", stiffness, strains)
-
-
-def _recovered(mesh: BeamMesh, vectors: np.ndarray) -> np.ndarray:
-    """Strains (steps, stations, ns) from those at the Lobatto points; between these the stretch waves."""
-    own = mesh.beam.element
-    where, at = np.repeat(np.arange(mesh.elements), len(lobatto.POINTS)), np.tile(lobatto.POINTS, mesh.elements)
-    strains = own.forces.strains(axis(mesh, vectors, where, at)) - own.forces.strains(reference_axis(mesh, where, at))
-    shape = (mesh.elements, len(lobatto.POINTS))
-    table = lobatto.assumed(own.forces, own.coordinates, jacobians(mesh, where, at)[0].reshape(shape))
-    strains = np.einsum("epij,sepj->sepi", table, strains.reshape(len(vectors), *shape, -1))
-    return np.einsum("iqp,sepi->seqi", lobatto.recovery(own.forces), strains).reshape(
-        len(vectors), -1, strains.shape[-1]
-    )
-
-
-def _derivative(values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Derivative (steps, ne, nq) of the polynomial through the values at the points (ne, nq) of each element."""
-    count = at.shape[1]
-    local = (at - at[:, :1]) / (at[:, -1:] - at[:, :1])
-    nodes = local[0]
-    powers = np.vander(nodes, count, increasing=True)
-    slopes = np.zeros_like(powers)
-    slopes[:, 1:] = powers[:, :-1] * np.arange(1, count)
-    table = slopes @ np.linalg.inv(powers)
-    return np.einsum("qp,sep->seq", table, values) / (at[:, -1] - at[:, 0])[None, :, None]

@@ -158,10 +158,16 @@ class Solution:
         return self.statistics.iterations
 
     def fields(self, point: Point) -> Fields:
-        """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps."""
+        """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps.
+
+        Where two elements meet, or a load acts, strain and stress are those on the side of the beam's end.
+        """
+        from beamfem.section_forces import Cuts, at_points
+
         mesh = self.model.mesh_of(point)
-        element, xi = mesh.locate(point.fraction)
-        found = postprocess.fields(mesh, self.p, np.array([element]), np.array([xi]), turned_of(self, mesh))
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        forces = at_points(self, mesh, Cuts(element, xi, np.array([True])))
+        found = postprocess.fields(mesh, self.p, element, xi, forces, turned_of(self, mesh))
         return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
@@ -180,7 +186,10 @@ class Solution:
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section from the reference (steps,) [rad], counter-clockwise, continuous."""
-        return np.asarray(self.fields(point).rotation)
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        now = self._axis(point, postprocess.nodal_vectors(mesh, self.p))
+        return postprocess.turning(mesh, self.p, now, element, xi, turned_of(self, mesh))[:, 0]
 
     def _axis(self, point: Point, vectors: np.ndarray) -> postprocess.Axis:
         mesh = self.model.mesh_of(point)
@@ -208,11 +217,11 @@ class Solution:
         return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force and moment at the start, the Gauss points and the end of a beam."""
-        from beamfem.end_forces import with_ends
+        """Return normal and shear force and moment at both ends of every element of a beam, and inside."""
+        from beamfem.section_forces import section_forces
 
         self.model.number_of(beam)  # refuses what is no beam of this model
-        return with_ends(self, beam)
+        return section_forces(self, beam)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:

@@ -54,7 +54,7 @@ def fall(element: bf.Element, elements: int, second_moment: float, duration: flo
         bf.Line((0.0, 0.0), (1.2, 0.0)),
         elements,
         element,
-        bf.Section(area=1.6e-3, second_moment=second_moment),
+        bf.Section(area=1.6e-3, second_moment=second_moment, height=float(np.sqrt(12.0 * second_moment / 1.6e-3))),
         bf.Material(youngs_modulus=0.7e6, poisson_ratio=0.3, density=5540.0),
     )
     model = bf.Model([beam], supports=[bf.Pin(beam.start)], loads=[bf.Gravity((0.0, -9.81))])

@@ -52,7 +52,7 @@ def frame():
 
 def arch():
     """A shallow two-bar frame that snaps through: a path with limit points, in few steps."""
-    section, material = bf.Section(area=6.0, second_moment=2.0), bf.Material(7.2e6, 0.3, 1.0)
+    section, material = bf.Section(area=6.0, second_moment=2.0, height=2.0), bf.Material(7.2e6, 0.3, 1.0)
     common = {"element": bf.CRBF(3), "section": section, "material": material}
     column = bf.Beam(bf.Line((0, 0), (0, 120)), 3, **common)
     beam = bf.Beam(bf.Line((0, 120), (120, 120)), 5, **common)

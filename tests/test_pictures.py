@@ -78,20 +78,15 @@ def test_colour_bar_has_the_limits_and_the_unit_of_the_field(bent):
 
 @pytest.mark.parametrize("element", [bf.CRBF(1), bf.CRBF(3), bf.ANCFCRBF(), bf.ShearRigid()], ids=lambda e: e.name)
 def test_section_forces_between_their_stations(element):
-    """A force so small that the beam stays straight: V = P, M = P (L - s), linear in each element but the lowest."""
+    """A force so small that the beam stays straight: V = P, M = P (L - s)."""
     load = 1e-6
     solution = cantilever(load, 4, element)
     mesh = solution.model.meshes[0]
     points = AxisPoints(mesh, 5)
-    found = section_forces(points, solution.p)
+    found = section_forces(points, solution, slice(None))
     s = points.arc_length
-    # order 1 knows one value an element: that of its middle
-    known = 0.5 * (mesh.vertices[points.element] + mesh.vertices[points.element + 1]) if element.name == "CRBF-1" else s
-    # the order 1 element and full integration are right to their own discretisation only
-    tolerance = 1e-6 if element.name in ("CRBF-1", "CRBF-3") else 0.4
-    np.testing.assert_allclose(found["moment"][-1], load * EI * (1.0 - known), atol=tolerance * load * EI)
-    if tolerance < 0.1:
-        np.testing.assert_allclose(found["shear"][-1], load * EI, rtol=1e-5)
+    np.testing.assert_allclose(found["moment"][-1], load * EI * (1.0 - s), atol=1e-6 * load * EI)
+    np.testing.assert_allclose(found["shear"][-1], load * EI, rtol=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from contextlib import nullcontext
 
 import h5py
 import numpy as np
@@ -269,7 +270,9 @@ def test_every_curve_section_and_element_comes_back(tmp_path, curve, section):
         np.testing.assert_allclose(again.position(other.at(0.37)), solution.position(beam.at(0.37)), atol=1e-13)
         before, after = solution.section_forces(beam), again.section_forces(other)
         np.testing.assert_allclose(after.moment, before.moment, rtol=1e-10, atol=1e-8 * np.abs(before.moment).max())
-    again.to_vtk(tmp_path / "body.pvd")
+    known = nullcontext() if section != "stiffness" else pytest.warns(bf.UnknownStressWarning)
+    with known:
+        again.to_vtk(tmp_path / "body.pvd")
     # what was saved is what a solve on the same mesh needs
     np.testing.assert_allclose(bf.solve_static(again.model).p[-1], solution.p[-1], rtol=1e-9, atol=1e-9)
 

@@ -8,9 +8,7 @@ from scipy.integrate import dblquad, quad
 
 import beamfem as bf
 from beamfem.analysis.equations import INERTIA, linearise
-from beamfem.model.reference import reference_axis
 from beamfem.model.system import System
-from beamfem.postprocess import axis, green_strain, nodal_vectors, stress
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 ALUMINIUM = bf.Material(7e10, 0.33, 2700.0)
@@ -282,18 +280,11 @@ def test_bad_input_is_named(case):
 
 
 def test_the_stress_of_a_layer_is_that_of_its_own_material():
-    """Pulled and bent, each face stretches alike and answers with its own modulus."""
+    """Pulled off its neutral axis, the axis stretches alike in both layers and each answers with its own modulus."""
     soft, stiff = bf.Material(1e9, 0.0, 1000.0), bf.Material(3e9, 0.0, 1000.0)
-    section = bf.Layered([bf.Layer(soft, 0.02), bf.Layer(stiff, 0.01)], width=0.05)
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), section)
-    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (100.0, 0.0))])
-    state = bf.solve_static(model)
-    mesh = state.model.meshes[0]
-    where, xi = np.array([0]), np.array([0.5])
-    now = axis(mesh, nodal_vectors(mesh, state.p[-1:]), where, xi)
-    y = np.array([-0.015, 0.0, 0.004, 0.006, 0.015])
-    strain = green_strain(now, reference_axis(mesh, where, xi), y)
-    found = stress(mesh, strain, y)
-    moduli = np.array([1e9, 1e9, 1e9, 3e9, 3e9])
-    assert found.xx[0, 0] == pytest.approx(moduli * strain.xx[0, 0], rel=1e-12)
-    assert np.isfinite(state.fields(beam.at(0.3)).stress.xx).all()
+    for axis, modulus in ((0.019, 1e9), (0.021, 3e9)):
+        section = bf.Layered([bf.Layer(soft, 0.02), bf.Layer(stiff, 0.01)], width=0.05, axis=axis)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), section)
+        state = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (1.0, 0.0))]))
+        fields = state.fields(beam.at(0.3))
+        assert fields.stress.xx[-1] == pytest.approx(modulus * fields.green_strain.xx[-1], rel=1e-4)

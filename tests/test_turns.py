@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.io.samples import centreline
+from beamfem.io.table import arrays
 
 MOMENT = 4.0
 INERTIA = 0.5 * (1.0 + 0.05**2) / 3  # of a bar of 0.5 kg about its end
@@ -101,3 +103,13 @@ def test_beams_of_a_model_without_a_narrow_band_are_counted():
     motion = bf.simulate(model, 1.0, 5e-3, save_every=100)
     for spoke in (spokes[0], spokes[17], spokes[20], spokes[39]):
         assert motion.rotation(spoke.at(0.5))[-1] == pytest.approx(MOMENT / (2 * INERTIA), abs=0.3)
+
+
+def test_tables_and_paraview_files_have_the_turns():
+    """The same in all of them as `rotation` says, whatever rows are written at once."""
+    (beam,), motion = spun(bf.ANCF(), 500)
+    expected = motion.rotation(beam.end)
+    assert arrays(motion, beam)[0]["rotation"][1][:, -1] == pytest.approx(expected, abs=1e-9)
+    (cells,) = centreline(motion.model.meshes[0])
+    for rows in (slice(0, 3), slice(2, 3)):
+        assert cells.arrays(motion, rows)["rotation"][:, -1] == pytest.approx(expected[rows], abs=1e-9)

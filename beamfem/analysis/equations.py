@@ -6,9 +6,8 @@ from scipy.sparse import csc_array
 from beamfem.analysis.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.kernels.balance import balance
-from beamfem.kernels.block import Block, PointLoads, Springs
+from beamfem.kernels.block import Block
 from beamfem.kernels.stress import predict_stress
-from beamfem.model.blocks import workspace
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
@@ -29,26 +28,6 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
 def point_rows(system: System, time: float) -> tuple[np.ndarray, ...]:
     """Return the forces and moments (1, nl, 3) of each block at a time, as the kernels take them."""
     return tuple(values[None] for values in system.point_values(time))
-
-
-def element_residual(
-    system: System, block: int, element: int, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float
-) -> np.ndarray:
-    """Return inertia + elastic - body forces (n,) [N, N m] of one element of a block, without loads at points."""
-    whole = system.blocks[block]
-    nodes = whole.node[element]
-    part = whole._replace(
-        node=np.arange(len(nodes))[None],
-        **{name: getattr(whole, name)[element : element + 1] for name in ("kind", "beam")},
-        **{name: getattr(whole, name)[nodes] for name in ("carrier", "frame", "dof", "home")},
-    )
-    result = np.empty(len(p))
-    nothing = PointLoads(*(values[:0] for values in system.point_loads[block]))
-    loose = Springs(*(values[:0] for values in system.springs))
-    model = (system.forms[block],), (part,), (workspace(part),), (nothing,), loose, (system.layouts[block],)
-    actions = system.body(time), (np.empty((1, 0, 3)),), 0
-    balance(*model, p, v, a, *actions, np.ones(3), False, result, _EMPTY)
-    return result
 
 
 def linearise(

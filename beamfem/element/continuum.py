@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.axis import Axis, dot
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.structural import section_frame
 from beamfem.kernels.block import GREEN_LAGRANGE
@@ -55,13 +55,6 @@ class _Body:
             ],
             axis=-1,
         )
-
-    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return dW/dr0' (..., 2) [N], the moment d x dW/dd' (...) [N m], the section's normal (..., 2)."""
-        s = resultants[..., None]
-        force = s[..., 0, :] * at.r_s + s[..., 1, :] * at.d_s + s[..., 4, :] * at.d
-        couple = s[..., 1, :] * at.r_s + s[..., 2, :] * at.d_s + s[..., 5, :] * at.d
-        return force, cross(at.d, couple), section_frame(at.d)[0]
 
     def points(self, degree: int, director_degree: int) -> int:
         """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""

@@ -43,12 +43,6 @@ class ElasticLine:
         matrix[0, 1] = matrix[1, 0] = rigidity.coupling
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
-    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the force (..., 2) [N] without that of M', the moment (...) [N m], the unit vector of r_x (..., 2)."""
-        along = at.r_s / np.linalg.norm(at.r_s, axis=-1, keepdims=True)
-        s = resultants[..., None]
-        return s[..., 0, :] * along + s[..., 2, :] * at.d, resultants[..., 1], along
-
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
         """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
         modulus = material.youngs_modulus

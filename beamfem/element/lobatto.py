@@ -73,18 +73,6 @@ def assumed(forces: Forces, coordinates: Coordinates, jacobian: np.ndarray) -> n
     return table
 
 
-def recovery(forces: Forces) -> np.ndarray:
-    """Return the table (ns, stations, points) of the straight line nearest to each measure in the mean square."""
-    nodal = _at_nodes(forces)
-    table = np.empty((len(nodal), len(STATIONS), len(POINTS)))
-    at_points, at_stations = (2.0 * xi - 1.0 for xi in (POINTS, STATIONS))
-    for row, only_nodes in zip(table, nodal, strict=True):
-        weights = _TRAPEZOID if only_nodes else WEIGHTS
-        slope = weights * at_points / (weights @ at_points**2)
-        row[:] = weights + at_stations[:, None] * slope
-    return table
-
-
 def _at_nodes(forces: Forces) -> np.ndarray:
     """Tell which measures (ns,) only nodes know: the length of d, and of the elastic line its angle to r_x.
 

@@ -48,12 +48,6 @@ class Structural:
             matrix[3, 3] = 0.0
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
-    def conjugates(self, resultants: np.ndarray, at: Axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return dW/dr0' (..., 2) [N] and the moment (...) [N m] of stress resultants (..., 4)."""
-        along, across = section_frame(at.d)
-        s = resultants[..., None]
-        return s[..., 0, :] * along + s[..., 1, :] * across, resultants[..., 2], along
-
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
         """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
         modulus = material.youngs_modulus

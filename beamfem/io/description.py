@@ -32,7 +32,8 @@ from beamfem.model.reference import energy_points, length_points, stations
 from beamfem.model.sampled import Sampled, SampledAlong, SampledSection
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated
-from beamfem.section import Layer, Layered, Section, StiffnessSection
+from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
+from beamfem.section.outline import RectangleOutline, TubeOutline
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import function_value
 
@@ -45,6 +46,9 @@ _CLASSES = {
         Chain,
         BSpline,
         Section,
+        ShapedSection,
+        RectangleOutline,
+        TubeOutline,
         Layer,
         Layered,
         StiffnessSection,

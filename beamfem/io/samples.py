@@ -1,42 +1,56 @@
 """What ParaView files hold: points of bodies and centrelines by cells, and the fields there."""
 
+import warnings
 from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem import postprocess
-from beamfem.along import AxisPoints, section_forces
-from beamfem.element.coordinates import Gradients
+from beamfem.along import AxisPoints, rotation, section_forces
+from beamfem.errors import UnknownStressWarning
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
+from beamfem.stresses import in_the_plane, von_mises
+
+if TYPE_CHECKING:
+    from beamfem.solution import Solution
 
 _LINES_PER_ELEMENT = 12
+_NAMED = 10  # beams that a warning names
 
 
 class Samples:
-    """Points (xi, y) of every element of a beam, in the order that VTK wants them in a cell.
+    """Points (xi, y) of elements of a beam, in the order that VTK wants them in a cell.
 
-    degree: intervals along an element; whole: lower and upper face, or the axis; order: places in the
-    table (degree + 1, heights), flattened.
+    degree: intervals along an element; layer: the layer of the body whose faces and middle they are on, or None for the
+    axis; order: places in the table (degree + 1, heights), flattened. element: elements that have this layer (ne,).
     """
 
-    def __init__(self, mesh: BeamMesh, degree: int, whole: bool, order: np.ndarray) -> None:
-        self.mesh, self.degree, self.order, self.whole = mesh, degree, order, whole
-        self.points = AxisPoints(mesh, degree)
-        self.y = self.points.faces if whole else np.zeros((len(self.points.xi), 1))
-        self.axis = reference_axis(mesh, self.points.element, self.points.xi)
+    def __init__(self, points: AxisPoints, layer: int | None, order: np.ndarray) -> None:
+        self.points, self.layer, self.order, self.mesh = points, layer, order, points.mesh
+        self.distributions = points.distributions
+        if layer is None:
+            self.y = np.zeros((len(self.points.xi), 1))
+            self.element = np.arange(self.mesh.elements)
+        else:
+            low, high = np.moveaxis(self.distributions.layers[:, layer], -1, 0)
+            self.y = np.stack([low, 0.5 * (low + high), high], axis=-1)
+            there = (self.distributions.number > layer).reshape(self.mesh.elements, -1)
+            self.element = np.flatnonzero(there.any(axis=1))
+        self.axis = reference_axis(self.mesh, self.points.element, self.points.xi)
         self.reference = self._at_heights(self.points.reference, self.axis.d)
-        self.turned: np.ndarray | None = None
 
     @property
     def size(self) -> int:
         """Number of points."""
-        return self.mesh.elements * len(self.order)
+        return len(self.element) * len(self.order)
 
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return numbers (steps, points) and vectors (steps, points, 3) of the states p, v (steps, n)."""
-        element, xi = self.points.element, self.points.xi
+    def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
+        """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
+        element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
         rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
         position = self._at_heights(now.r, now.d)
@@ -44,68 +58,81 @@ class Samples:
             "points": position,
             "displacement": position - self.reference,
             "velocity": self._at_heights(rate.r, rate.d),
-            "rotation": np.repeat(self._rotation(p, now)[..., None], self.y.shape[-1], axis=-1),
+            "rotation": np.repeat(rotation(self.points, solution, rows)[..., None], self.y.shape[-1], axis=-1),
         }
         strain = postprocess.green_strain(now, self.axis, self.y)
-        stress = postprocess.stress(self.mesh, strain, self.y)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
-            result[f"stress_{component}"] = getattr(stress, component)
-        if not self.whole:
+        forces = section_forces(self.points, solution, rows)
+        result |= self._stress(forces)
+        result["cauchy_stress"] = in_the_plane(
+            result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
+        )
+        if self.layer is None:
             names = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
-            for name, values in section_forces(self.points, p).items():
+            for name, values in forces.items():
                 result[names[name]] = values[..., None]
         return {name: self._by_cell(values) for name, values in result.items()}
 
-    @property
-    def has_material(self) -> bool:
-        """Whether the stress is known: a section that is known by its stiffness only has none."""
-        beam = self.mesh.beam
-        return bool(beam.section_at(0.0).materials_at(np.zeros(1), beam.material))
+    @cached_property
+    def known(self) -> dict[str, bool]:
+        """Whether there is a place along the beam where a component of stress is known at all heights of a cell."""
+        one = np.ones((1, len(self.points.xi)))
+        unit = self._stress({"normal": one, "shear": one, "moment": one})
+        return {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
 
-    def _rotation(self, p: np.ndarray, now: postprocess.Axis) -> np.ndarray:
-        """Rotation (steps, points of the axis) [rad], continuous from one call to the next."""
-        turned = postprocess.turning(self.mesh, p, now, self.points.element, self.points.xi)
-        # Gradients know their angle up to full turns only, and `turning` counts those from its own first row.
-        if self.turned is not None and isinstance(self.mesh.beam.element.coordinates, Gradients):
-            turned = turned + 2.0 * np.pi * np.round((self.turned - turned[0]) / (2.0 * np.pi))
-        self.turned = turned[-1]
-        return turned
+    def _stress(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis)."""
+        own = self.distributions
+        along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"])
+        sheared = own.shear_stress(self.layer, self.y, forces["shear"])
+        # beam theory: fibres do not press on each other
+        found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
+        return found | {"von_mises_stress": von_mises(along, sheared)}
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
 
     def _by_cell(self, values: np.ndarray) -> np.ndarray:
-        """Order values (steps, points of the axis, heights, ...) by cells; vectors get z = 0."""
+        """Order values (steps, points of the axis, heights, ...) by cells; vectors of the plane get z = 0."""
         steps, tail = len(values), values.shape[3:]
-        cells = values.reshape(steps, self.mesh.elements, -1, *tail)[:, :, self.order].reshape(steps, -1, *tail)
-        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail else cells
+        by_element = values.reshape(steps, self.mesh.elements, -1, *tail)[:, self.element]
+        cells = by_element[:, :, self.order].reshape(steps, -1, *tail)
+        return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail == (2,) else cells
 
 
-def body(mesh: BeamMesh) -> Samples:
-    """Return the points of Lagrange quadrilaterals of degree (n, 1), exact for the field r0(x) + y d(x)."""
+def body(mesh: BeamMesh) -> list[Samples]:
+    """Return the points of each layer as Lagrange quadrilaterals of degree (n, 2).
+
+    They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
+    """
     n = max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
-    bottom = 2 * np.arange(n + 1)
-    # VTK: corners counter-clockwise, then the inner points of the bottom edge, then those of the top edge.
-    order = np.concatenate([[0, 2 * n, 2 * n + 1, 1], bottom[1:-1], bottom[1:-1] + 1])
-    return Samples(mesh, n, True, order)
+    bottom = 3 * np.arange(n + 1)
+    inner = bottom[1:-1]
+    # VTK: corners counter-clockwise, then inner points of the edges: bottom, right, top, left; then those of the cell
+    order = np.concatenate([[0, 3 * n, 3 * n + 2, 2], inner, [3 * n + 1], inner + 2, [1], inner + 1])
+    points = AxisPoints(mesh, n)
+    return [Samples(points, layer, order) for layer in range(points.distributions.layers.shape[1])]
 
 
-def centreline(mesh: BeamMesh) -> Samples:
+def centreline(mesh: BeamMesh) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
-    return Samples(mesh, _LINES_PER_ELEMENT, False, np.arange(_LINES_PER_ELEMENT + 1))
+    return [Samples(AxisPoints(mesh, _LINES_PER_ELEMENT), None, np.arange(_LINES_PER_ELEMENT + 1))]
 
 
 class Cells:
-    """The cells of all beams of one kind, one an element, which shares no points with others."""
+    """The cells of all beams of one kind, one an element and layer, which shares no points with others."""
 
     def __init__(self, model: Model, whole: bool) -> None:
-        self.whole = whole
-        self.beams: Sequence[Samples] = [body(mesh) if whole else centreline(mesh) for mesh in model.meshes]
-        elements = [beam.mesh.elements for beam in self.beams]
-        self.beam = np.repeat(np.arange(len(self.beams)), elements)
-        self.degree = np.repeat([beam.degree for beam in self.beams], elements)
-        self.offsets = np.append(0, np.cumsum(np.repeat([len(beam.order) for beam in self.beams], elements)))
+        self.whole, self.meshes = whole, model.meshes
+        by_beam = [body(mesh) if whole else centreline(mesh) for mesh in model.meshes]
+        self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
+        numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
+        cells = [len(part.element) for part in self.samples]
+        self.beam = np.repeat(numbers, cells)
+        self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
+        self.degree = np.repeat([part.points.pieces for part in self.samples], cells)
+        self.offsets = np.append(0, np.cumsum(np.repeat([len(part.order) for part in self.samples], cells)))
 
     @property
     def points(self) -> int:
@@ -114,18 +141,36 @@ class Cells:
     @property
     def degrees(self) -> np.ndarray:
         """Degrees of the Lagrange cells (cells, 3)."""
-        return np.stack([self.degree, np.ones_like(self.degree), np.ones_like(self.degree)], axis=1).astype(float)
-
-    def arrays(self, p: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the fields at all points, (steps, points) and (steps, points, 3), of the states p, v (steps, n)."""
-        parts = [beam.arrays(p, v) for beam in self.beams]
-        # a section given by its stiffness or by layers knows no stress at y = 0 or at its faces
-        known = [name for name in parts[0] if not name.startswith("stress") or self._stressed]
-        return {name: np.concatenate([part[name] for part in parts], axis=1) for name in known}
+        return np.stack([self.degree, np.full_like(self.degree, 2), np.ones_like(self.degree)], axis=1).astype(float)
 
     @property
-    def _stressed(self) -> bool:
-        return all(beam.has_material for beam in self.beams)
+    def numbers(self) -> dict[str, np.ndarray]:
+        """Cell data (cells,) by name: the beam in the model, and the layer of bodies from the bottom up."""
+        return {"beam": self.beam, "layer": self.layer} if self.whole else {"beam": self.beam}
+
+    def warn_of_unknown_stress(self) -> None:
+        """Warn of beams whose stress is left out, or nan beside that of others."""
+        number = {id(mesh): i for i, mesh in enumerate(self.meshes)}
+        unknown = sorted({number[id(part.mesh)] for part in self.samples if not part.known["stress_xx"]})
+        if unknown:
+            shown = ", ".join(map(str, unknown[:_NAMED])) + (", ..." if len(unknown) > _NAMED else "")
+            what = "left out" if len(unknown) == len(self.meshes) else "nan"
+            warnings.warn(
+                f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
+                "sections are given by a stiffness, or by moments without a height; Section(..., height=) gives it",
+                UnknownStressWarning,
+                stacklevel=4,
+            )
+
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
+
+        A stress that is known nowhere is left out.
+        """
+        parts = [part.arrays(solution, rows) for part in self.samples]
+        known = {name for part in self.samples for name, told in part.known.items() if told}
+        names = [name for name in parts[0] if "stress" not in name or name in known]
+        return {name: np.concatenate([part[name] for part in parts], axis=1) for name in names}
 
 
 def times(at: np.ndarray) -> np.ndarray:

@@ -39,7 +39,7 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
             data[f"v{name}"] = along, rate, _about(f"velocity {name}", "m/s")
     for name in ("rotation", "normal", "shear", "moment", "axial_strain", "shear_angle"):
         quantity = QUANTITIES[name]
-        values = quantity.values(points, solution.p, solution.v, rows)
+        values = quantity.values(points, solution, rows)
         data[name] = along, values, _about(quantity.label, quantity.unit)
     energy = solution.energy()
     for name in ("kinetic", "strain", "potential"):

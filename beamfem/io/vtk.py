@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,7 +28,7 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
 
     .pvd: a collection of .vtu files, one a step, in the folder <stem>; .vtkhdf: all steps in one file, for ParaView
     5.12 or newer. Fields, names and units: docs/paraview.md. Raises InputError for another suffix; BeamfemError where
-    .vtkhdf is asked for without h5py.
+    .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
     """
     path = Path(path)
     if path.suffix not in (".pvd", ".vtkhdf"):
@@ -37,8 +36,10 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to write")
+    bodies = Cells(solution.model, True)
+    bodies.warn_of_unknown_stress()
     for target, cells in (
-        (path, Cells(solution.model, True)),
+        (path, bodies),
         (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False)),
     ):
         if path.suffix == ".pvd":
@@ -55,7 +56,7 @@ def _write_series(solution: "Solution", path: Path, cells: Cells) -> None:
     try:
         for first in range(0, len(solution), chunk):
             rows = slice(first, first + chunk)
-            series.write(solution.at[rows], solution.p[rows], solution.v[rows])
+            series.write(solution, rows)
         series.clean()
     finally:
         series.publish()
@@ -76,15 +77,16 @@ class _Series:
         self.grid.SetCells(VTK_LAGRANGE_QUADRILATERAL if cells.whole else VTK_POLY_LINE, table)
         if cells.whole:
             self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
-        self.grid.GetCellData().AddArray(_named("beam", cells.beam.astype(np.int32)))
+        for name_of_cells, values in cells.numbers.items():
+            self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))
         self.writer = vtkXMLUnstructuredGridWriter()
         self.writer.SetInputData(self.grid)
         self.writer.EncodeAppendedDataOff()
 
-    def write(self, at: Sequence[float] | np.ndarray, p: np.ndarray, v: np.ndarray) -> None:
-        """Write a file a step, of the states p, v (steps, n) at (steps,)."""
-        arrays = self.cells.arrays(p, v)
-        for row, value in enumerate(at):
+    def write(self, solution: "Solution", rows: slice) -> None:
+        """Write a file a step, of some rows of a solution."""
+        arrays = self.cells.arrays(solution, rows)
+        for row, value in enumerate(solution.at[rows]):
             now = {name: numpy_to_vtk(values[row]) for name, values in arrays.items()}
             self.grid.GetPoints().SetData(now.pop("points"))
             for name, array in now.items():

@@ -51,7 +51,8 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
     root["Offsets"] = cells.offsets
     root["Types"] = np.full(number, _LAGRANGE_QUADRILATERAL if cells.whole else _POLY_LINE, dtype=np.uint8)
     cell_data = root.create_group("CellData")
-    cell_data["beam"] = cells.beam.astype(np.int32)
+    for numbers, values in cells.numbers.items():
+        cell_data[numbers] = values.astype(np.int32)
     if cells.whole:
         cell_data["HigherOrderDegrees"] = cells.degrees
         cell_data["HigherOrderDegrees"].attrs.create("Attribute", np.bytes_("HigherOrderDegrees"))
@@ -60,7 +61,7 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
     point_data = root.create_group("PointData")
     for first in range(0, steps, chunk):
         rows = slice(first, min(first + chunk, steps))
-        for array, values in cells.arrays(solution.p[rows], solution.v[rows]).items():
+        for array, values in cells.arrays(solution, rows).items():
             place = root if array == "points" else point_data
             key = "Points" if array == "points" else array
             if key not in place:

@@ -17,12 +17,16 @@ from beamfem.model.reference import jacobians, length_points, reference_axis, re
 class Actions:
     """Point loads of a block and what they are at a time.
 
-    unit (nl, 3): force [N] and moment [N m] of each before its factor; source (nl,): number of its load, -1 for none.
+    unit (nl, 3): force [N] and moment [N m] of each before its factor; source (nl,): number of its load, -1 for none;
+    xi (nl,): place in the element; rule (nl,): Gauss points of the element that share what is spread over it, 0 for
+    what acts at a point.
     """
 
     points: PointLoads
     unit: np.ndarray
     source: np.ndarray
+    xi: np.ndarray
+    rule: np.ndarray
     loads: tuple[PointLoad | LineLoad, ...]
 
     def values(self, time: float, static: bool) -> np.ndarray:
@@ -51,13 +55,13 @@ def build_actions(model: Model, block: int) -> Actions:
         mesh = _mesh(model, foundation.beam, block)
         if mesh is not None:
             element, xi, weight = length_points(mesh)
-            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False)
+            part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
             part["spring"] = np.outer(weight, foundation.stiffness)
             parts.append(part)
     size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
     joined = {name: np.concatenate([empty, *(part[name] for part in parts)]) for name, empty in _empty(size).items()}
-    unit, source = joined.pop("unit"), joined.pop("source")
-    return Actions(PointLoads(**joined), unit, source, loads)
+    own = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
+    return Actions(PointLoads(**joined), **own, loads=loads)
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
@@ -69,13 +73,13 @@ def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
     """Rows of the point loads for a load along a beam."""
     element, xi, weight = length_points(mesh)
     values = load.values(mesh.arc_length(element, xi))
-    unit = np.zeros((len(xi), 3))
+    unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
     if not isinstance(load, Pressure):
         unit[:, :2] = weight[:, None] * values
-        return _part(mesh, element, xi, unit, source, load.follower)
+        return _part(mesh, element, xi, unit, source, load.follower, rule)
     # p (-y', x'): across the derivative of the position, which plays the section's direction of unit length along x
     unit[:, 1] = weight * values
-    part = _part(mesh, element, xi, unit, source, True)
+    part = _part(mesh, element, xi, unit, source, True, rule)
     part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
     part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))
     part["stretches"] = np.ones(len(xi), dtype=bool)
@@ -104,11 +108,13 @@ def _empty(size: int) -> dict[str, np.ndarray]:
         "anchor": pair,
         "unit": np.zeros((0, 3)),
         "source": whole,
+        "xi": np.zeros(0),
+        "rule": whole,
     }
 
 
 def _part(
-    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool
+    mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
 ) -> dict[str, np.ndarray]:
     """Rows of the point loads for points (element, xi) of a beam."""
     own = mesh.beam.element
@@ -135,4 +141,6 @@ def _part(
         "anchor": reference_position(mesh, element, xi),
         "unit": unit,
         "source": np.full(count, source),
+        "xi": xi,
+        "rule": np.full(count, rule),
     }

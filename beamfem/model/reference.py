@@ -2,13 +2,15 @@
 
 import numpy as np
 
-from beamfem.element.axis import Axis, dot
+from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.element.structural import section_frame
 from beamfem.model.grid import Grid
 from beamfem.section.protocol import CrossSection
+
+_SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and how far from its ends
 
 
 def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
@@ -129,12 +131,24 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     return np.concatenate(parts), strains
 
 
-def faces(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return lower and upper y [m] of the body (n, 2) at points (element, xi)."""
-    section = grid.beam.section
-    if isinstance(section, CrossSection):
-        return np.broadcast_to(section.bounds, (len(element), 2))
-    return np.array([grid.beam.section_at(arc).bounds for arc in grid.section_arc_length(element, xi)])
+def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:
+    """Return the section at each of the points (element, xi)."""
+    return [grid.beam.section_at(arc) for arc in grid.section_arc_length(element, xi)]
+
+
+def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return the curvature of the curve (n,) [1/m] at points (element, xi), > 0 towards +y.
+
+    It is the turn of the tangent over a short way, which stays inside the element: there may be a corner at its end.
+    """
+    if grid.straight:
+        return np.zeros(len(element))
+    start, end = grid.vertices[element], grid.vertices[element + 1]
+    near, inside = _SHORT * (end - start), _INSIDE * (end - start)
+    arc = grid.arc_length(element, xi)
+    before, after = np.maximum(arc - near, start + inside), np.minimum(arc + near, end - inside)
+    one, other = grid.beam.curve.tangent(before), grid.beam.curve.tangent(after)
+    return np.arctan2(cross(one, other), dot(one, other)) / (after - before)
 
 
 def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -129,17 +129,18 @@ class System:
         return result
 
     @cached_property
-    def _actions(self) -> tuple[Actions, ...]:
+    def actions(self) -> tuple[Actions, ...]:
+        """What acts at points of each block."""
         return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
     @cached_property
     def point_loads(self) -> tuple[PointLoads, ...]:
         """Loads and springs at points of each block, in the order of `point_values`."""
-        return tuple(actions.points for actions in self._actions)
+        return tuple(actions.points for actions in self.actions)
 
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
-        return tuple(actions.values(time, self.static) for actions in self._actions)
+        return tuple(actions.values(time, self.static) for actions in self.actions)
 
     @cached_property
     def varying(self) -> bool:

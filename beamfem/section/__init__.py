@@ -2,7 +2,7 @@
 
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section
-from beamfem.section.shapes import Circle, Rectangle, Tube
+from beamfem.section.shapes import Circle, Rectangle, ShapedSection, Tube
 from beamfem.section.stiffness import StiffnessSection
 
-__all__ = ["Circle", "Layer", "Layered", "Rectangle", "Section", "StiffnessSection", "Tube"]
+__all__ = ["Circle", "Layer", "Layered", "Rectangle", "Section", "ShapedSection", "StiffnessSection", "Tube"]

@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.moments import gauss_between
+from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.validation import finite, positive
 
@@ -100,6 +101,14 @@ class Layered:
             heights, weights = gauss_between(low, high, _STRIPS)
             result.append((layer.material, heights, self.width * weights))
         return result
+
+    def parts(self, material: Material | None = None) -> tuple[Part, ...]:
+        """Return each layer as a rectangle with its Young's modulus."""
+        edges = self._edges.tolist()
+        return tuple(
+            Part(layer.material.youngs_modulus, RectangleOutline(self.width, low, high))
+            for layer, low, high in zip(self.layers, edges[:-1], edges[1:], strict=True)
+        )
 
     @property
     def _edges(self) -> np.ndarray:

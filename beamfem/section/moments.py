@@ -6,10 +6,12 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.material import Material
+from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.stiffness import StiffnessSection
 from beamfem.validation import positive
 
+_ROUNDING = 1e-9  # of numbers from tables
 _STRIPS = 8  # Gauss points over the height, for a body whose reference is curved
 
 
@@ -18,20 +20,43 @@ class Section:
     """Section by its area moments; without `fourth_moment` that of the rectangle of the same area and second moment.
 
     area A [m^2], second_moment I [m^4], shear_factor k_s [-], fourth_moment I4 = integral of y^4 dA [m^6].
-    For a rectangle h = sqrt(12 I / A) and I4 = A h^4 / 80. Raises InputError.
+    For a rectangle h = sqrt(12 I / A) and I4 = A h^4 / 80.
+    height [m], centroid [m] above the lower face (the default is mid-height): where the faces are, for bodies and their
+    stress. Without a height the body is drawn as that rectangle and its faces have no stress. Raises InputError.
     """
 
     area: float
     second_moment: float
     shear_factor: float = 5 / 6
     fourth_moment: float | None = None
+    height: float | None = None
+    centroid: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("area", "second_moment", "shear_factor"):
             positive(name, getattr(self, name))
         if self.fourth_moment is None:
-            object.__setattr__(self, "fourth_moment", self.area * self.height**4 / 80.0)
+            object.__setattr__(self, "fourth_moment", self.area * self._equivalent_height**4 / 80.0)
         positive("fourth_moment", self.fourth_moment)
+        if self.height is not None:
+            self._check_height()
+        elif self.centroid is not None:
+            raise InputError("the centroid of a Section is above its lower face: give its height as well")
+
+    def _check_height(self) -> None:
+        height = positive("height", self.height)
+        if self.centroid is None:
+            object.__setattr__(self, "centroid", 0.5 * height)
+        centroid = positive("centroid", self.centroid)
+        if centroid >= height:
+            raise InputError(f"centroid ({centroid:g}) must lie below the upper face: less than height ({height:g})")
+        # all of the area at the two faces
+        largest = self.area * centroid * (height - centroid)
+        if self.second_moment > largest * (1.0 + _ROUNDING):
+            raise InputError(
+                f"a section of height {height:g} m with its centroid at {centroid:g} m has a second moment of at most "
+                f"A c (h - c) = {largest:g} m^4, got {self.second_moment:g}"
+            )
 
     @staticmethod
     def from_stiffness(
@@ -45,19 +70,20 @@ class Section:
         return StiffnessSection(axial, shear, bending, mass, rotary_inertia, coupling)
 
     @property
-    def height(self) -> float:
-        """Height of the equivalent rectangle [m]."""
-        return float(np.sqrt(12.0 * self.second_moment / self.area))
-
-    @property
     def width(self) -> float:
         """Width of the equivalent rectangle [m]."""
-        return self.area / self.height
+        return self.area / self._equivalent_height
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper y of the equivalent rectangle [m]."""
-        return -0.5 * self.height, 0.5 * self.height
+        """Lower and upper y [m] of the faces, those of the equivalent rectangle where no height is given."""
+        if self.height is None or self.centroid is None:
+            return -0.5 * self._equivalent_height, 0.5 * self._equivalent_height
+        return -self.centroid, self.height - self.centroid
+
+    @property
+    def _equivalent_height(self) -> float:
+        return float(np.sqrt(12.0 * self.second_moment / self.area))
 
     def rigidity(self, material: Material | None) -> Rigidity:
         """Return E A, k_s G A and E I. Raises InputError without a material."""
@@ -81,9 +107,15 @@ class Section:
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return the material with heights and weights over the equivalent rectangle."""
-        half = 0.5 * self.height
+        half = 0.5 * self._equivalent_height
         heights, weights = gauss_between(-half, half, _STRIPS)
         return [(required(material), heights, self.width * weights)]
+
+    def parts(self, material: Material | None) -> tuple[Part, ...]:
+        """Return the section as one part of which the moments are known, and the height where it was given."""
+        low, high = self.bounds
+        moments = (self.area, 0.0, self.second_moment, 0.0, float(self.fourth_moment or 0.0))
+        return (Part(required(material).youngs_modulus, MomentsOutline(moments, low, high, self.height is not None)),)
 
 
 def required(material: Material | None) -> Material:

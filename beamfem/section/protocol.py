@@ -6,6 +6,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from beamfem.material import Material
+from beamfem.section.outline import Part
 
 
 @dataclass(frozen=True)
@@ -48,4 +49,13 @@ class CrossSection(Protocol):
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return each material with quadrature heights y [m] and weights [m^2] over its part."""
+        ...
+
+
+@runtime_checkable
+class HasParts(Protocol):
+    """A section that knows its shape, or as much of it as there is to know."""
+
+    def parts(self, material: Material | None) -> tuple[Part, ...]:
+        """Return its parts of one material from the bottom up, each with its outline."""
         ...

@@ -1,17 +1,35 @@
 """Sections of common shapes."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.section.moments import Section
+from beamfem.material import Material
+from beamfem.section.moments import Section, required
+from beamfem.section.outline import Part, RectangleOutline, TubeOutline
 from beamfem.validation import positive
+
+
+@dataclass(frozen=True)
+class ShapedSection(Section):
+    """A section of which the shape is known: a rectangle, a circle or a tube; see `Rectangle`, `Circle` and `Tube`."""
+
+    outline: RectangleOutline | TubeOutline | None = None
+
+    def parts(self, material: Material | None) -> tuple[Part, ...]:
+        """Return the section as one part with its outline."""
+        if self.outline is None:
+            return super().parts(material)
+        return (Part(required(material).youngs_modulus, self.outline),)
 
 
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
     """Return the rectangular section width [m] (out of the plane) x height [m] (along y). Raises InputError."""
     positive("width", width)
     positive("height", height)
-    return Section(width * height, width * height**3 / 12.0, shear_factor)
+    outline = RectangleOutline(width, -0.5 * height, 0.5 * height)
+    return ShapedSection(width * height, width * height**3 / 12.0, shear_factor, height=height, outline=outline)
 
 
 def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
@@ -36,4 +54,7 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
     area = np.pi * (diameter**2 - inner**2) / 4.0
     second = np.pi * (diameter**4 - inner**4) / 64.0
     fourth = np.pi * (diameter**6 - inner**6) / 512.0
-    return Section(float(area), float(second), shear_factor, float(fourth))
+    outline = TubeOutline(0.5 * diameter, 0.5 * inner)
+    return ShapedSection(
+        float(area), float(second), shear_factor, float(fourth), height=float(diameter), outline=outline
+    )

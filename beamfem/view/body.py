@@ -1,13 +1,17 @@
 """The solid body with PyVista: a picture without a window, or a window with a slider over the steps."""
 
 import warnings
+from collections.abc import Sequence
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from beamfem.along import AxisPoints
 from beamfem.errors import InputError
+from beamfem.model.reference import sections_at
 from beamfem.solution import Solution
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
@@ -17,6 +21,7 @@ from beamfem.view.shapes import FIELD_COLOURS, Shapes
 _POINTS = 6000  # of all beams
 _ROWS = 400  # that the slider knows
 _PLAIN = "#6699BB"
+_STRONG, _PALE = (0x66, 0x99, 0xBB), (0xC4, 0xD6, 0xE3)  # of layers in turn
 
 
 def picture(
@@ -99,6 +104,11 @@ class _Scene:
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
         options: dict[str, Any] = {"color": _PLAIN}
+        if any(len(layers) > 1 for layers in shapes.layers):
+            # neighbouring layers differ in strength
+            numbers = [np.repeat(np.arange(len(layers)), 4 * layers[0].shape[1]) for layers in shapes.layers]
+            self.surface["layer"] = np.array([_STRONG, _PALE], dtype=np.uint8)[np.concatenate(numbers) % 2]
+            options = {"scalars": "layer", "rgb": True}
         if shapes.quantity is not None:
             self.surface["field"] = self._values(0)
             title = f"{shapes.quantity.label} [{shapes.quantity.unit}]"
@@ -107,6 +117,11 @@ class _Scene:
                    "label_font_size": 16}  # fmt: skip
             options = {"scalars": "field", "cmap": FIELD_COLOURS, "clim": shapes.limits, "scalar_bar_args": bar}
         self.plotter.add_mesh(self.surface, smooth_shading=False, specular=0.2, ambient=0.25, **options)
+
+    @cached_property
+    def widths(self) -> list[np.ndarray]:
+        """Width out of the plane at each point of each beam (points,) [m]."""
+        return _widths(self.shapes)
 
     def show_row(self, order: int) -> None:
         """Move the surface to a row and name it in the corner."""
@@ -119,7 +134,7 @@ class _Scene:
     def look(self) -> None:
         """Look at the plane of the beams from slightly above and beside, at every row in full."""
         low, high = self.shapes.box
-        width = max(float(_widths(self.shapes).max()), 1e-6 * float(np.max(high - low)))
+        width = max(float(np.concatenate(self.widths).max()), 1e-6 * float(np.max(high - low)))
         bounds = (low[0], high[0], low[1], high[1], -width, width)
         self.plotter.enable_parallel_projection()
         self.plotter.view_vector((0.25, 0.35, 1.0), viewup=(0.0, 1.0, 0.0))
@@ -129,37 +144,45 @@ class _Scene:
 
     def _points(self, order: int) -> np.ndarray:
         """Four corners of the section at each point: below and above, behind and before (points * 4, 3)."""
-        flat = np.concatenate([body[order] for body in self.shapes.body])
-        z = 0.5 * _widths(self.shapes)[:, None, None] * np.array([-1.0, 1.0])
+        flat = np.concatenate([faces[order] for layers in self.shapes.layers for faces in layers])
+        z = 0.5 * _by_layer(self.shapes, self.widths)[:, None, None] * np.array([-1.0, 1.0])
         corners = np.concatenate(
             [np.repeat(flat[:, :, None], 2, axis=2), np.broadcast_to(z, (len(flat), 2, 2))[..., None]], axis=-1
         )
         return corners.reshape(-1, 3)
 
     def _values(self, order: int) -> np.ndarray:
-        return np.repeat(np.concatenate([values[order] for values in self.shapes.values]), 4)
+        return np.repeat(_by_layer(self.shapes, [values[order] for values in self.shapes.values]), 4)
 
 
-def _widths(shapes: Shapes) -> np.ndarray:
-    """Width out of the plane at each point [m]: area over height, and the height where a section tells no area."""
-    result = []
-    for points in shapes.points:
-        height = points.faces[:, 1] - points.faces[:, 0]
-        sections = [points.mesh.beam.section_at(arc) for arc in (points.arc_length[0], points.arc_length[-1])]
-        ends = [getattr(section, "area", 0.0) / size for section, size in zip(sections, height[[0, -1]], strict=True)]
-        share = points.arc_length / points.arc_length[-1]
-        width = (1.0 - share) * ends[0] + share * ends[1]
-        result.append(np.where(width > 0.0, width, height))
-    return np.concatenate(result)
+def _by_layer(shapes: Shapes, values: Sequence[np.ndarray]) -> np.ndarray:
+    """Repeat values at the points of each beam (points,) for each of its layers."""
+    return np.concatenate([np.tile(own, len(parts)) for own, parts in zip(values, shapes.layers, strict=True)])
+
+
+def _widths(shapes: Shapes) -> list[np.ndarray]:
+    """Width out of the plane [m]: area over height, and the height where a section tells no area."""
+    return [_width(points) for points in shapes.points]
+
+
+def _width(points: AxisPoints) -> np.ndarray:
+    height = points.faces[:, 1] - points.faces[:, 0]
+    if points.mesh.beam.prismatic:
+        area = np.full(len(height), getattr(points.mesh.beam.section, "area", 0.0))
+    else:
+        sections = sections_at(points.mesh, points.element, points.xi)
+        area = np.array([getattr(section, "area", 0.0) for section in sections])
+    return np.where(area > 0.0, area / height, height)
 
 
 def _faces(shapes: Shapes) -> np.ndarray:
-    """Quadrilaterals of the surface as PyVista counts them: four sides of each piece and the caps of the beams."""
+    """Quadrilaterals of the surface as PyVista counts them: four sides of each piece of a layer, and its caps."""
     faces = []
     first = 0
+    parts = [points for points, layers in zip(shapes.points, shapes.layers, strict=True) for _ in layers]
     # corners of a section: 0 below behind, 1 below before, 2 above behind, 3 above before
     sides = np.array([(0, 1, 5, 4), (2, 6, 7, 3), (1, 3, 7, 5), (0, 4, 6, 2)])
-    for points in shapes.points:
+    for points in parts:
         number = len(points.xi)
         within = np.arange(number - 1)
         # two points stand at the common end of two elements

@@ -101,14 +101,14 @@ def _sized(solution: Solution, frames: int, fields: int) -> tuple[Shapes, bool]:
 def _fields(shapes: Shapes) -> list[dict[str, Any]]:
     """Return fields in 255 levels between their limits."""
     solution, rows = shapes.solution, shapes.rows
-    forces = [section_forces(points, solution.p[rows]) for points in shapes.points]
+    forces = [section_forces(points, solution, rows) for points in shapes.points]
     found = []
     for name in _names(solution):
         quantity = QUANTITIES[name]
         if name in _FORCES:
             parts = [own[name] for own in forces]
         else:
-            parts = [quantity.values(points, solution.p, solution.v, rows) for points in shapes.points]
+            parts = [quantity.values(points, solution, rows) for points in shapes.points]
         low, high = limits(parts)
         levels = np.round((np.concatenate(parts, axis=1) - low) / (high - low) * 255.0).astype(np.uint8)
         label = f"{quantity.label} [{quantity.unit}]"

@@ -51,6 +51,14 @@ class Shapes:
         ]
 
     @cached_property
+    def layers(self) -> list[list[np.ndarray]]:
+        """Lower and upper face of each layer of each beam (rows, points, 2 faces, 2) [m], from the bottom up."""
+        return [
+            [r[:, :, None] + own[None, :, :, None] * d[:, :, None] for own in np.moveaxis(points.layers, 1, 0)]
+            for points, (r, d) in zip(self.points, self._moved, strict=True)
+        ]
+
+    @cached_property
     def axis(self) -> list[np.ndarray]:
         """Axis of each beam (rows, points, 2) [m]."""
         return [r for r, _ in self._moved]
@@ -63,8 +71,7 @@ class Shapes:
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""
         assert self.quantity is not None
-        states = self.solution.p, self.solution.v
-        return [self.quantity.values(points, *states, self.rows) for points in self.points]
+        return [self.quantity.values(points, self.solution, self.rows) for points in self.points]
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -99,9 +106,11 @@ class Shapes:
         lines = LineCollection([axis[order] for axis in self.axis], colors=[colour], linewidths=1.3, zorder=2 + share)
         drawn: list[Any] = [lines]
         if self._bodies_drawn:
-            outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
-            fill = PolyCollection(outlines, facecolors=[(*colour, 0.45)], edgecolors="none", zorder=2 + share)
-            drawn.insert(0, fill)
+            parts = [(number, faces[order]) for layers in self.layers for number, faces in enumerate(layers)]
+            outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for _, faces in parts]
+            # neighbouring layers differ in strength
+            colours = [(*colour, 0.45 if number % 2 == 0 else 0.25) for number, _ in parts]
+            drawn.insert(0, PolyCollection(outlines, facecolors=colours, edgecolors="none", zorder=2 + share))
         for artist in drawn:
             axes.add_collection(artist, autolim=False)
         return drawn
@@ -128,7 +137,8 @@ class Shapes:
         drawn: list[Any] = []
         if self._bodies_drawn:
             fill = PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)
-            outlines = [np.concatenate([body[order, :, 0], body[order, ::-1, 1]]) for body in self.body]
+            parts = [faces[order] for layers in self.layers for faces in layers]
+            outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for faces in parts]
             edges = str(1.0 - 0.75 * strength)
             drawn += [fill, PolyCollection(outlines, facecolors="none", edgecolors=edges, linewidths=0.4)]
         drawn.append(LineCollection(list(np.concatenate(pieces)), colors=colours, linewidths=2.0, capstyle="round"))

@@ -1,0 +1,84 @@
+"""The stress over the sections at points of a beam, each section and its layers taken where the point is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.model.grid import Grid
+from beamfem.model.reference import curvature, sections_at
+from beamfem.section.distribution import Distribution, distribution, layers_of
+from beamfem.section.protocol import CrossSection
+
+# points (n,) and how the section distributes forces at them
+_Group = tuple[np.ndarray, Distribution]
+
+
+@dataclass(frozen=True, eq=False)
+class Distributions:
+    """How the sections at points (n,) of a beam distribute forces over their height.
+
+    layers: lower and upper y (n, layers, 2) [m], from the bottom up; where a section has fewer layers than others, the
+    missing ones have no thickness and lie on its upper face. One for all points of a prismatic beam.
+    """
+
+    groups: tuple[_Group, ...]
+    layers: np.ndarray
+
+    def normal_stress(self, layer: int | None, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
+        """Return the stress along the beam [Pa] (steps, n, heights) under N [N] and M [N m] (steps, n).
+
+        y (n, heights) [m]; layer: where there are several, the one that y belongs to; None: the one around the axis.
+        """
+        return self._stress(
+            layer, y, lambda own, at, y, here: own.normal_stress(at, y, normal[:, here, None], moment[:, here, None])
+        )
+
+    def shear_stress(self, layer: int | None, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """Return the shear stress [Pa] (steps, n, heights) under V (steps, n) [N]; y and layer as before."""
+        return self._stress(layer, y, lambda own, at, y, here: own.shear_stress(at, y, shear[:, here, None]))
+
+    def _stress(self, layer: int | None, y: np.ndarray, of: Callable[..., np.ndarray]) -> np.ndarray:
+        parts = []
+        for here, own in self.groups:
+            at = own.layer_at(0.0) if layer is None else min(layer, len(own.layers) - 1)
+            parts.append(of(own, at, y[here], here))
+        order = np.argsort(np.concatenate([here for here, _ in self.groups]), kind="stable")
+        return np.concatenate(parts, axis=1)[:, order]
+
+    @property
+    def number(self) -> np.ndarray:
+        """Number of layers at each point (n,)."""
+        result = np.empty(len(self.layers), dtype=int)
+        for here, own in self.groups:
+            result[here] = len(own.layers)
+        return result
+
+
+def distributions(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Distributions:
+    """Return how the sections at points (element, xi) of a beam distribute forces over their height."""
+    bend = curvature(grid, element, xi)[:, None]
+    material = grid.beam.material
+    groups: list[_Group]
+    if isinstance(grid.beam.section, CrossSection):
+        groups = [(np.arange(len(element)), distribution(grid.beam.section, material, bend))]
+    else:
+        groups = [
+            (np.array([i]), distribution(section, material, bend[i]))
+            for i, section in enumerate(sections_at(grid, element, xi))
+        ]
+    return Distributions(tuple(groups), layers(grid, element, xi))
+
+
+def layers(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Return lower and upper y (n, layers, 2) [m] of the layers at points (element, xi); see `Distributions`."""
+    material = grid.beam.material
+    if isinstance(grid.beam.section, CrossSection):
+        own = np.array(layers_of(grid.beam.section, material))
+        return np.broadcast_to(own, (len(element), *own.shape))
+    found = [layers_of(section, material) for section in sections_at(grid, element, xi)]
+    result = np.empty((len(element), max(map(len, found)), 2))
+    for point, at in enumerate(found):
+        result[point, : len(at)] = at
+        result[point, len(at) :] = at[-1][1]
+    return result

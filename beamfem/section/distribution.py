@@ -1,0 +1,147 @@
+"""How a section distributes normal force, shear force and moment over its height."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.material import Material
+from beamfem.section.outline import MomentsOutline, Part
+from beamfem.section.protocol import CrossSection, HasParts
+
+_SAME = 1e-12  # share of the height within which a height is that of a face
+
+
+@dataclass(frozen=True, eq=False)
+class Distribution:
+    """Stress over a section whose fibres at y have the length 1 - curvature y of the axis' in the reference.
+
+    layers: lower and upper y [m] of each part, from the bottom up; curvature [1/m] of the reference, > 0 towards +y, a
+    number or an array that goes with those of the methods; flexibility: stretch of the axis and change of curvature
+    [1/m] by N and M, [[a, c], [c, b]] as a [1/N], b [1/(N m^2)], c [1/(N m)].
+
+    Plane sections: sigma = E (e - k y) / (1 - curvature y), Winkler's hyperbola, which is linear on a straight beam.
+    The shear stress balances its change along the beam, N' = curvature V and M' = -V (Jourawski): on a straight beam
+    V Q / (I b). Resultants are exactly N, V and M. Source: Timoshenko, Strength of Materials II, chapter 2.
+    """
+
+    layers: tuple[tuple[float, float], ...]
+    parts: tuple[Part, ...]
+    curvature: np.ndarray
+    flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+    @property
+    def has_stress(self) -> bool:
+        """Whether the section has a material and ends at known heights, so that its faces have a stress."""
+        return bool(self.parts) and all(part.outline.known for part in self.parts)
+
+    def layer_at(self, y: float) -> int:
+        """Return the layer at a height [m], on a face between two layers the upper one, beyond all the nearest."""
+        return int(np.clip(np.searchsorted([low for low, _ in self.layers], y, side="right") - 1, 0, None))
+
+    def normal_stress(self, layer: int, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
+        """Return the stress along the beam [Pa] at heights y [m] of a layer under N [N] and M [N m] about the axis.
+
+        nan where the section is known by its stiffness only, off the axis where its height is not known, and where it
+        reaches the centre of curvature.
+        """
+        y = np.asarray(y, dtype=float)
+        if not self.parts:
+            return _nothing(y, normal, moment, self.curvature)
+        part = self.parts[layer]
+        stretch, bend = self._strain(normal, moment)
+        length = 1.0 - self.curvature * y
+        result = part.modulus * (stretch - bend * y) / np.where(length > 0.0, length, np.nan)
+        return np.asarray(result if part.outline.known else np.where(y == 0.0, result, np.nan))
+
+    def shear_stress(self, layer: int, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """Return the shear stress [Pa] at heights y [m] of a layer under V [N], its mean over the width there.
+
+        0 at the faces; nan where the width of the section is not known.
+        """
+        y = np.asarray(y, dtype=float)
+        if not self.parts:
+            return _nothing(y, shear, self.curvature)
+        part = self.parts[layer]
+        at = np.clip(y, part.outline.low, part.outline.high)
+        area, first = part.outline.below(at)
+        area, first = part.modulus * area, part.modulus * first
+        for lower in self.parts[:layer]:
+            whole = lower.outline.below(np.asarray(lower.outline.high))
+            area, first = area + lower.modulus * whole[0], first + lower.modulus * whole[1]
+        shear = np.asarray(shear, dtype=float)
+        stretch, bend = self._strain(self.curvature * shear, -shear)
+        low, high = self.layers[0][0], self.layers[-1][1]
+        near = _SAME * (high - low)
+        free = ((at <= low + near) | (at >= high - near)) & part.outline.known
+        width = np.where(free, 1.0, part.outline.width(at))
+        length = 1.0 - self.curvature * at
+        flow = (bend * first - stretch * area) / np.where(length > 0.0, length, np.nan) ** 2
+        return np.asarray(np.where(free & np.isfinite(stretch), 0.0, flow / width))
+
+    def _strain(self, normal: np.ndarray, moment: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the stretch of the axis and the change of curvature [1/m]."""
+        axial, coupling, bending = self.flexibility
+        return axial * normal + coupling * moment, coupling * normal + bending * moment
+
+
+def distribution(section: CrossSection, material: Material | None, curvature: float | np.ndarray) -> Distribution:
+    """Return how a section distributes N, V and M where the reference has a curvature [1/m], > 0 towards +y.
+
+    A section that tells its `parts` is taken as it is, any other by the moments of its materials; one that is known by
+    its stiffness has no stress. Raises InputError without a material where the section needs one.
+    """
+    bend = np.asarray(curvature, dtype=float)
+    parts, layers = _parts(section, material), layers_of(section, material)
+    if not parts:
+        nothing = np.full(bend.shape, np.nan)
+        return Distribution(layers, (), bend, (nothing, nothing, nothing))
+    reach = np.maximum(bend * layers[0][0], bend * layers[-1][1])
+    # a section that reaches the centre of curvature has fibres without a length
+    flexibility = _flexibility(
+        parts, np.where(reach < 1.0, bend, np.nan), np.max(reach, where=reach < 1.0, initial=0.0)
+    )
+    return Distribution(layers, parts, bend, flexibility)
+
+
+def layers_of(section: CrossSection, material: Material | None) -> tuple[tuple[float, float], ...]:
+    """Return lower and upper y [m] of each part of a section, from the bottom up."""
+    if isinstance(section, HasParts):
+        return tuple((part.outline.low, part.outline.high) for part in section.parts(material))
+    low, high = section.bounds
+    return ((float(low), float(high)),)
+
+
+def _parts(section: CrossSection, material: Material | None) -> tuple[Part, ...]:
+    if isinstance(section, HasParts):
+        return section.parts(material)
+    low, high = section.bounds
+    known = section.materials_at(np.array([low, high]), material)
+    if len(known) != 1:
+        return ()  # of several materials only the section itself knows where each is
+    own_material, moments = section.moments(material)[0]
+    return (Part(own_material.youngs_modulus, MomentsOutline(tuple(moments.tolist()), float(low), float(high))),)
+
+
+def _flexibility(
+    parts: tuple[Part, ...], curvature: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Invert N = A e - S k, M = -S e + I k with the integrals A, S, I of E y^n / (1 - curvature y) over the section."""
+    axial, first, bending = (np.zeros(curvature.shape) for _ in range(3))
+    for part in parts:
+        heights, weights = part.outline.quadrature(_points(reach))
+        stiff = part.modulus * weights / (1.0 - curvature[..., None] * heights)
+        axial, first, bending = (total + stiff @ heights**n for n, total in enumerate((axial, first, bending)))
+    size = axial * bending - first**2
+    return bending / size, first / size, axial / size
+
+
+def _points(reach: float) -> int:
+    """Return the points that integrate 1 / (1 - curvature y) to round-off; reach: the largest |curvature y|."""
+    if reach < 1e-3:
+        return 12
+    inverse = 1.0 / min(reach, 0.999)
+    return max(12, int(20.0 / np.log(inverse + np.sqrt(inverse**2 - 1.0))))
+
+
+def _nothing(*arrays: np.ndarray) -> np.ndarray:
+    return np.full(np.broadcast_shapes(*(np.shape(array) for array in arrays)), np.nan)

@@ -1,0 +1,142 @@
+"""What the stress over a section needs of its shape: how wide it is at each height, and what lies below it."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+
+class Outline(Protocol):
+    """A part of a section between two heights y [m] above the beam's axis."""
+
+    @property
+    def low(self) -> float: ...
+    @property
+    def high(self) -> float: ...
+    @property
+    def known(self) -> bool: ...  # whether the part ends at `low` and `high`
+    def width(self, y: np.ndarray) -> np.ndarray: ...  # [m], nan where it is not known
+
+    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the integrals of 1 [m^2] and y [m^3] over what lies below the heights y."""
+        ...
+
+    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return heights [m] and weights [m^2] of a rule over the part; points: how fine it is."""
+        ...
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a section of one Young's modulus [Pa]."""
+
+    modulus: float
+    outline: Outline
+
+
+@dataclass(frozen=True)
+class RectangleOutline:
+    """A rectangle from low to high [m] of one width [m]."""
+
+    breadth: float
+    low: float
+    high: float
+    known: ClassVar[bool] = True
+
+    def width(self, y: np.ndarray) -> np.ndarray:
+        return np.full(np.shape(y), self.breadth)
+
+    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        thickness = y - self.low
+        return self.breadth * thickness, 0.5 * self.breadth * thickness * (y + self.low)
+
+    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
+        at, weights = _gauss(points)
+        half = 0.5 * (self.high - self.low)
+        return 0.5 * (self.low + self.high) + half * at, self.breadth * half * weights
+
+
+@dataclass(frozen=True)
+class TubeOutline:
+    """A circular tube of an outer and an inner radius [m] around the axis; a full circle with inner = 0."""
+
+    outer: float
+    inner: float = 0.0
+    known: ClassVar[bool] = True
+
+    @property
+    def low(self) -> float:
+        return -self.outer
+
+    @property
+    def high(self) -> float:
+        return self.outer
+
+    def width(self, y: np.ndarray) -> np.ndarray:
+        return 2.0 * (_half_chord(self.outer, y) - _half_chord(self.inner, y))
+
+    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        outer, inner = _segment(self.outer, y), _segment(self.inner, y)
+        return outer[0] - inner[0], outer[1] - inner[1]
+
+    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
+        heights, weights = _disc_rule(self.outer, points)
+        hole, missing = _disc_rule(self.inner, points)
+        return np.append(heights, hole), np.append(weights, -missing)
+
+
+@dataclass(frozen=True)
+class MomentsOutline:
+    """A part of which only integrals are known: of 1, y, ..., y^4 [m^2 ... m^6].
+
+    known: whether it ends at low and high [m], or these are the equivalent rectangle's.
+    """
+
+    moments: tuple[float, float, float, float, float]
+    low: float
+    high: float
+    known: bool = True
+
+    def width(self, y: np.ndarray) -> np.ndarray:
+        return np.full(np.shape(y), np.nan)
+
+    def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the integrals at the two ends; they are not known between."""
+        share = np.where(y >= self.high, 1.0, np.where(y <= self.low, 0.0, np.nan))
+        return self.moments[0] * share, self.moments[1] * share
+
+    def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return three points around the centroid with these moments but the third, the outer ones not beyond faces."""
+        area, first, second, third, fourth = self.moments
+        centroid = first / area
+        spread = second - first * centroid
+        central = fourth - 4.0 * centroid * third + 6.0 * centroid**2 * second - 3.0 * centroid**4 * area
+        reach = np.sqrt(central / spread)
+        if self.known:
+            reach = min(reach, max(centroid - self.low, self.high - centroid))
+        outer = 0.5 * spread / reach**2
+        heights = centroid + reach * np.array([-1.0, 0.0, 1.0])
+        return heights, np.array([outer, area - 2.0 * outer, outer])
+
+
+@lru_cache(maxsize=32)
+def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(points)
+
+
+def _half_chord(radius: float, y: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum((radius - y) * (radius + y), 0.0))
+
+
+def _segment(radius: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return area and first moment of the part of a disc below y."""
+    at = np.clip(y, -radius, radius)
+    chord = _half_chord(radius, at)
+    return radius**2 * np.arctan2(chord, -at) + at * chord, -2.0 / 3.0 * chord**3
+
+
+def _disc_rule(radius: float, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points over a disc, those of the Chebyshev polynomials of the second kind."""
+    angle = np.pi * np.arange(1, points + 1) / (points + 1)
+    return radius * np.cos(angle), 2.0 * np.pi / (points + 1) * (radius * np.sin(angle)) ** 2

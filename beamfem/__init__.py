@@ -45,7 +45,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.grading import graded
 from beamfem.model.joints import Hinge, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise
@@ -109,6 +109,7 @@ __all__ = [
     "PointMoment",
     "Polyline",
     "Prescribed",
+    "Pressure",
     "Rectangle",
     "Rigid",
     "RigidVelocity",

@@ -141,7 +141,8 @@ def _at_points(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) 
     r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[here]
     square = dot(g, g)[..., None]
     follows = np.any(at_rest, axis=1, keepdims=True)
-    co, si = dot(g, at_rest)[..., None] / np.sqrt(square), cross(at_rest, g)[..., None] / np.sqrt(square)
+    unit = np.where(points.stretches[here][:, None], 1.0, np.sqrt(square))
+    co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
     dead = values[..., :2]
     force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[here] * (r - points.anchor[here])
     turning = values[..., 2:] * across(g) / square

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem import postprocess
-from beamfem.element.coordinates import Gradients
 from beamfem.errors import InputError
 from beamfem.free_bodies import Cuts
 from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
 from beamfem.section_forces import at_points
+from beamfem.turns import turned_of
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -89,9 +89,11 @@ def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.nd
     return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
 
 
-def rotation(points: AxisPoints, p: np.ndarray) -> np.ndarray:
-    """Return the rotation of the section from the reference (steps, points) [rad]; steps must follow each other."""
-    return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi)
+def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    """Return the rotation of the section from the reference (rows, points) [rad]."""
+    turned, p = turned_of(solution, points.mesh), solution.p[rows]
+    counted = None if turned is None else turned[rows]
+    return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi, counted)
 
 
 @dataclass(frozen=True)
@@ -118,13 +120,6 @@ def _shear_angle(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> 
     return postprocess.shear_angle(points.now(solution.p[rows]))
 
 
-def _rotation(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
-    # gradients count full turns from row to row and must see them all
-    if isinstance(points.mesh.beam.element.coordinates, Gradients):
-        return rotation(points, solution.p)[rows]
-    return rotation(points, solution.p[rows])
-
-
 def _displacement(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
 
@@ -137,7 +132,7 @@ QUANTITIES = {
     "moment": Quantity("bending moment", "N m", _section_force("moment")),
     "normal": Quantity("normal force", "N", _section_force("normal")),
     "shear": Quantity("shear force", "N", _section_force("shear")),
-    "rotation": Quantity("rotation", "rad", _rotation),
+    "rotation": Quantity("rotation", "rad", rotation),
     "displacement": Quantity("displacement", "m", _displacement),
     "speed": Quantity("speed", "m/s", _speed),
     "axial_strain": Quantity("axial strain", "-", _axial_strain),

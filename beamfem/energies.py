@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Energy:
     """Energies (steps,) [J]; potential is that of gravity, of the other constant dead forces, springs and foundations.
 
-    Forces that follow have none.
+    Forces that follow and pressures have none.
     """
 
     kinetic: np.ndarray
@@ -64,8 +64,8 @@ def _of_loads(solution: "Solution") -> np.ndarray:
     for spread in solution.model.distributed:
         if not spread.follower:
             weights = np.array([factor(spread, at, solution.static) for at in solution.at])
-            moved, weight = _along(solution, spread.beam)
-            result -= weights * (np.einsum("sqc,c->sq", moved, np.array(spread.vector)) @ weight)
+            moved, weight, arc = _along(solution, spread.beam)
+            result -= weights * np.einsum("sqc,qc,q->s", moved, spread.values(arc), weight)
     return result
 
 
@@ -74,17 +74,17 @@ def _of_springs(solution: "Solution") -> np.ndarray:
     result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
     for support in solution.model.supports:
         if isinstance(support, Foundation):
-            moved, weight = _along(solution, support.beam)
+            moved, weight, _ = _along(solution, support.beam)
             result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
     return np.asarray(result)
 
 
-def _along(solution: "Solution", beam: Beam) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements (steps, nq, 2) [m] at points along the axis of a beam, and their weights (nq,) [m]."""
+def _along(solution: "Solution", beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return displacements (steps, nq, 2) [m] at points along a beam, and their weights and arc lengths (nq,) [m]."""
     mesh = solution.model.mesh_of(beam.start)
     element, xi, weight = length_points(mesh)
     now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p), element, xi).r
-    return now - reference_position(mesh, element, xi), weight
+    return now - reference_position(mesh, element, xi), weight, mesh.arc_length(element, xi)
 
 
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.model.loads import Gravity, PointMoment
+from beamfem.model.loads import Gravity, PointMoment, Pressure
 from beamfem.model.system import system_of
 from beamfem.solution import Solution
+from beamfem.turns import start_rotations
 
 _ROWS = 100  # at which energies are looked at, for what they are measured by
 
@@ -32,15 +33,13 @@ class EnergyDrift:
 def energy_drift(solution: Solution) -> EnergyDrift | None:
     """Return the drift of a motion's energy; None where something does work on it.
 
-    That is so under loads with an amplitude or that follow, and where supports move.
+    That is so under loads with an amplitude, loads that follow and pressures, and where supports move.
     """
     if solution.static or not _conservative(solution):
         return None
-    # where moments act, rotations are followed from row to row
-    followed = any(isinstance(load, PointMoment) for load in solution.model.loads)
-    rows = np.arange(len(solution)) if followed else np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
+    rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    some = Solution(solution.model, False, at, p, v, a, solution.statistics)
+    some = Solution(solution.model, False, at, p, v, a, solution.statistics, turned=start_rotations(solution)[rows])
     energy = some.energy()
     total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
@@ -50,7 +49,9 @@ def _conservative(solution: Solution) -> bool:
     system = system_of(solution.model, static=False)
     moved = any(callable(item.value) for item in system.held)
     driven = any(
-        load.amplitude is not None or (not isinstance(load, Gravity | PointMoment) and load.follower)
+        load.amplitude is not None
+        or isinstance(load, Pressure)
+        or (not isinstance(load, Gravity | PointMoment) and load.follower)
         for load in solution.model.loads
     )
     return not moved and not driven

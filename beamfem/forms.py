@@ -43,6 +43,15 @@ def mass_basis(mesh: BeamMesh) -> Basis:
     return beam_basis(mesh, max(field.degree, field.director_degree) + 1)
 
 
+def axis_basis(mesh: BeamMesh) -> Basis:
+    """Return the basis of a beam with points on its axis alone, which integrates over the length."""
+    field = mesh.beam.element.field
+    xi, weights = _gauss(max(field.degree, field.director_degree) + 1)
+    line = mesh.skfem
+    points = np.stack([xi, np.zeros_like(xi)])
+    return Basis(line, FieldElement(field), mapping=BeamMapping(line), quadrature=(points, weights))
+
+
 def nodal_numbers(basis: Basis) -> np.ndarray:
     """Return the number (N,) of each degree of freedom in e, the nodal vectors of all nodes along the beam."""
     element = basis.elem
@@ -100,6 +109,13 @@ def mass(u: Any, v: Any, w: Any) -> np.ndarray:
 def gravity_load(v: Any, w: Any) -> np.ndarray:
     """Weight, the integral of density g . v [N, N m]; of density [kg/m^3], gx, gy [m/s^2]."""
     return w.density * (w.gx * v[0] + w.gy * v[1])
+
+
+@LinearForm
+def pressure_load(v: Any, w: Any) -> np.ndarray:
+    """Pressure on the axis, the integral of p (-y', x') . v [N, N m]; of u, pressure [N/m], on an `axis_basis`."""
+    F = grad(w.u)
+    return w.pressure * (F[0, 0] * v[1] - F[1, 0] * v[0])
 
 
 def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:

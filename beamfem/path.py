@@ -81,7 +81,7 @@ class Bifurcation(PathState):
 class Path(Solution):
     """The equilibria along a path, in order; load factors may fall.
 
-    Row i is the state `path[i]`; limit points and bifurcations lie between the rows. `save` keeps the rows only.
+    Row i is the state `path[i]`; limit points and bifurcations lie between the rows.
     The bifurcation that a branch starts from is no stable row.
     """
 

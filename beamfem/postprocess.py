@@ -96,22 +96,25 @@ def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
     return section_frame(now.d)[0]
 
 
-def turning(mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Rotation of the section from the reference (steps, points) [rad], continuous over steps."""
+def turning(
+    mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
+) -> np.ndarray:
+    """Rotation of the section from the reference (steps, points) [rad]; turned: see `nodal_rotations`."""
     start = direction(mesh, reference_axis(mesh, element, xi))
     normal = direction(mesh, now)
     angle = np.arctan2(cross(start, normal), dot(start, normal))
     inner = mesh.node.shape[1] - 1
     node = mesh.node[element, np.round(xi * inner).astype(int)]
-    near = nodal_rotations(mesh, p)[:, node]
+    near = nodal_rotations(mesh, p, turned)[:, node]
     return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
 
 
-def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
+def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:
     """Return the rotation of each node's section from the reference (steps, nodes) [rad].
 
     Angles are coordinates of their own. Gradients know a rotation up to full turns only: it is continued along the beam
-    from its first angle, or else from its start, and there over the states, the first of them within half a turn.
+    from its first angle, or else from its start. There it is what is nearest to `turned` (steps,) [rad], as the solve
+    has counted it; else it is continued over the states, the first of them within half a turn.
     """
     table = mesh.table(p)
     result = np.empty(table.shape[:2])
@@ -131,24 +134,33 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
         anchor = int(np.flatnonzero(known)[0])
         shift = result[:, anchor] - angle[:, anchor]
         return np.asarray(angle + 2.0 * np.pi * np.round(shift / (2.0 * np.pi))[:, None])
+    if turned is not None:
+        return np.asarray(angle + 2.0 * np.pi * np.round((turned - angle[:, 0]) / (2.0 * np.pi))[:, None])
     start = np.unwrap(angle[:, 0])
     start -= 2.0 * np.pi * np.round(start[0] / (2.0 * np.pi))
     return np.asarray(angle + (start - angle[:, 0])[:, None])
 
 
-def fields(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray, forces: np.ndarray) -> Fields:
+def fields(
+    mesh: BeamMesh,
+    p: np.ndarray,
+    element: np.ndarray,
+    xi: np.ndarray,
+    forces: np.ndarray,
+    turned: np.ndarray | None = None,
+) -> Fields:
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
 
-    forces (steps, 3, points): normal force, shear force and moment there.
+    forces (steps, 3, points): normal force, shear force and moment there; turned: see `nodal_rotations`.
     """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = strain_at_axis(mesh, now, element, xi)
     own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
     along = own.normal_stress(None, height, forces[:, 0], forces[:, 2])[..., 0]
     sheared = own.shear_stress(None, height, forces[:, 1])[..., 0]
-    turned = turning(mesh, p, now, element, xi)
+    angle = turning(mesh, p, now, element, xi, turned)
     stress = Components(along, 0.0 * along, sheared)
-    return Fields(now.r, now.r_s, now.d, turned, shear_angle(now), strain, stress)
+    return Fields(now.r, now.r_s, now.d, angle, shear_angle(now), strain, stress)
 
 
 def shear_angle(now: Axis) -> np.ndarray:

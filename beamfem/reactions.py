@@ -8,28 +8,51 @@ from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
 from beamfem.last_digits import exactly
 from beamfem.model.beam import Point
-from beamfem.model.system import system_of
+from beamfem.model.held import held_coordinate
+from beamfem.model.supports import Spring
+from beamfem.model.system import System, system_of
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
 
 
 def reaction(solution: "Solution", point: Point) -> np.ndarray:
-    """Return fx, fy [N] and m [N m] of the supports and springs at a point (steps, 3).
+    """Return fx, fy [N] and m [N m] of the supports and springs at a point of a beam (steps, 3).
 
-    Raises InputError where no support is.
+    Those at points of other beams that are joined there are not in it. Raises InputError where no support is.
     """
     model = solution.model
     mesh = model.mesh_of(point)
-    near = [s for s in model.point_supports if s.point.beam is point.beam]
-    if not any(abs(support.point.fraction - point.fraction) < 1e-9 for support in near):
+    on_beam = [support for support in model.point_supports if support.point.beam is point.beam]
+    own = [support for support in on_beam if abs(support.point.fraction - point.fraction) < 1e-9]
+    if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
     dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
+    held = {held_coordinate(support, direction) for support in own for direction in support.held()}
+    if None in held:  # an inclined roller
+        held |= {"r^x", "r^y"}
     result = np.zeros((len(solution), 3))
     for column, name in enumerate(("r^x", "r^y", "theta")):
         if name in dofs:
-            result[:, column] = solution.support_forces[:, dofs[name]]
+            stiffness = sum(support.by_coordinate[name] for support in own if isinstance(support, Spring))
+            result[:, column] = _of_some(solution, dofs[name], name in held, stiffness)
     return result
+
+
+def _of_some(solution: "Solution", dof: int, held: bool, stiffness: float) -> np.ndarray:
+    """Return the force (steps,) on a coordinate of those supports that hold it, or not, and have this stiffness."""
+    system = system_of(solution.model, solution.static)
+    moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
+    if not held:
+        return np.asarray(-stiffness * moved)
+    others = float(system.springs.stiffness[system.springs.dof == dof].sum()) - stiffness
+    return np.asarray(solution.support_forces[:, dof] + others * moved)
+
+
+def _supported(system: System) -> set[int]:
+    """Return the coordinates that supports other than springs act on."""
+    inclined = {dof + axis for dof, _ in system.inclined for axis in (0, 1)}
+    return {*system.held_dofs.tolist(), *inclined}
 
 
 def support_forces(solution: "Solution") -> np.ndarray:
@@ -37,9 +60,7 @@ def support_forces(solution: "Solution") -> np.ndarray:
     model = solution.model
     system = system_of(model, solution.static)
     held = np.zeros(model.size, dtype=bool)
-    held[system.held_dofs] = True
-    for dof, _ in system.inclined:
-        held[dof : dof + 2] = True
+    held[list(_supported(system))] = True
     springs = system.springs
 
     def forces(p: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.status import Status
+from beamfem.turns import start_rotations, turned_of
 
 if TYPE_CHECKING:
     from beamfem.energy_drift import EnergyDrift
@@ -57,7 +58,8 @@ class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
     at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
-    equilibrium, where the solver knows it.
+    equilibrium, where the solver knows it; turned (steps, m) [rad]: see `turns.start_rotations`, where the solver has
+    counted them between the rows.
     """
 
     model: Model
@@ -68,6 +70,7 @@ class Solution:
     a: np.ndarray
     statistics: Statistics
     stability: np.ndarray | None = None
+    turned: np.ndarray | None = None
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
@@ -86,8 +89,7 @@ class Solution:
     def __getitem__(self, row: int | slice) -> "State | Solution":
         """Return the state of a row, or a Solution of the rows of a slice with the statistics of the whole.
 
-        With gradients, rotations of a slice start anew within half a turn. Raises InputError for an empty slice and
-        what is neither, IndexError beyond the last row.
+        Raises InputError for an empty slice and what is neither, IndexError beyond the last row.
         """
         if isinstance(row, slice):
             return self._rows(row)
@@ -107,7 +109,7 @@ class Solution:
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
         stability = None if self.stability is None else self.stability[rows]
-        return Solution(self.model, self.static, *parts, self.statistics, stability)
+        return Solution(self.model, self.static, *parts, self.statistics, stability, start_rotations(self)[rows])
 
     @property
     def status(self) -> Status:
@@ -165,7 +167,7 @@ class Solution:
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
         forces = at_points(self, mesh, Cuts(element, xi, np.array([True])))
-        found = postprocess.fields(mesh, self.p, element, xi, forces)
+        found = postprocess.fields(mesh, self.p, element, xi, forces, turned_of(self, mesh))
         return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
@@ -187,7 +189,7 @@ class Solution:
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
         now = self._axis(point, postprocess.nodal_vectors(mesh, self.p))
-        return postprocess.turning(mesh, self.p, now, element, xi)[:, 0]
+        return postprocess.turning(mesh, self.p, now, element, xi, turned_of(self, mesh))[:, 0]
 
     def _axis(self, point: Point, vectors: np.ndarray) -> postprocess.Axis:
         mesh = self.model.mesh_of(point)

@@ -5,6 +5,8 @@ import numpy as np
 from beamfem.kernels.advance import advance, working_space
 from beamfem.model.system import System
 
+Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
+
 
 class BandMotion:
     """Marches through time steps; keeps tangent and differences of the acceleration from one call to the next.
@@ -22,13 +24,11 @@ class BandMotion:
         self._memory = rows, rows.reshape(-1), np.zeros((3, size)), *directions, statistics
         self._space = working_space(size, unknown)
 
-    def advance(
-        self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: tuple[np.ndarray, int, int]
-    ) -> int:
+    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
-        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: rows
-        (steps, 3, n), number of the first step, and how many steps make a row.
+        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: see
+        `kernels.advance.advance`.
         """
         system = self._system
         completed: int = advance(

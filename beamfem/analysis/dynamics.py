@@ -15,7 +15,9 @@ from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
+from beamfem.model.turns import turning_pairs
 from beamfem.solution import Solution, State, Statistics
+from beamfem.turns import first_turns
 from beamfem.validation import count, positive
 
 
@@ -61,8 +63,10 @@ def simulate(
         state[1, pair] -= normal * (normal @ state[1, pair])
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
-    record = Record(np.empty((-(-(len(times) - 1) // save_every) + 1, 3, model.size)), save_every, new_statistics())
-    record.states[0] = state[:3]
+    rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
+    kept = np.empty((rows, 3, model.size)), save_every, new_statistics()
+    record = Record(*kept, pairs, np.empty((rows, len(pairs))))
+    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0])
     reached = march(system, integrator, parts, held, state, record)
     solution = _solution(system, times, record, reached.steps, len(ends) - len(times), unresolved)
     if reached.failed is not None:
@@ -79,11 +83,11 @@ def _solution(
     system: System, times: np.ndarray, record: Record, done: int, further: int, unresolved: list[str]
 ) -> Solution:
     kept_steps = np.append(np.arange(0, done, record.every), done)
-    kept = record.states[: len(kept_steps)]
+    kept, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
     ended = f"{done} steps of {times[1]:g} s"
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
         ended += f"; the {name} varies within steps, which is lost"
     summary = Statistics(int(record.statistics[0]), done, 0, ended)
-    return Solution(system.model, False, times[kept_steps], kept[:, 0], kept[:, 1], kept[:, 2], summary)
+    return Solution(system.model, False, times[kept_steps], kept[:, 0], kept[:, 1], kept[:, 2], summary, turned=turned)

@@ -6,9 +6,10 @@ A step is solved to the same tolerances. Only a factorisation is kept longer, fo
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.analysis.band_motion import Saving
 from beamfem.analysis.equations import linearise, residual
 from beamfem.analysis.tangent import Factorised
-from beamfem.kernels.advance import complete, correct, judge, predict
+from beamfem.kernels.advance import complete, correct, count_turns, judge, predict
 from beamfem.model.system import System
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
@@ -34,15 +35,13 @@ class EntangledMotion:
         self._differences = np.zeros((3, system.model.size))
         self._factors: Factorised | None = None
 
-    def advance(
-        self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: tuple[np.ndarray, int, int]
-    ) -> int:
+    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
-        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: rows
-        (steps, 3, n), number of the first step, and how many steps make a row.
+        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: see
+        `kernels.advance.advance`.
         """
-        saved, first, every = saving
+        saved, first, every, counted, turned, saved_turns = saving
         dofs, statistics = self.system.held_dofs, self.statistics
         for step, time in enumerate(times):
             before = state.copy()
@@ -51,8 +50,10 @@ class EntangledMotion:
                 return step
             ends = complete(state, before, self._differences, self._inverse_scale, dofs, self.rule)
             statistics[6], statistics[7] = ends[0], ends[1] / self.coefficients[2]
+            count_turns(counted, before[0], state[0], turned)
             if (first + step) % every == 0:
                 saved[(first + step) // every] = state[:3]
+                saved_turns[(first + step) // every] = turned
         return len(times)
 
     def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:

@@ -1,5 +1,6 @@
 """Load steps that stay on the path: by the load where that is safe, else by the length of the path."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -18,20 +19,26 @@ _OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is w
 _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
+_SAME = 1e-12  # of the load factor: no nearer than this are two of them
 _SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
 
 
-def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap: Snap) -> None:
+def reach(
+    system: System, done: StaticRecord, step: float, newton: Newton, snap: Snap, stops: Sequence[float] = ()
+) -> None:
     """Add the rows from the last one to load factor 1; `step` is the first load step.
 
+    stops: load factors that get a row of their own, but for those that a jump leaves out.
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
+    ahead = sorted({stop for stop in stops if _SAME < stop < 1.0 - _SAME} | {1.0})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
     with progress("load factor", 1.0) as report:
         while done.reached < 1.0:
             step = _within_a_turn(system, done, step)
-            target = 1.0 if done.reached + step > 1.0 - 1e-12 else done.reached + step
+            stop = next((stop for stop in ahead if stop > done.reached + _SAME), 1.0)
+            target = stop if done.reached + step > stop - _SAME else done.reached + step
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
             done.iterations += result.iterations
             if result.ended.good and not _overshot(system, done, result, newton):
@@ -50,7 +57,7 @@ def reach(system: System, done: StaticRecord, step: float, newton: Newton, snap:
                 step *= 0.5
             else:
                 # behind what the load step could not pass, a longer one is tried once
-                _follow(done, follower, target, snap)
+                _follow(done, follower, (target, stop), snap)
                 refused = 1.0
                 step *= 2.0
             report(done.reached)
@@ -80,10 +87,13 @@ def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
     return step
 
 
-def _follow(done: StaticRecord, follower: PathFollower, beyond: float, snap: Snap) -> None:
-    """Add the rows along the path to a load factor or, where the path turns back, to the state behind the jump."""
+def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float], snap: Snap) -> None:
+    """Add the rows along the path or, where the path turns back, to the state behind the jump.
+
+    to: the load factor to reach, and the one that no row exceeds.
+    """
     try:
-        for followed in follower.follow(done.state, done.reached, beyond, 1.0):
+        for followed in follower.follow(done.state, done.reached, *to):
             done.iterations += followed.iterations
             done.cuts += followed.cuts
             point = followed.point

@@ -23,12 +23,15 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Kept states (rows, 3, n) of every so many-th whole step, and of the last, which goes to the row after them.
 
-    statistics (8,): see `kernels.advance.advance`.
+    statistics (8,): see `kernels.advance.advance`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    the kept states.
     """
 
     states: np.ndarray
     every: int
     statistics: np.ndarray
+    pairs: np.ndarray
+    turned: np.ndarray
 
 
 def new_statistics() -> np.ndarray:
@@ -59,7 +62,8 @@ def march(
     kind = BandMotion if system.unknowns.pattern is None else EntangledMotion
     limits, statistics = np.array([_TOLERANCE, ITERATIONS]), record.statistics
     done, row, size, failed = 0, 0, max(_FIRST_CHUNK // system.model.size, 1), None
-    whole = state[:3].copy()
+    whole, turned = state[:3].copy(), record.turned[0].copy()
+    counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             rule = integrator.rule(part.step)
@@ -72,7 +76,8 @@ def march(
             while begun < steps and failed is None:
                 now = min(size, steps - begun) if part.whole else steps
                 rows = slice(begun, begun + now)
-                saving = (record.states, done + 1, record.every) if part.whole else (record.states, 1, steps + 1)
+                which = (done + 1, record.every) if part.whole else (1, steps + 1)
+                saving = (record.states, *which, *counting)
                 started = clock.perf_counter()
                 completed = motion.advance(state, held[row + 1 : row + now + 1], loaded[rows], saving)
                 spent = clock.perf_counter() - started
@@ -91,9 +96,10 @@ def march(
                 done += 1
                 whole[:] = state[:3]
                 if done % record.every == 0:
-                    record.states[done // record.every] = whole
+                    record.states[done // record.every], record.turned[done // record.every] = whole, turned
     if done % record.every:
-        record.states[done // record.every + 1] = whole
+        last = done // record.every + 1
+        record.states[last], record.turned[last] = whole, turned
     return Reached(done, failed)
 
 

@@ -1,5 +1,7 @@
 """Static equilibrium under loads that grow with a load factor from 0 to 1."""
 
+from collections.abc import Sequence
+
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.load_steps import Snap, reach
 from beamfem.analysis.newton import Newton
@@ -24,6 +26,13 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, 
     Raises InputError and FreeMotionError before; LimitPointError with its load factor, and ConvergenceError where it
     cannot go on, both with the states found.
     """
+    return solve_through(model, (), steps, newton, snap=snap)
+
+
+def solve_through(
+    model: Model, stops: Sequence[float], steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error"
+) -> Solution:
+    """Return the same with rows at load factors `stops` in between."""
     count("steps", steps)
     if snap not in ("error", "jump"):
         raise InputError(f'snap must be "error" or "jump", got {snap!r}')
@@ -40,5 +49,5 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, 
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
     done.add(0.0, first.state, first.negative_pivots, first.ended, first.digits)
-    reach(system, done, 1.0 / steps, newton, snap)
+    reach(system, done, 1.0 / steps, newton, snap, stops)
     return done.solution(complete=True)

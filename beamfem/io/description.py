@@ -15,11 +15,21 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.loads import (
+    DistributedLoad,
+    Gravity,
+    LineLoad,
+    Load,
+    PointForce,
+    PointMoment,
+    Pressure,
+    along,
+    kinks_along,
+)
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import energy_points, length_points, stations
-from beamfem.model.sampled import Sampled, SampledSection
+from beamfem.model.sampled import Sampled, SampledAlong, SampledSection
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated
 from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
@@ -65,6 +75,8 @@ _CLASSES = {
         Interpolated,
         Gravity,
         DistributedLoad,
+        Pressure,
+        SampledAlong,
         PointForce,
         PointMoment,
         Rigid,
@@ -82,7 +94,7 @@ def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
     """
     writer = _Writer(model, [float(value) for value in np.unique(at)])
     beams = [writer.members(_with_values(beam, mesh)) for beam, mesh in zip(model.beams, model.meshes, strict=True)]
-    described = writer.members(model)
+    described = writer.members(replace(model, loads=[_with_own_values(load, model) for load in model.loads]))
     return {"beams": beams, "model": described, "at": writer.at, "functions": writer.values}
 
 
@@ -104,12 +116,26 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
         return beam
     points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2])
     drawn = np.linspace(0.0, 1.0, _DRAWN + 1)
-    parts = [mesh.arc_length(element, xi) for element, xi in points]
-    parts.append((mesh.vertices[:-1, None] + np.diff(mesh.vertices)[:, None] * drawn).ravel())
+    parts = [mesh.section_arc_length(element, xi) for element, xi in points]
+    element, xi = np.repeat(np.arange(mesh.elements), len(drawn)), np.tile(drawn, mesh.elements)
+    parts.append(mesh.section_arc_length(element, xi))
     at = np.unique(np.concatenate([*parts, [0.0, 0.5 * beam.curve.length, beam.curve.length]]))
     at = at[np.append(True, np.diff(at) > 1e-9 * beam.curve.length)]
     values = tuple(beam.section_at(float(arc)) for arc in at)
-    return replace(beam, section=SampledSection(tuple(at.tolist()), values))
+    return replace(beam, section=SampledSection(tuple(at.tolist()), values, beam.jumps))
+
+
+def _with_own_values(load: Load, model: Model) -> Load:
+    """Return a load along a beam with its values where it is a function: those that were used, and some to draw."""
+    if not isinstance(load, LineLoad) or not callable(along(load)):
+        return load
+    mesh = model.mesh_of(load.beam.start)
+    points = mesh.arc_length(*length_points(mesh)[:2])
+    drawn = np.linspace(0.0, 1.0, _DRAWN * mesh.elements + 1) * load.beam.curve.length
+    at = np.unique(np.concatenate([points, drawn, [0.5 * load.beam.curve.length]]))
+    values = tuple(tuple(value) if np.ndim(value) else value for value in load.values(at).tolist())
+    saved = SampledAlong(tuple(at.tolist()), values, kinks_along(load))
+    return replace(load, value=saved) if isinstance(load, Pressure) else replace(load, vector=saved)
 
 
 class _Writer:

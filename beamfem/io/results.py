@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
+from beamfem.io.critical import load_path, save_critical
 from beamfem.io.description import describe, rebuild
+from beamfem.path import Path as EquilibriumPath
 from beamfem.solution import Solution, Statistics
 from beamfem.status import Status
 
@@ -19,6 +21,7 @@ _FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
 _STATES = ("at", "p", "v", "a")
+_OPTIONAL = ("stability", "turned")
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
@@ -41,14 +44,18 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         file.attrs["all_rows"] = len(solution)
         file.attrs["rows"] = 0
         file.create_dataset("model", data=description)
-        if solution.stability is not None:
-            file.create_dataset("stability", data=solution.stability)
+        for name in _OPTIONAL:
+            values = getattr(solution, name)
+            if values is not None and values.size:
+                file.create_dataset(name, data=values)
         for name in _STATES:
             row = getattr(solution, name).shape[1:]
             file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
         file.flush()
         for first in range(0, len(solution), block):
             _append(file, solution, slice(first, min(first + block, len(solution))))
+        if isinstance(solution, EquilibriumPath):
+            save_critical(file, solution)
 
 
 def load(path: str | PathLike[str]) -> Solution:
@@ -111,8 +118,8 @@ def _read(file: Any) -> Solution:
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
-    stability = np.asarray(file["stability"][:rows]) if "stability" in file else None
-    return Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, stability)
+    known = {name: np.asarray(file[name][:rows]) for name in _OPTIONAL if name in file}
+    return load_path(file, Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, **known))
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem import postprocess
-from beamfem.along import AxisPoints, section_forces
-from beamfem.element.coordinates import Gradients
+from beamfem.along import AxisPoints, rotation, section_forces
 from beamfem.errors import UnknownStressWarning
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
@@ -43,7 +42,6 @@ class Samples:
             self.element = np.flatnonzero(there.any(axis=1))
         self.axis = reference_axis(self.mesh, self.points.element, self.points.xi)
         self.reference = self._at_heights(self.points.reference, self.axis.d)
-        self.turned: np.ndarray | None = None
 
     @property
     def size(self) -> int:
@@ -60,7 +58,7 @@ class Samples:
             "points": position,
             "displacement": position - self.reference,
             "velocity": self._at_heights(rate.r, rate.d),
-            "rotation": np.repeat(self._rotation(p, now)[..., None], self.y.shape[-1], axis=-1),
+            "rotation": np.repeat(rotation(self.points, solution, rows)[..., None], self.y.shape[-1], axis=-1),
         }
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):
@@ -92,15 +90,6 @@ class Samples:
         # beam theory: fibres do not press on each other
         found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
         return found | {"von_mises_stress": von_mises(along, sheared)}
-
-    def _rotation(self, p: np.ndarray, now: postprocess.Axis) -> np.ndarray:
-        """Rotation (steps, points of the axis) [rad], continuous from one call to the next."""
-        turned = postprocess.turning(self.mesh, p, now, self.points.element, self.points.xi)
-        # Gradients know their angle up to full turns only, and `turning` counts those from its own first row.
-        if self.turned is not None and isinstance(self.mesh.beam.element.coordinates, Gradients):
-            turned = turned + 2.0 * np.pi * np.round((self.turned - turned[0]) / (2.0 * np.pi))
-        self.turned = turned[-1]
-        return turned
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])

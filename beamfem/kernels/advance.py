@@ -1,5 +1,7 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -118,6 +120,15 @@ def complete(state, before, differences, inverse_scale, held, rule):
 
 
 @njit(cache=True, _nrt=False, error_model="numpy")
+def count_turns(pairs, before, now, turned):
+    """Add to `turned` (m,) [rad] by how much the vectors at coordinates (m, 2) have turned between two states (n,)."""
+    for i in range(pairs.shape[0]):
+        x, y = pairs[i, 0], pairs[i, 1]
+        crossed = before[x] * now[y] - before[y] * now[x]
+        turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
+
+
+@njit(cache=True, _nrt=False, error_model="numpy")
 def advance(
     forms,
     blocks,
@@ -148,7 +159,8 @@ def advance(
     how far (N, 2) they have turned since, and statistics (8,): iterations, most iterations in a step, last correction,
     worst pivot ratio, rate of convergence of the last step (negative: its tangent is of no use), number of tangents,
     order of extrapolation, and what the last change of p'' changed in p. space: see `working_space`.
-    saving: rows (steps, 3, n), number of the first step, and how many steps make a row.
+    saving: rows (steps, 3, n), number of the first step, and how many steps make a row; then x and y (m, 2) of vectors
+    whose turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
@@ -157,7 +169,7 @@ def advance(
     held_values, body, point_values = inputs
     lu, matrix, differences, kept, turns, statistics = memory
     window = forms[0].window
-    saved, first, every = saving
+    saved, first, every, counted, turned_by, saved_turns = saving
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     steps, n, unknown = held_values.shape[0], state.shape[1], free.shape[0]
     residual, right, before, inverse_scale, coefficients = space
@@ -217,8 +229,11 @@ def advance(
             return step
         statistics[6], change = complete(state, before, differences, inverse_scale, held, rule)
         statistics[7] = change / coefficients[2]
+        count_turns(counted, before[0], state[0], turned_by)
         if (first + step) % every == 0:
             row = (first + step) // every
             for i in range(n):
                 saved[row, 0, i], saved[row, 1, i], saved[row, 2, i] = state[0, i], state[1, i], state[2, i]
+            for i in range(turned_by.shape[0]):
+                saved_turns[row, i] = turned_by[i]
     return steps

@@ -62,6 +62,7 @@ class PointLoads(NamedTuple):
     position: np.ndarray  # (nl, nv) r0 = sum position_i e_i
     direction: np.ndarray  # (nl, nv) vector that gives the section its direction: d, or r_x
     follows: np.ndarray  # (nl, 2) direction's unit vector in the reference if the force turns with it, else zero
+    stretches: np.ndarray  # (nl,) whether a force that turns grows with the length of the direction: pressure
     spring: np.ndarray  # (nl, 2) stiffness against displacement [N/m]
     anchor: np.ndarray  # (nl, 2) where the spring is at rest [m]
 

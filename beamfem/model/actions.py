@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
-from beamfem.model.loads import DistributedLoad, PointLoad, factor
+from beamfem.model.loads import LineLoad, PointLoad, Pressure, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, reference_position, scales
@@ -27,7 +27,7 @@ class Actions:
     source: np.ndarray
     xi: np.ndarray
     rule: np.ndarray
-    loads: tuple[PointLoad | DistributedLoad, ...]
+    loads: tuple[PointLoad | LineLoad, ...]
 
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""
@@ -37,15 +37,14 @@ class Actions:
 
 def build_actions(model: Model, block: int) -> Actions:
     """Return everything that acts at points of the elements of a block."""
-    loads = (*model.point_loads, *(load for load in model.distributed if load.follower))
+    spread = (load for load in model.distributed if load.follower or callable(load.vector))
+    loads = (*model.point_loads, *spread, *model.pressures)
     parts: list[dict[str, np.ndarray]] = []
     for number, load in enumerate(loads):
-        if isinstance(load, DistributedLoad):
+        if isinstance(load, LineLoad):
             mesh = _mesh(model, load.beam, block)
             if mesh is not None:
-                element, xi, weight = length_points(mesh)
-                unit = np.outer(weight, (*load.vector, 0.0))
-                parts.append(_part(mesh, element, xi, unit, number, True, len(xi) // mesh.elements))
+                parts.append(_line(mesh, load, number))
         else:
             mesh = _mesh(model, load.point.beam, block)
             if mesh is not None:
@@ -70,6 +69,31 @@ def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
     return mesh if mesh.block == block else None
 
 
+def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
+    """Rows of the point loads for a load along a beam."""
+    element, xi, weight = length_points(mesh)
+    values = load.values(mesh.arc_length(element, xi))
+    unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
+    if not isinstance(load, Pressure):
+        unit[:, :2] = weight[:, None] * values
+        return _part(mesh, element, xi, unit, source, load.follower, rule)
+    # p (-y', x'): across the derivative of the position, which plays the section's direction of unit length along x
+    unit[:, 1] = weight * values
+    part = _part(mesh, element, xi, unit, source, True, rule)
+    part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
+    part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))
+    part["stretches"] = np.ones(len(xi), dtype=bool)
+    return part
+
+
+def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Table (n, nv) of the derivative of the position by the arc length, of nodal vectors times their scale."""
+    field = mesh.beam.element.field
+    table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
+    table[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
+    return table
+
+
 def _empty(size: int) -> dict[str, np.ndarray]:
     pair = np.zeros((0, 2))
     whole = np.zeros(0, dtype=np.int64)
@@ -79,6 +103,7 @@ def _empty(size: int) -> dict[str, np.ndarray]:
         "position": table,
         "direction": table,
         "follows": pair,
+        "stretches": np.zeros(0, dtype=bool),
         "spring": pair,
         "anchor": pair,
         "unit": np.zeros((0, 3)),
@@ -97,10 +122,10 @@ def _part(
     scale = scales(own, mesh.lengths[element])
     position = np.zeros_like(scale)
     position[:, r_slots(field)] = field.centreline(xi)
-    direction = np.zeros_like(scale)
     if own.forces.turns_with == "r_x":
-        direction[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
+        direction = _slope(mesh, element, xi)
     else:
+        direction = np.zeros_like(scale)
         direction[:, d_slots(field)] = field.director(xi)
     # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
     reference = reference_axis(mesh, element, xi)
@@ -111,6 +136,7 @@ def _part(
         "position": position * scale,
         "direction": direction * scale,
         "follows": along if follower else np.zeros((count, 2)),
+        "stretches": np.zeros(count, dtype=bool),
         "spring": np.zeros((count, 2)),
         "anchor": reference_position(mesh, element, xi),
         "unit": unit,

@@ -12,10 +12,12 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
+from beamfem.model.jumps import find_jumps
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import count, finite, fulfils, function_of_one
 
 Tapered = Callable[[float], CrossSection]
+_SAMPLES = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +28,9 @@ class Beam:
     for one cubic element a knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
     or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
     own. Raises InputError.
+
+    Where a support, a joint, a point load or a jump of the section needs a node inside an element, that is divided; an
+    end of elements that is very near (1 % of one) moves there. Jumps are found, or declared as `kinks` of the function.
     """
 
     curve: Curve
@@ -84,6 +89,25 @@ class Beam:
         if not 0.0 <= share <= 1.0:
             raise InputError(f"the fraction along a beam lies between 0 and 1, got {share}")
         return Point(self, share)
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """Arc lengths (nj,) [m] at which the section jumps, or has a kink that it declares."""
+        if self.prismatic:
+            return ()
+        return find_jumps(self.section, self._measured, self.curve.length, self.samples)
+
+    @property
+    def samples(self) -> int:
+        """Number of equal parts among which jumps of functions of its arc length are looked for."""
+        parts = 1 if isinstance(self.elements, str) else self.elements
+        return max(parts if isinstance(parts, int) else len(parts) - 1, _SAMPLES)
+
+    def _measured(self, arc_length: float) -> np.ndarray:
+        """Return what elastic forces, inertia and drawing take of the section at an arc length, as numbers."""
+        section = self.section_at(arc_length)
+        parts = (section.rigidity(self.material), section.inertia(self.material))
+        return np.array([*(value for part in parts for value in vars(part).values()), *section.bounds])
 
     @property
     def start(self) -> "Point":

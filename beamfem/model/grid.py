@@ -9,6 +9,9 @@ from skfem import MeshLine
 from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
 
+_INSIDE = 1e-8  # of the length: how far inside an element its section is taken where it ends at a jump
+_MOVED = 0.005  # of the elements on both sides of their common end: how far that is moved
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -72,6 +75,16 @@ class Grid:
             return self.beam.curve.arc_length(along)
         return along
 
+    def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        """Return the arc length [m] at which sections of points (element, xi) are taken: inside where they jump."""
+        arc = self.arc_length(element, xi)
+        if not self.beam.jumps:
+            return arc
+        length = self.vertices[-1]
+        jumps = np.abs(self.vertices[:, None] - np.array(self.beam.jumps)).min(axis=1) < _INSIDE * length
+        inside = np.where(jumps, _INSIDE * length, 0.0)
+        return np.clip(arc, (self.vertices + inside)[element], (self.vertices - inside)[element + 1])
+
     def _along(self, arc_length: float) -> float:
         """Mesh coordinate at an arc length [m]."""
         if self.beam.elements == "knots":
@@ -126,11 +139,25 @@ def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
 
 
 def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
-    """Fractions where elements end: those that were asked for, and one more wherever one of `fractions` is between."""
+    """Fractions where elements end: those that were asked for, and one more wherever one of `fractions` is between.
+
+    An end very near to one of them is moved there instead: between the two there would be an element that is too short
+    for its strains to keep their digits.
+    """
     asked = beam.elements
     assert not isinstance(asked, str)
     grid = np.linspace(0.0, 1.0, asked + 1) if isinstance(asked, int) else np.array(asked, dtype=float)
     near = 1e-9 * np.diff(grid).min()
     extra = [f for f in sorted(set(fractions)) if np.abs(grid - f).min() > near]
     distinct = [f for i, f in enumerate(extra) if i == 0 or f - extra[i - 1] > near]
-    return np.sort(np.append(grid, distinct))
+    movable = np.abs(np.subtract.outer(grid, sorted(set(fractions)))).min(axis=1, initial=np.inf) > near
+    movable[[0, -1]] = False
+    moved = grid.copy()
+    added = []
+    for fraction in distinct:
+        i = int(np.abs(grid - fraction).argmin())
+        if movable[i] and abs(grid[i] - fraction) < _MOVED * (grid[i + 1] - grid[i - 1]):
+            moved[i], movable[i] = fraction, False
+        else:
+            added.append(fraction)
+    return np.sort(np.append(moved, added))

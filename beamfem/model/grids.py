@@ -10,21 +10,24 @@ from beamfem.element.fields import Field
 from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid, make_grid
 
-_ENDS = {0.0, 1.0}
-
 
 def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> list[Grid]:
     """Return the grid of each beam with a node at each of its fractions and at each corner of its curve."""
     alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
     grids: dict[int, Grid] = {}
     for number, (beam, own) in enumerate(zip(beams, fractions, strict=True)):
-        if isinstance(beam.curve, Line) and isinstance(beam.elements, int) and _ENDS.issuperset(own):
+        if isinstance(beam.curve, Line) and isinstance(beam.elements, int) and _at_ends(own, beam.elements):
             alike[beam.elements, beam.element.field].append(number)
         else:
             grids[number] = make_grid(beam, own)
     for (elements, field), numbers in alike.items():
         grids.update(zip(numbers, _straight_grids([beams[i] for i in numbers], elements, field), strict=True))
     return [grids[number] for number in range(len(beams))]
+
+
+def _at_ends(fractions: Sequence[float], elements: int) -> bool:
+    """Tell whether equal elements end at each of the fractions as they are."""
+    return all((fraction * elements).is_integer() for fraction in fractions)
 
 
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:

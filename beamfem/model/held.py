@@ -37,7 +37,7 @@ def held_coordinates(model: Model) -> tuple[Held, ...]:
         mesh = model.mesh_of(support.point)
         dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
         for direction, value in support.held().items():
-            name = _coordinate(support, direction)
+            name = held_coordinate(support, direction)
             if name is None:
                 continue
             if dofs[name] in held:
@@ -63,7 +63,7 @@ def inclined_rollers(model: Model, held: set[int]) -> tuple[tuple[int, np.ndarra
     return tuple(found)
 
 
-def _coordinate(support: PointSupport, direction: str) -> str | None:
+def held_coordinate(support: PointSupport, direction: str) -> str | None:
     """Name the coordinate that holds a direction of a support; None for an inclined roller."""
     if direction == "rotation":
         return "theta"

@@ -1,13 +1,18 @@
 """What acts on a beam."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.model.jumps import find_jumps
 from beamfem.validation import finite, function_of_one, function_value, vector
 
 Amplitude = Callable[[float], float] | None
+Varying = Callable[[float], Sequence[float]]
 
 
 class Scaled(Protocol):
@@ -51,18 +56,64 @@ class Gravity:
 class DistributedLoad:
     """Force per reference length (qx, qy) [N/m] along the axis of a beam.
 
-    follower: (qx, qy) acts in the reference and turns with the section, as a pressure does.
+    vector: in the axes x and y of the plane, at every point; or a function of the arc length [m] from the start that
+    gives one, at whose `kinks` (declared, or jumps that are found) elements end. follower: what acts at a point in the
+    reference turns with its section; on a beam that is drawn curved that is not normal to its axis: see `Pressure`.
+    Raises InputError.
     """
 
     beam: Beam
-    vector: tuple[float, float]
+    vector: tuple[float, float] | Varying
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vector", vector("vector of DistributedLoad", self.vector))
+        if callable(self.vector):
+            function_of_one("vector of DistributedLoad", self.vector, "arc length")
+            _check_along(self)
+        else:
+            object.__setattr__(self, "vector", vector("vector of DistributedLoad", self.vector))
         _check_amplitude(self.amplitude)
+
+    def values(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError where a function gives none."""
+        if not callable(self.vector):
+            return np.tile(self.vector, (len(arc_length), 1))
+        given = self.vector
+        name = "vector of DistributedLoad at arc length"
+        return np.array([vector(f"{name} {s:g} m", given(s)) for s in arc_length.tolist()]).reshape(-1, 2)
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """Pressure times width [N/m], normal to the deformed axis of a beam, per deformed length: a force p (-y', x') ds.
+
+    value: above 0 it pushes to the left of the way from the beam's start to its end, the side of +y of its sections; or
+    a function of the arc length in the reference [m] that gives it, at whose `kinks` (declared, or jumps that are
+    found) elements end. It acts on the axis, so that it does work on the area that the axis sweeps: a constant one is
+    conservative where both ends of the beam are held in one direction at least, or close a ring. Raises InputError.
+    """
+
+    beam: Beam
+    value: float | Callable[[float], float]
+    amplitude: Amplitude = None
+    scale: bool = True
+
+    def __post_init__(self) -> None:
+        if callable(self.value):
+            function_of_one("value of Pressure", self.value, "arc length")
+            _check_along(self)
+        else:
+            object.__setattr__(self, "value", finite("value of Pressure", self.value))
+        _check_amplitude(self.amplitude)
+
+    def values(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+        if not callable(self.value):
+            return np.full(len(arc_length), self.value)
+        given = self.value
+        return np.array([finite(f"value of Pressure at arc length {s:g} m", given(s)) for s in arc_length.tolist()])
 
 
 @dataclass(frozen=True)
@@ -109,4 +160,28 @@ class PointMoment:
 
 
 PointLoad = PointForce | PointMoment
-Load = Gravity | DistributedLoad | PointForce | PointMoment
+LineLoad = DistributedLoad | Pressure
+Load = Gravity | DistributedLoad | Pressure | PointForce | PointMoment
+
+
+def along(load: LineLoad) -> float | tuple[float, float] | Callable[[float], object]:
+    """Return what a load along a beam is per length, or the function that gives it."""
+    return load.value if isinstance(load, Pressure) else load.vector
+
+
+def kinks_along(load: LineLoad) -> tuple[float, ...]:
+    """Return the arc lengths (nj,) [m] at which a load along a beam jumps, or has kinks that it declares."""
+    given, beam = along(load), load.beam
+    if not callable(given):
+        return ()
+
+    def numbers(arc_length: float) -> np.ndarray:
+        return load.values(np.array([arc_length])).ravel()
+
+    return find_jumps(given, numbers, beam.curve.length, beam.samples)
+
+
+def _check_along(load: LineLoad) -> None:
+    if not isinstance(load.beam, Beam):
+        raise InputError(f"beam of {type(load).__name__} must be a Beam, one of the model's beams, got {load.beam!r}")
+    load.values(np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)

@@ -14,21 +14,22 @@ from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
 from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment
+from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment, Pressure, kinks_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
 from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
 
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
-_ON_BEAM = DistributedLoad | Foundation
+_ON_BEAM = DistributedLoad | Pressure | Foundation
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports and joints put a mesh node at their point; loads act anywhere. Points that are joined may be apart by 1e-5
-    of the longer beam: the second is moved to the first, free of stress. Raises InputError, UnknownPointError.
+    Supports, joints, point loads and kinks of loads along beams put a mesh node at their point. Points that are joined
+    may be apart by 1e-5 of the longer beam: the second is moved to the first, free of stress.
+    Raises InputError, UnknownPointError.
     """
 
     beams: Sequence[Beam]
@@ -105,8 +106,14 @@ class Model:
         fractions: list[list[float]] = [[] for _ in self.beams]
         places = [support.point for support in self.point_supports]
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
+        places += [load.point for load in self.point_loads]
         for point in places:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
+        for beam, own in zip(self.beams, fractions, strict=True):
+            own += [jump / beam.curve.length for jump in beam.jumps]
+        lines: tuple[DistributedLoad | Pressure, ...] = (*self.distributed, *self.pressures)
+        for line in lines:
+            fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks_along(line)]
         grids = make_grids(self.beams, fractions)
         angled = self._places(grids, [support.point for support in self.point_supports if _turns(support)])
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
@@ -178,6 +185,10 @@ class Model:
     @property
     def distributed(self) -> tuple[DistributedLoad, ...]:
         return tuple(load for load in self.loads if isinstance(load, DistributedLoad))
+
+    @property
+    def pressures(self) -> tuple[Pressure, ...]:
+        return tuple(load for load in self.loads if isinstance(load, Pressure))
 
     @property
     def point_loads(self) -> tuple[PointForce | PointMoment, ...]:

@@ -125,7 +125,7 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     if isinstance(beam.section, CrossSection):
         return forces.stiffness(beam.section, beam.material, beam.element.coordinates, at), strains
     parts = []
-    for i, arc in enumerate(grid.arc_length(element, xi)):
+    for i, arc in enumerate(grid.section_arc_length(element, xi)):
         here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis.__dataclass_fields__))
         parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, here))
     return np.concatenate(parts), strains
@@ -133,7 +133,7 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
 
 def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:
     """Return the section at each of the points (element, xi)."""
-    return [grid.beam.section_at(arc) for arc in grid.arc_length(element, xi)]
+    return [grid.beam.section_at(arc) for arc in grid.section_arc_length(element, xi)]
 
 
 def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
@@ -162,7 +162,7 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
         own = beam.section.inertia(beam.material)
         inertia = np.broadcast_to([own.mass, own.first_moment, own.rotary], (len(where), 3))
     else:
-        found = [beam.section_at(arc).inertia(beam.material) for arc in grid.arc_length(where, at)]
+        found = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
         inertia = np.array([[own.mass, own.first_moment, own.rotary] for own in found])
     if beam.element.forces.fills_body and not grid.straight:
         # det J = alpha + beta y of the curved body
@@ -183,7 +183,7 @@ def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
 
     if isinstance(beam.section, CrossSection):
         return np.broadcast_to(moments(beam.section), (len(element), 3))
-    return np.array([moments(beam.section_at(arc)) for arc in grid.arc_length(element, xi)])
+    return np.array([moments(beam.section_at(arc)) for arc in grid.section_arc_length(element, xi)])
 
 
 def reference_angle(grid: Grid) -> np.ndarray:

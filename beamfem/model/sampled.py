@@ -4,6 +4,8 @@ from bisect import bisect_left
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from beamfem.errors import InputError
 from beamfem.section.protocol import CrossSection
 
@@ -37,11 +39,33 @@ class Sampled:
 
 
 @dataclass(frozen=True)
+class SampledAlong:
+    """A load along a beam, saved as values (n,) or (n, 2) at increasing arc lengths at (n,) [m], linear between them.
+
+    kinks (nj,): arc lengths [m] at which elements end because of it.
+    """
+
+    at: tuple[float, ...]
+    values: tuple[Any, ...]
+    kinks: tuple[float, ...] = ()
+
+    def __call__(self, arc_length: float) -> Any:
+        """Return the value at an arc length [m], that of the nearer end beyond them."""
+        columns = np.array(self.values).reshape(len(self.at), -1).T
+        found = tuple(float(np.interp(arc_length, self.at, column)) for column in columns)
+        return found if len(found) > 1 else found[0]
+
+
+@dataclass(frozen=True)
 class SampledSection:
-    """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them."""
+    """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them.
+
+    kinks (nj,): arc lengths [m] at which it jumps.
+    """
 
     at: tuple[float, ...]
     values: tuple[CrossSection, ...]
+    kinks: tuple[float, ...] = ()
 
     def __call__(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError between two of different kinds."""

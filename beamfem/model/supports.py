@@ -96,6 +96,11 @@ class Spring:
         if min(values) < 0.0 or max(values) == 0.0:
             raise InputError(f"the stiffness of a Spring must not be negative, and somewhere positive, got {values}")
 
+    @property
+    def by_coordinate(self) -> dict[str, float]:
+        """Stiffness [N/m] or [N m/rad] against each coordinate of a node, by its name."""
+        return {"r^x": self.stiffness[0], "r^y": self.stiffness[1], "theta": self.rotational}
+
     def held(self) -> dict[str, Value]:
         return {}
 

@@ -30,6 +30,7 @@ from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.pressures import pressures_have_potential
 from beamfem.model.round_off import residual_errors, stress_errors
 from beamfem.model.supports import Spring
 
@@ -154,8 +155,7 @@ class System:
             if isinstance(support, Spring):
                 mesh = self.model.mesh_of(support.point)
                 known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-                given = {"r^x": support.stiffness[0], "r^y": support.stiffness[1], "theta": support.rotational}
-                for name, value in given.items():
+                for name, value in support.by_coordinate.items():
                     if value > 0.0:
                         dofs.append(known[name])
                         stiffness.append(value)
@@ -171,15 +171,17 @@ class System:
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
         for spread in self.model.distributed:
-            if not spread.follower:
+            if not spread.follower and not callable(spread.vector):
                 row = self.model.number_of(spread.beam)
                 result[row, 2:] += np.array(spread.vector) * factor(spread, time, self.static)
         return result
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether the tangent is symmetric: no load follows the sections."""
-        return not any(np.any(loads.follows) for loads in self.point_loads)
+        """Whether the tangent is symmetric: no load follows the sections, and every pressure has a potential."""
+        following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
+        directed = [dof for dof, _ in self.inclined]
+        return not following and pressures_have_potential(self.model, {*self.held_dofs.tolist(), *directed})
 
     @cached_property
     def held(self) -> tuple[Held, ...]:

@@ -1,4 +1,4 @@
-"""Functions of time, or of the load factor, that say where they have kinks."""
+"""Functions of time, of the load factor or of the arc length, that say where they have kinks."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,10 @@ from beamfem.validation import function_of_one
 
 @dataclass(frozen=True)
 class Interpolated:
-    """Values at increasing times, points (n, 2): linear between them, constant before and after. Raises InputError."""
+    """Values at increasing times [s] or arc lengths [m], points (n, 2): linear between them, constant outside.
+
+    Raises InputError.
+    """
 
     points: Sequence[Sequence[float]]
 
@@ -43,22 +46,23 @@ class Interpolated:
 class Piecewise:
     """A function of time that is smooth between increasing times `kinks` (n,) [s], where it may bend or jump.
 
-    Any function of yours with an attribute `kinks` will do as well. Raises InputError.
+    Or of the arc length [m], as a section or a load along a beam is: elements end at the kinks. Any function of yours
+    with an attribute `kinks` will do as well. Raises InputError.
     """
 
-    function: Callable[[float], float]
+    function: Callable[[float], Any]
     kinks: Sequence[float]
 
     def __post_init__(self) -> None:
-        function_of_one("function", self.function, "time")
+        function_of_one("function", self.function, "time or arc length")
         object.__setattr__(self, "kinks", kinks_of(self))
 
-    def __call__(self, time: float) -> float:
+    def __call__(self, time: float) -> Any:
         return self.function(time)
 
 
 def kinks_of(function: Any) -> tuple[float, ...]:
-    """Return the times [s] at which a function declares kinks, none by default. Raises InputError."""
+    """Return the times [s] or arc lengths [m] of the kinks that a function declares, if any. Raises InputError."""
     kinks = numbers("kinks", getattr(function, "kinks", ()))
     if any(later <= earlier for earlier, later in pairwise(kinks)):
         raise InputError(f"kinks must be increasing times, got {kinks}")

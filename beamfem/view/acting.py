@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.element.coordinates import across
-from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment, factor
+from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure, factor
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 from beamfem.view.held import Stamps
@@ -37,7 +37,7 @@ def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
             arc, head = symbols.turn(0.25 * np.pi, span=float(span))
             stamps.add(at, arc, FORCE, 1.5)
             stamps.add(at, head, FORCE, 0.5, FORCE)
-        elif isinstance(load, DistributedLoad):
+        elif isinstance(load, LineLoad):
             drawn += _distributed(axes, solution, load, weight, row)
         elif isinstance(load, Gravity):
             drawn += _gravity(axes, np.sign(weight) * np.array(load.vector))
@@ -102,19 +102,27 @@ def _turned_by(vector: np.ndarray, angle: Any) -> np.ndarray:
     return np.cos(angle)[..., None] * vector + np.sin(angle)[..., None] * across(vector)
 
 
-def _distributed(axes: Any, solution: "Solution", load: DistributedLoad, weight: float, row: int) -> list[Any]:
+def _distributed(axes: Any, solution: "Solution", load: LineLoad, weight: float, row: int) -> list[Any]:
     from matplotlib.transforms import ScaledTranslation
 
     only = one_row(solution, row)
-    points = [load.beam.at(share) for share in np.linspace(0.0, 1.0, _ROW_OF_ARROWS)]
+    shares = np.linspace(0.0, 1.0, _ROW_OF_ARROWS)
+    points = [load.beam.at(share) for share in shares]
     places = np.array([only.position(point)[0] for point in points])
-    vector = np.tile(weight * np.array(load.vector), (len(points), 1))
-    if load.follower:
-        vector = _turned_by(vector, np.array([float(only.rotation(point)[0]) for point in points]))
-    size = np.linalg.norm(vector, axis=1)
-    vector = 0.7 * _LONGEST * vector / size[:, None]
+    values = weight * load.values(shares * load.beam.curve.length)
+    if isinstance(load, Pressure):
+        slope = np.array([only.fields(point).r_x[0] for point in points])
+        vector = values[:, None] * across(slope)
+    elif load.follower:
+        vector = _turned_by(values, np.array([float(only.rotation(point)[0]) for point in points]))
+    else:
+        vector = values
+    size = np.linalg.norm(vector, axis=1).max()
+    if size == 0.0:
+        return []
+    vector = 0.7 * _LONGEST * vector / size
     drawn = [_arrows(axes, places, vector, "tip", 1.0)]
-    if not load.follower:
+    if not isinstance(load, Pressure) and not load.follower and not callable(load.vector):
         foot = axes.transData + ScaledTranslation(
             -vector[0, 0] / 72.0, -vector[0, 1] / 72.0, axes.figure.dpi_scale_trans
         )

@@ -5,12 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from beamfem.cli.modelfile import parts
+from beamfem.cli.modelfile.functions import Components
 from beamfem.cli.modelfile.parts import Kinds
 from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, nearest, shown
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring, Support
 from beamfem.model.system import System
@@ -23,7 +24,13 @@ SUPPORTS: Kinds = {
     "spring": Spring,
     "foundation": Foundation,
 }
-LOADS: Kinds = {"gravity": Gravity, "force": PointForce, "moment": PointMoment, "distributed": DistributedLoad}
+LOADS: Kinds = {
+    "gravity": Gravity,
+    "force": PointForce,
+    "moment": PointMoment,
+    "distributed": DistributedLoad,
+    "pressure": Pressure,
+}
 JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 
 _POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
@@ -95,8 +102,16 @@ def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
             return given
         return function(table, key)
 
+    def vector(table: Table, key: str) -> Any:
+        given = table.values[key]
+        if not isinstance(given, list) or not any(isinstance(part, str | dict) for part in given):
+            return given
+        named = [Table(table.source, table.path, {key: part}) for part in given]
+        return Components(tuple(value(part, key) for part in named))
+
     readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
-    readers |= {"point": places.point, **dict.fromkeys(("ux", "uy", "rotation"), value)}
+    readers |= {"point": places.point, "vector": vector}
+    readers |= dict.fromkeys(("ux", "uy", "rotation", "value"), value)
 
     def items(key: str, kinds: Kinds, trial: Callable[[Any], Model]) -> list[Any]:
         found = []

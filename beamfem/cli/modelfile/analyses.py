@@ -1,6 +1,6 @@
 """The analysis of a model file: its parameters, checked before it runs, and what it finds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -12,7 +12,7 @@ from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
 from beamfem.analysis.modes import solve_modes
 from beamfem.analysis.newton import Newton
-from beamfem.analysis.statics import solve_static
+from beamfem.analysis.statics import solve_static, solve_through
 from beamfem.analysis.trace import trace_equilibrium
 from beamfem.cli.modelfile.actions import Places
 from beamfem.cli.modelfile.table import Table, build, build_kind
@@ -33,13 +33,19 @@ class Found:
 
 
 class Analysis(Protocol):
-    """What every analysis offers; states: whether its states answer the outputs of a file."""
+    """What every analysis offers; states: whether its states answer the outputs of a file.
+
+    span: lowest and highest load factor or time [s] that it can have states at; at: those that are asked for, which get
+    a state where the analysis is free to choose.
+    """
 
     @property
     def states(self) -> bool: ...
     @property
     def moving(self) -> bool: ...
-    def run(self, model: Model) -> Found: ...
+    @property
+    def span(self) -> tuple[float, float]: ...
+    def run(self, model: Model, at: Sequence[float]) -> Found: ...
 
 
 @dataclass(frozen=True)
@@ -50,12 +56,13 @@ class Static:
     newton: Newton | None = None
     states: bool = field(default=True, init=False)
     moving: bool = field(default=False, init=False)
+    span: tuple[float, float] = field(default=(0.0, 1.0), init=False)
 
     def __post_init__(self) -> None:
         count("steps", self.steps)
 
-    def run(self, model: Model) -> Found:
-        return Found(solve_static(model, self.steps, self.newton))
+    def run(self, model: Model, at: Sequence[float]) -> Found:
+        return Found(solve_through(model, at, self.steps, self.newton))
 
 
 @dataclass(frozen=True)
@@ -92,6 +99,7 @@ class Trace:
     newton: Newton | None = None
     states: bool = field(default=True, init=False)
     moving: bool = field(default=False, init=False)
+    span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.until, Until) and self.until is not None:
@@ -100,7 +108,7 @@ class Trace:
         if self.step is not None:
             positive("step", self.step)
 
-    def run(self, model: Model) -> Found:
+    def run(self, model: Model, at: Sequence[float]) -> Found:
         path = trace_equilibrium(model, self.until, step=self.step, points=self.points, newton=self.newton)
         return Found(path, critical_points(path))
 
@@ -113,11 +121,12 @@ class Buckling:
     mode: int = 1
     states: bool = field(default=False, init=False)
     moving: bool = field(default=False, init=False)
+    span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
 
     def __post_init__(self) -> None:
         _check_mode(self.count, self.mode)
 
-    def run(self, model: Model) -> Found:
+    def run(self, model: Model, at: Sequence[float]) -> Found:
         found = solve_buckling(model, self.count)
         values = {
             "load_factors": found.load_factors.tolist(),
@@ -136,11 +145,12 @@ class Modes:
     mode: int = 1
     states: bool = field(default=False, init=False)
     moving: bool = field(default=False, init=False)
+    span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
 
     def __post_init__(self) -> None:
         _check_mode(self.count, self.mode)
 
-    def run(self, model: Model) -> Found:
+    def run(self, model: Model, at: Sequence[float]) -> Found:
         found = solve_modes(model, self.count, solve_static(model) if self.loaded else None)
         values: dict[str, Any] = {"frequencies": found.frequencies.tolist()}
         if np.any(found.growth):
@@ -172,7 +182,12 @@ class Dynamics:
         if self.start not in ("reference", "static"):
             raise InputError(f'start must be "reference" or "static", got {self.start!r}')
 
-    def run(self, model: Model) -> Found:
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times [s] of its start and end."""
+        return 0.0, self.duration
+
+    def run(self, model: Model, at: Sequence[float]) -> Found:
         start = solve_static(model)[-1] if self.start == "static" else None
         rule = GeneralizedAlpha(self.rho_inf)
         return Found(simulate(model, self.duration, self.step, rule, start, self.velocity, self.save_every))

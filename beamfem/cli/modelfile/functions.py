@@ -1,10 +1,11 @@
-"""Functions of time, or of the load factor, that a model file can describe."""
+"""Functions of time, of the load factor or of the arc length, that a model file can describe."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.model.time_functions import Interpolated
+from beamfem.model.time_functions import Interpolated, kinks_of
 from beamfem.validation import finite, positive
 
 
@@ -45,6 +46,26 @@ class SmoothRamp:
     def __call__(self, time: float) -> float:
         s = min(max((time - self.start) / self.duration, 0.0), 1.0)
         return self.size * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+
+
+@dataclass(frozen=True)
+class Components:
+    """Components (x, y) of a load along a beam, each a number or a function of the arc length [m]."""
+
+    parts: tuple[float | Callable[[float], float], ...]
+
+    def __post_init__(self) -> None:
+        for part in self.parts:
+            if not callable(part):
+                finite("vector", part)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Arc lengths [m] of the kinks of both."""
+        return tuple(sorted({kink for part in self.parts for kink in kinks_of(part)}))
+
+    def __call__(self, arc_length: float) -> tuple[float, ...]:
+        return tuple(part(arc_length) if callable(part) else float(part) for part in self.parts)
 
 
 FUNCTIONS = {"table": Interpolated, "sine": Sine, "smooth-ramp": SmoothRamp}

@@ -30,6 +30,7 @@ _POINT = {
     "m": ("reaction", 2),
 }
 _BEAM = ("normal", "shear", "moment")
+_NEAR = 1e-9
 _ENERGY = ("kinetic", "strain", "potential", "total")
 
 
@@ -37,7 +38,8 @@ _ENERGY = ("kinetic", "strain", "potential", "total")
 class Output:
     """Quantities of a point, of a beam (along its stations), or of the model (energies); at: which states.
 
-    at: "last", "all", or a list of times [s] or load factors, of which the nearest states are taken.
+    at: "last", "all", or a list of times [s] or load factors: static solves have a state there, motions and paths give
+    the nearest one.
     """
 
     quantities: Sequence[str]
@@ -87,12 +89,30 @@ class Output:
         stations = solution.section_forces(self.beam).arc_length.tolist()
         return [{axis: row.pop(axis), "arc_length": stations, **row} for row in rows]
 
+    @property
+    def asked(self) -> list[float]:
+        """Times [s] or load factors that are asked for as numbers."""
+        return [] if isinstance(self.at, str) else [float(value) for value in self.at]
+
     def _chosen(self, solution: Solution) -> list[int]:
         if self.at == "all":
             return list(range(len(solution)))
         if self.at == "last":
             return [len(solution) - 1]
-        return [int(np.abs(solution.at - value).argmin()) for value in self.at if not isinstance(value, str)]
+        for value in self.asked:
+            self._require_within(solution, value)
+        return [int(np.abs(solution.at - value).argmin()) for value in self.asked]
+
+    @staticmethod
+    def _require_within(solution: Solution, value: float) -> None:
+        """Raise InputError where no state is at or near a time [s] or load factor."""
+        low, high = float(solution.at.min()), float(solution.at.max())
+        what = "load factor" if solution.static else "time"
+        if not low - _NEAR <= value <= high + _NEAR:
+            raise InputError(f"at asks for the {what} {value:g}, but the states are those from {low:g} to {high:g}")
+        missed = float(np.abs(solution.at - value).min())
+        if solution.static and not isinstance(solution, Path) and missed > _NEAR:
+            raise InputError(f"at asks for the {what} {value:g}, where the structure jumps: it has no state there")
 
     def _columns(self, solution: Solution) -> dict[str, np.ndarray]:
         if self.point is not None:
@@ -115,6 +135,10 @@ def outputs(root: Table, places: Places, model: Model, analysis: Analysis) -> li
         if not analysis.states:
             raise table.error("this analysis prints what it finds; outputs go with static, path and dynamics")
         output = build(table, _output(number), {"point": places.point, "beam": places.beam})
+        low, high = analysis.span
+        for value in output.asked:
+            if not low <= value <= high:
+                raise table.error(f"there is no state at {value:g}, only from {low:g} to {high:g}", "at")
         reactions = [q for q in output.quantities if _POINT.get(q, ("",))[0] == "reaction"]
         point = output.point
         if point is not None and reactions and (id(point.beam), point.fraction) not in held:

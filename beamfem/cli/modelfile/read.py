@@ -46,7 +46,7 @@ class Job:
     def solve(self) -> Found:
         """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
         try:
-            return self.analysis.run(self.model)
+            return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
         except ModelFileError:
             raise
         except InputError as error:

@@ -1,0 +1,73 @@
+"""Where a function of the arc length jumps: declared by it, or found by bisection."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from beamfem.model.time_functions import kinks_of
+
+_STANDS_OUT = 1.25  # change of a sample against the smaller one beside it, beyond which it is looked into
+_SMALLEST = 1e-9  # change that counts as a jump, of the largest value
+_CLOSE = 1e-12  # of the length, to which a jump is found
+
+
+def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: float, samples: int) -> tuple[float, ...]:
+    """Return the arc lengths (nj,) [m] within (0, length) that a function declares as `kinks`, or at which it jumps.
+
+    values: what counts of the function's result at an arc length, as numbers (k,). A function that declares kinks is
+    taken at its word. Of others each of `samples` equal parts is bisected whose ends differ more than their neighbours:
+    a change that does not shrink with the part is a jump. One that goes back within a part is not seen.
+    """
+    if hasattr(function, "kinks"):
+        near = _CLOSE * length
+        return tuple(kink for kink in kinks_of(function) if near < kink < length - near)
+    at = np.linspace(0.0, length, samples + 1)
+    found = np.array([values(s) for s in at.tolist()])
+    largest = np.abs(found).max(axis=0)
+    unit = np.where(largest > 0.0, largest, 1.0)
+    found = found / unit
+    change = np.abs(np.diff(found, axis=0)).max(axis=1)
+    beside = np.minimum(np.append(change[1:], np.inf), np.append(np.inf, change[:-1]))
+    if samples == 1:
+        beside = np.zeros(1)
+    part = _Part(lambda s: values(s) / unit, _CLOSE * length)
+    jumps: list[float] = []
+    for i in np.flatnonzero((change > _SMALLEST) & (change > _STANDS_OUT * beside)).tolist():
+        jumps += part.jumps(float(at[i]), found[i], float(at[i + 1]), found[i + 1])
+    return tuple(jumps)
+
+
+class _Part:
+    """Bisects a function between two arc lengths [m] down to a distance `close` [m]."""
+
+    def __init__(self, values: Callable[[float], np.ndarray], close: float) -> None:
+        self.values, self.close = values, close
+
+    def jumps(self, low: float, at_low: np.ndarray, high: float, at_high: np.ndarray) -> list[float]:
+        """Return every jump between two arc lengths whose values are known, in order."""
+        begin, end = (low, at_low), (high, at_high)
+        kept = change = _size(at_low, at_high)
+        halvings = 0
+        while high - low > self.close:
+            middle = 0.5 * (low + high)
+            between = self.values(middle)
+            if _size(at_low, between) > _size(between, at_high):
+                high, at_high = middle, between
+            else:
+                low, at_low = middle, between
+            change, halvings = _size(at_low, at_high), halvings + 1
+            if change <= _SMALLEST:
+                return []
+            if halvings % 4 == 0:
+                # a smooth function has lost 15 of 16 parts by now
+                if change < kept / 8.0:
+                    return []
+                kept = change
+        before = self.jumps(*begin, low, at_low) if _size(begin[1], at_low) > _SMALLEST else []
+        after = self.jumps(high, at_high, *end) if _size(at_high, end[1]) > _SMALLEST else []
+        return [*before, 0.5 * (low + high), *after]
+
+
+def _size(one: np.ndarray, other: np.ndarray) -> float:
+    return float(np.abs(one - other).max())

@@ -1,0 +1,23 @@
+"""Pressures that have a potential: those whose tangent is symmetric."""
+
+from collections import defaultdict
+
+from beamfem.model.model import Model
+
+
+def pressures_have_potential(model: Model, held: set[int]) -> bool:
+    """Tell whether the work of all pressures of a model depends on where its beams are only; held: coordinates.
+
+    A pressure p does the work p (x dy - y dx) / 2 besides p times the change of area at the end of its beam, and less
+    that at its start. It is none where x or y is held, and cancels where a ring closes or another beam goes on under
+    the same pressure. Where p changes along the beam, it remains at every point.
+    """
+    ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
+    for load in model.pressures:
+        if callable(load.value):
+            return False
+        mesh = model.mesh_of(load.beam.start)
+        first, last = mesh.carried.dof[mesh.node[0, 0], 0], mesh.carried.dof[mesh.node[-1, -1], 0]
+        for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
+            ends[id(load.amplitude), load.scale, dof] += sign * load.value
+    return all(left == 0.0 or dof in held or dof + 1 in held for (_, _, dof), left in ends.items())

@@ -1,0 +1,31 @@
+"""Beams whose rotation no coordinate counts: gradients tell it up to full turns only."""
+
+import numpy as np
+
+from beamfem.element.coordinates import Gradients
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+
+
+def uncounted(model: Model) -> list[BeamMesh]:
+    """Return the meshes of the beams (m,) of which no node carries its rotation as an angle."""
+    known: dict[str, list[BeamMesh]] = model.__dict__
+    if "_uncounted" not in known:
+        known["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
+    return known["_uncounted"]
+
+
+def _has_gradients_only(mesh: BeamMesh) -> bool:
+    if not isinstance(mesh.beam.element.coordinates, Gradients):
+        return False
+    return all("theta" not in mesh.labels(int(nodes[0])) for _, nodes in mesh.carriers)
+
+
+def turning_pairs(model: Model) -> np.ndarray:
+    """Return the coordinates x and y (m, 2) of the vector that tells the rotation of each of them at its start."""
+    pairs = []
+    for mesh in uncounted(model):
+        vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"
+        place = mesh.labels(0).index(f"{vector}^x")
+        pairs.append(mesh.carried.dof[0, place : place + 2])
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)

@@ -25,13 +25,14 @@ def start_rotations(solution: "Solution") -> np.ndarray:
     """
     if solution.turned is not None:
         return solution.turned
-    parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
-    return np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
+    known: dict[str, np.ndarray] = solution.__dict__
+    if "_start_rotations" not in known:
+        parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
+        known["_start_rotations"] = np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
+    return known["_start_rotations"]
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
-    """Return that of one beam (steps,), None where its coordinates or its rows tell it."""
-    if solution.turned is None:
-        return None
+    """Return that of one beam (steps,), None where its coordinates count it."""
     own = [i for i, other in enumerate(uncounted(solution.model)) if other is mesh]
-    return solution.turned[:, own[0]] if own else None
+    return start_rotations(solution)[:, own[0]] if own else None

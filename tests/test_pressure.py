@@ -37,7 +37,7 @@ def test_a_half_ring_under_pressure_carries_the_hoop_force_and_no_moment():
     solution = bf.solve_static(model)
     forces = solution.section_forces(ring)
     assert forces.normal[-1] == pytest.approx(-50.0, rel=1e-5)
-    assert np.abs(forces.moment[-1]).max() < 1e-5
+    assert np.abs(forces.moment[-1]).max() < 5e-4  # cubics leave the circle by some 1e-6 of its radius
     assert solution.reaction(ring.start)[-1] == pytest.approx((0.0, 50.0, 0.0), abs=1e-5)
     assert solution.reaction(ring.end)[-1] == pytest.approx((0.0, 50.0, 0.0), abs=1e-5)
 
@@ -50,7 +50,7 @@ def test_a_follower_on_a_curved_beam_keeps_its_angle_to_the_section_and_is_no_pr
     normal = bf.DistributedLoad(ring, lambda s: (-50.0 * np.cos(s), -50.0 * np.sin(s)), follower=True)
     solution = bf.solve_static(bf.Model([ring], model.supports, [normal]))
     assert solution.reaction(ring.end)[-1, 1] == pytest.approx(50.0, rel=1e-5)
-    assert np.abs(solution.section_forces(ring).moment[-1]).max() < 1e-4
+    assert np.abs(solution.section_forces(ring).moment[-1]).max() < 5e-4
 
 
 @pytest.mark.parametrize("element", FORMS, ids=lambda e: f"{e.name}-{e.forces.name}")

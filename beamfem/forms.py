@@ -10,6 +10,7 @@ import numpy as np
 from skfem import Basis, BilinearForm, Functional, LinearForm
 from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
+from beamfem.element.gauss import gauss
 from beamfem.element.skfem_element import BeamMapping, FieldElement
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import sections_at
@@ -22,7 +23,7 @@ def beam_basis(mesh: BeamMesh, points: int | None = None) -> Basis:
     points: Gauss points along an element; without it those of the beam's elastic forces.
     """
     own = mesh.beam.element
-    xi, along = own.quadrature() if points is None else _gauss(points)
+    xi, along = own.quadrature() if points is None else gauss(points)
     element, at = np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements)
     material = mesh.beam.material
     if isinstance(mesh.beam.section, CrossSection):
@@ -46,7 +47,7 @@ def mass_basis(mesh: BeamMesh) -> Basis:
 def axis_basis(mesh: BeamMesh) -> Basis:
     """Return the basis of a beam with points on its axis alone, which integrates over the length."""
     field = mesh.beam.element.field
-    xi, weights = _gauss(max(field.degree, field.director_degree) + 1)
+    xi, weights = gauss(max(field.degree, field.director_degree) + 1)
     line = mesh.skfem
     points = np.stack([xi, np.zeros_like(xi)])
     return Basis(line, FieldElement(field), mapping=BeamMapping(line), quadrature=(points, weights))
@@ -116,9 +117,3 @@ def pressure_load(v: Any, w: Any) -> np.ndarray:
     """Pressure on the axis, the integral of p (-y', x') . v [N, N m]; of u, pressure [N/m], on an `axis_basis`."""
     F = grad(w.u)
     return w.pressure * (F[0, 0] * v[1] - F[1, 0] * v[0])
-
-
-def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights on [0, 1]."""
-    xi, weights = np.polynomial.legendre.leggauss(points)
-    return 0.5 * (xi + 1.0), 0.5 * weights

@@ -5,12 +5,14 @@ are among those of its nodes, so that these forces balance its loads exactly, ho
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.acting import NEAR, Acting, Rows, acting_on
 from beamfem.element.axis import cross, dot
+from beamfem.element.gauss import gauss
 from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import Block
 from beamfem.kernels.resist import resist
@@ -143,11 +145,17 @@ def _gauss_shares(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
 
     The integral from 0 to the cut of the polynomial that is one there and zero at the other points, over its whole.
     """
-    xi, weights = np.polynomial.legendre.leggauss(points)
-    degree = np.arange(points)
-    legendre = np.polynomial.legendre.legvander(xi, points - 1)
-    # coefficients of the polynomials through the points: a row each
-    coefficients = legendre * weights[:, None] * (2 * degree + 1) / 2
-    integral = np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / weights[:, None]
-    place = np.abs(0.5 * (xi + 1.0) - at[:, None]).argmin(axis=1)
+    xi, integral = _integrals(points)
+    place = np.abs(xi - at[:, None]).argmin(axis=1)
     return np.einsum("mk,mk->m", integral[place], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
+
+
+@lru_cache(maxsize=32)
+def _integrals(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points on [0, 1] and the integrals, as Legendre series, of the polynomials through them."""
+    xi, weights = gauss(points)
+    degree = np.arange(points)
+    legendre = np.polynomial.legendre.legvander(2.0 * xi - 1.0, points - 1)
+    # a row of coefficients for each polynomial
+    coefficients = legendre * weights[:, None] * (2 * degree + 1)
+    return xi, np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / (2.0 * weights[:, None])

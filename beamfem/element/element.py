@@ -1,7 +1,6 @@
 """An element as a user chooses it, and the named combinations of the paper."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -10,6 +9,7 @@ from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
+from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
 from beamfem.validation import count
 
@@ -72,10 +72,10 @@ class Element:
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
         """Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
         if self.integration == "lobatto":
-            return _gauss(len(lobatto.STATIONS))
+            return gauss(len(lobatto.STATIONS))
         reduced = 2 if isinstance(self.coordinates, ShearFree) else self.field.degree
         full = self.forces.points(self.field.degree, self.field.director_degree)
-        return _gauss(reduced if self.integration == "reduced" else full)
+        return gauss(reduced if self.integration == "reduced" else full)
 
     def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
         """Points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
@@ -101,20 +101,10 @@ class Element:
         forces = self.forces
         shear, thickness = np.array(forces.shear_measures), np.array(forces.thickness_measures)
         if self.integration == "reduced" and self.coordinates == ShearFree(stretchable=True):
-            return (*_gauss(2), shear), (*_gauss(3), ~shear)
+            return (*gauss(2), shear), (*gauss(3), ~shear)
         if isinstance(self.coordinates, Gradients) and thickness.any():
             return (*self.quadrature(), ~thickness), (*self.field.director_rule(), thickness)
         return ((*self.quadrature(), np.ones_like(shear)),)
-
-
-@lru_cache(maxsize=32)  # asked for by every beam of a model
-def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points (points,) and weights (points,) on [0, 1]."""
-    xi, weights = np.polynomial.legendre.leggauss(points)
-    xi, weights = 0.5 * (xi + 1.0), 0.5 * weights
-    xi.setflags(write=False)
-    weights.setflags(write=False)
-    return xi, weights
 
 
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:

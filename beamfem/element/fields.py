@@ -8,6 +8,8 @@ from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
+from beamfem.element.gauss import gauss
+
 
 @runtime_checkable
 class Field(Protocol):
@@ -128,5 +130,5 @@ class Lagrange:
         return self.centreline(xi, derivative)
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
-        xi, weights = np.polynomial.legendre.leggauss(self.order + 1)
-        return self.nodes, 0.5 * weights @ self.director(0.5 * (xi + 1.0))
+        xi, weights = gauss(self.order + 1)
+        return self.nodes, weights @ self.director(xi)

@@ -6,6 +6,7 @@ from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.gauss import gauss
 from beamfem.element.structural import section_frame
 from beamfem.model.grid import Grid
 from beamfem.section.protocol import CrossSection
@@ -113,8 +114,7 @@ def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tupl
 def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return element, xi and weight [m] of the points that integrate mass exactly on a straight prismatic beam."""
     field = grid.beam.element.field
-    xi, weights = np.polynomial.legendre.leggauss(max(field.degree, field.director_degree) + 1)
-    return _points(grid, element, 0.5 * (xi + 1.0), 0.5 * weights)
+    return _points(grid, element, *gauss(max(field.degree, field.director_degree) + 1))
 
 
 def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,9 +8,10 @@ import numpy as np
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.loading import loading
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, scales
-from beamfem.model.system import System, system_of
+from beamfem.model.system import System
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -35,8 +36,8 @@ class Rows:
 
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
     """Return some rows of a solution, and what acts in them."""
-    system = system_of(solution.model, solution.static)
-    times = [float(at) for at in solution.at[rows]]
+    system, at = loading(solution)
+    times = at[rows].tolist()
     body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
     points = [system.point_values(time) for time in times]
     values = tuple(

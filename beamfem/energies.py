@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem import postprocess
+from beamfem.loading import loading
 from beamfem.model.beam import Beam
-from beamfem.model.loads import PointForce, factor
+from beamfem.model.loads import PointForce, Scaled, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.supports import Foundation
-from beamfem.model.system import system_of
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -45,7 +45,7 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
 def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
     result = np.zeros(len(solution))
     for load in solution.model.gravity:
-        weights = np.array([factor(load, at, solution.static) for at in solution.at])
+        weights = _factors(solution, load)
         for mesh, moment in zip(solution.model.meshes, first_moments, strict=True):
             result -= weights * ((moment - _reference_moment(mesh)) @ np.array(load.vector))
     return result
@@ -56,21 +56,26 @@ def _of_loads(solution: "Solution") -> np.ndarray:
     for acting in solution.model.point_loads:
         if acting.follower and isinstance(acting, PointForce):
             continue
-        weights = np.array([factor(acting, at, solution.static) for at in solution.at])
+        weights = _factors(solution, acting)
         fx, fy, moment = acting.value
         result -= weights * (solution.displacement(acting.point) @ np.array([fx, fy]))
         if moment:
             result -= weights * moment * solution.rotation(acting.point)
     for spread in solution.model.distributed:
         if not spread.follower:
-            weights = np.array([factor(spread, at, solution.static) for at in solution.at])
+            weights = _factors(solution, spread)
             moved, weight, arc = _along(solution, spread.beam)
             result -= weights * np.einsum("sqc,qc,q->s", moved, spread.values(arc), weight)
     return result
 
 
+def _factors(solution: "Solution", load: Scaled) -> np.ndarray:
+    system, times = loading(solution)
+    return np.array([factor(load, at, system.static) for at in times])
+
+
 def _of_springs(solution: "Solution") -> np.ndarray:
-    springs = system_of(solution.model, solution.static).springs
+    springs = loading(solution)[0].springs
     result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
     for support in solution.model.supports:
         if isinstance(support, Foundation):

@@ -35,7 +35,7 @@ def energy_drift(solution: Solution) -> EnergyDrift | None:
 
     That is so under loads with an amplitude, loads that follow and pressures, and where supports move.
     """
-    if solution.static or not _conservative(solution):
+    if solution.static or solution.loaded is not None or not _conservative(solution):
         return None
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))

@@ -7,10 +7,11 @@ import numpy as np
 from beamfem.analysis.equations import residual
 from beamfem.errors import InputError
 from beamfem.last_digits import exactly
+from beamfem.loading import loading
 from beamfem.model.beam import Point
 from beamfem.model.held import held_coordinate
 from beamfem.model.supports import Spring
-from beamfem.model.system import System, system_of
+from beamfem.model.system import System
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -41,7 +42,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
 
 def _of_some(solution: "Solution", dof: int, held: bool, stiffness: float) -> np.ndarray:
     """Return the force (steps,) on a coordinate of those supports that hold it, or not, and have this stiffness."""
-    system = system_of(solution.model, solution.static)
+    system, _ = loading(solution)
     moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
     if not held:
         return np.asarray(-stiffness * moved)
@@ -57,15 +58,14 @@ def _supported(system: System) -> set[int]:
 
 def support_forces(solution: "Solution") -> np.ndarray:
     """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
-    model = solution.model
-    system = system_of(model, solution.static)
-    held = np.zeros(model.size, dtype=bool)
+    system, times = loading(solution)
+    held = np.zeros(solution.model.size, dtype=bool)
     held[list(_supported(system))] = True
     springs = system.springs
 
     def forces(p: np.ndarray) -> np.ndarray:
         result = np.zeros(p.shape)
-        for row, at in enumerate(solution.at):
+        for row, at in enumerate(times):
             result[row] = np.where(held, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
             np.subtract.at(result[row], springs.dof, springs.stiffness * (p[row, springs.dof] - springs.rest))
         return result

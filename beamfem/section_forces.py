@@ -8,9 +8,9 @@ import numpy as np
 from beamfem.acting import Rows, concentrated, rows_of
 from beamfem.free_bodies import Cuts, cut_free
 from beamfem.last_digits import exactly
+from beamfem.loading import loading
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.system import system_of
 from beamfem.postprocess import SectionForces
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, cuts: Cuts, p: np
 def _stations(solution: "Solution", mesh: BeamMesh) -> Cuts:
     """Return the ends and Gauss points of every element, and both sides of point loads inside of elements."""
     own = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
-    loaded, at = concentrated(system_of(solution.model, solution.static), mesh)
+    loaded, at = concentrated(loading(solution)[0], mesh)
     element = np.concatenate([np.repeat(np.arange(mesh.elements), len(own)), loaded, loaded])
     xi = np.concatenate([np.tile(own, mesh.elements), at, at])
     behind = np.repeat([False, True], [len(element) - len(at), len(at)])

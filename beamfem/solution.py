@@ -59,7 +59,7 @@ class Solution:
 
     at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
     equilibrium, where the solver knows it; turned (steps, m) [rad]: see `turns.start_rotations`, where the solver has
-    counted them between the rows.
+    counted them between the rows; loaded (steps,): load factor that the loads have in a motion about an equilibrium.
     """
 
     model: Model
@@ -71,6 +71,7 @@ class Solution:
     statistics: Statistics
     stability: np.ndarray | None = None
     turned: np.ndarray | None = None
+    loaded: np.ndarray | None = None
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
@@ -108,8 +109,9 @@ class Solution:
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
-        stability = None if self.stability is None else self.stability[rows]
-        return Solution(self.model, self.static, *parts, self.statistics, stability, start_rotations(self)[rows])
+        stability, loaded = (None if values is None else values[rows] for values in (self.stability, self.loaded))
+        turned = start_rotations(self)[rows]
+        return Solution(self.model, self.static, *parts, self.statistics, stability, turned, loaded)
 
     @property
     def status(self) -> Status:

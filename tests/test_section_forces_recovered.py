@@ -263,3 +263,16 @@ def test_rows_do_not_know_of_each_other():
     solution = bf.solve_static(model, steps=4)
     whole, last = solution.section_forces(beam), solution[3:].section_forces(beam)
     np.testing.assert_allclose(whole.moment[3:], last.moment, rtol=1e-12)
+
+
+def test_a_mode_about_a_loaded_state_carries_the_loads_of_that_state():
+    """At rest in its mode, a mode's section forces are those of the state that it moves about; another factor jumps."""
+    steel = bf.Material(2e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 6, bf.CRBF(3), bf.Rectangle(0.02, 0.01), steel)
+    load = bf.DistributedLoad(beam, (0.0, -40.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [load, bf.PointForce(beam.at(0.5), (0.0, -20.0))])
+    for row in (0, 1):
+        state = bf.solve_static(model)[row]
+        expected = bf.solve_static(model).section_forces(beam).moment[row]
+        found = bf.solve_modes(model, 1, about=state).solution(0, amplitude=1e-9).section_forces(beam).moment
+        assert np.abs(found - expected).max() < 1e-4 + 1e-6 * np.abs(expected).max()

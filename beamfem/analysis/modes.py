@@ -84,7 +84,8 @@ class Modes:
             moved = np.outer(np.exp(rate * at), shape)
             p, v, a = (np.real(rate**order * moved) for order in range(3))
         statistics = Statistics(0, frames - 1, 0, "a mode of small vibration")
-        return Solution(self.model, False, at, self.state.p + p, v, a, statistics)
+        loaded = np.full(frames, self.state.at)
+        return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
         """Draw the modes, each with its frequency; return the figure. See `view.mode_shapes.plot_modes`."""

@@ -21,7 +21,7 @@ _FORMAT_VERSION = 1
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
 _STATES = ("at", "p", "v", "a")
-_OPTIONAL = ("stability", "turned")
+_OPTIONAL = ("stability", "turned", "loaded")
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:

@@ -5,7 +5,6 @@ import numpy as np
 from beamfem.along import AxisPoints
 from beamfem.path import Path
 from beamfem.solution import Solution
-from beamfem.turns import start_rotations
 
 _POINTS = 4000  # of all beams in a shape
 _SMOOTH = 12  # straight pieces that make an element look curved
@@ -23,11 +22,7 @@ def spread_rows(solution: Solution, most: int) -> np.ndarray:
 
 def one_row(solution: Solution, row: int) -> Solution:
     """Return a solution of one row only."""
-    rows = slice(row, row + 1)
-    states = (solution.at[rows], solution.p[rows], solution.v[rows], solution.a[rows])
-    return Solution(
-        solution.model, solution.static, *states, solution.statistics, turned=start_rotations(solution)[rows]
-    )
+    return solution[row : row + 1]
 
 
 def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:

@@ -8,6 +8,7 @@ import pytest
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
+from beamfem.kernels.form import ANY, known_form
 
 FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
 COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
@@ -24,6 +25,13 @@ def combinations():
 
 
 ELEMENTS = tuple(combinations())
+# the same kernels with other tables: every integration is tested where strains and forces are, one where models are
+USUAL = tuple(e for e in ELEMENTS if e.integration == bf.Element(e.field, e.coordinates, e.forces).integration)
+# kinds that have a name: nodes, vectors a node, strain measures, half width of the band of a chain or 1 for any
+NAMED = {
+    *((2, 2, 0, 5), (2, 2, 1, 5), (3, 2, 1, 8), (4, 2, 1, 11), (5, 2, 1, 14), (2, 2, 1, 1), (3, 2, 1, 1)),
+    *((2, 3, 0, 11), (2, 3, 1, 11), (2, 3, 0, 9), (2, 3, 2, 9), (2, 3, 1, 7)),
+}
 
 
 def identify(element):
@@ -31,9 +39,28 @@ def identify(element):
     return f"{element.name}-{element.forces.name}{flag}-{element.integration}"
 
 
-@pytest.fixture(params=ELEMENTS, ids=identify)
+@pytest.fixture(params=USUAL, ids=identify)
 def element(request):
     return request.param
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_forms_are_compiled(request):
+    """Let kernels know the sizes of named kinds in advance; of others, only in the slow verification.
+
+    Each takes the compiler half a minute, and is the same source.
+    """
+    if request.config.option.markexpr != "not slow":
+        yield
+        return
+
+    def named_form(nodes, vectors, measures, window):
+        sizes = (nodes, vectors, measures, len(window))
+        return known_form(nodes, vectors, measures, window) if sizes in NAMED else ANY
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("beamfem.model.system.known_form", named_form)
+        yield
 
 
 def pytest_collection_modifyitems(items):

@@ -28,6 +28,12 @@ def of_forces(name, keep=lambda element: True):
     return pytest.mark.parametrize("element", chosen, ids=identify)
 
 
+@pytest.fixture(params=ELEMENTS, ids=identify)
+def element(request):
+    """Every integration too."""
+    return request.param
+
+
 def cantilever(element, elements, *loads, section=THICK, supports=()):
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, section, STEEL)
     held = [bf.Clamp(beam.start), *(support(beam) for support in supports)]

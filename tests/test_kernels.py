@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import beam
+from conftest import ELEMENTS, beam, identify
 from scipy.linalg import solve_banded
 
 import beamfem as bf
@@ -13,6 +13,12 @@ from beamfem.model.system import System, coordinate_columns
 from beamfem.postprocess import axis, nodal_vectors
 
 NONE_TURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+
+
+@pytest.fixture(params=ELEMENTS, ids=identify)
+def element(request):
+    """Every integration too."""
+    return request.param
 
 
 def dense(tangent):

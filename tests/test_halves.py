@@ -147,8 +147,9 @@ def test_only_long_single_chains_are_cut(monkeypatch):
         return cut_chain.worth_cutting(system_of(model, static=True), elements)
 
     monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
-    assert worth(plain, 9)
-    assert not worth(plain, 10)
+    elements = plain.meshes[0].elements
+    assert worth(plain, elements)
+    assert not worth(plain, elements + 1)
     assert not worth(inclined, 9)
     assert not worth(jointed, 9)
     monkeypatch.setattr(cut_chain, "usable_cores", lambda: 1)

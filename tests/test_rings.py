@@ -166,6 +166,7 @@ def test_what_is_said_of_the_reference_holds_between_the_nodes_of_a_coarse_curve
         assert np.abs(residual(system, system.reference, rest, rest, 0.0)).max() < 1e-10
         pushed = bf.PointForce(beam.at(0.4), (1.0, 2.0), follower=True)
         system = System(bf.Model([beam], loads=[pushed]), static=True)
+        rest = np.zeros(system.model.size)
         force = residual(system, system.reference, rest, rest, 1.0)
         columns = {label: dofs for label, _, dofs in coordinate_columns(system.model.meshes[0])}
         found = [-force[columns[f"r^{name}"]].sum() for name in "xy"]

@@ -185,7 +185,8 @@ def test_a_changed_function_is_called_again(tmp_path, monkeypatch):
     importlib.invalidate_caches()
     sys.modules.pop("changing_module")
     module = importlib.import_module("changing_module")
-    assert bf.sweep(module.value, x=[1, 2], store=tmp_path / "s").values == (11, 12)
+    with pytest.warns(bf.ChangedCodeWarning, match="changing_module"):
+        assert bf.sweep(module.value, x=[1, 2], store=tmp_path / "s").values == (11, 12)
 
 
 def test_keys_tell_values_apart():

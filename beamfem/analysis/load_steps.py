@@ -18,7 +18,7 @@ from beamfem.progress import progress
 Snap = Literal["error", "jump"]
 
 _OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
-_SLOW, _SLOW_FROM_REST = 7, 10  # iterations; most models are at rest first and go all the way in one long step
+_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models are at rest first and go all the way in one long step
 _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
@@ -73,9 +73,10 @@ def _over_a_gap(system: System, done: StaticRecord, result: NewtonResult, newton
     beam does so where its own tension stiffens it. Or, looked at where the iteration was slow, the state half-way has
     another count; it takes the mean stress resultants of both ends, for its own would be those of a chord.
     """
-    moved = float(np.max(np.abs(result.state - done.state) / system.scale))
-    if done.reached > 0.0 and result.first > _OVERSHOOT * moved + newton.tolerance:
-        return True
+    if done.reached > 0.0:
+        moved = float(np.max(np.abs(result.state - done.state) / system.scale))
+        if result.first > _OVERSHOOT * moved + newton.tolerance:
+            return True
     if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
         return False
     done.iterations += 1

@@ -61,7 +61,7 @@ def both(model, settings=None):
     system = system_of(model, static=True)
     start, held = system.reference, np.zeros(model.size)
     held[system.held_dofs] = system.held_values(1.0) - start[system.held_dofs]
-    given = system, start, 1.0, settings or Newton(), held
+    given = system, start, 1.0, settings or Newton(), held, None
     return newton._solve_band(*given), newton._solve_halves(*given)
 
 

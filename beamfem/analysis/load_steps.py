@@ -44,7 +44,7 @@ def reach(
             target = stop if done.reached + step > stop - _SAME else done.reached + step
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
             done.iterations += result.iterations
-            if result.ended.good and not _over_a_gap(system, done, result, newton):
+            if result.ended.good and not _over_a_gap(system, done, target, result, newton):
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -66,7 +66,7 @@ def reach(
             report(done.reached)
 
 
-def _over_a_gap(system: System, done: StaticRecord, result: NewtonResult, newton: Newton) -> bool:
+def _over_a_gap(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
     """Tell whether a load step may have gone over limit points to a state of the same count of negative pivots.
 
     Either the tangent at its start goes far beyond its end, as beside a limit point; from the reference a straight
@@ -84,7 +84,7 @@ def _over_a_gap(system: System, done: StaticRecord, result: NewtonResult, newton
     ends = (predicted_stresses(system, p, rest) for p in (done.state, result.state))
     mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
     half_way = 0.5 * (done.state + result.state)
-    _, tangent = linearise(system, half_way, rest, rest, done.reached, STATICS, mean)
+    _, tangent = linearise(system, half_way, rest, rest, 0.5 * (done.reached + target), STATICS, mean)
     try:
         return tangent.factorised(system.turned).negative_pivots != done.negative_pivots[-1]
     except (LinAlgError, ValueError):

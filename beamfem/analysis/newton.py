@@ -162,12 +162,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
 
 
 def _solve_band(
-    system: System,
-    start: np.ndarray,
-    load_factor: float,
-    newton: Newton,
-    held_step: np.ndarray,
-    keep: int | None = None,
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
     p, held_force = start.copy(), np.zeros(len(start))
@@ -212,12 +207,7 @@ def _solve_band(
 
 
 def _solve_halves(
-    system: System,
-    start: np.ndarray,
-    load_factor: float,
-    newton: Newton,
-    held_step: np.ndarray,
-    keep: int | None = None,
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same of a long chain, on two threads; None where it needs pivots."""
     held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))

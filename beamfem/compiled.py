@@ -1,13 +1,13 @@
-"""Which kernels are compiled already, and where numba keeps them."""
+"""Which kernels are compiled already."""
 
 import importlib
 import pkgutil
 import sys
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import beamfem.kernels
+from beamfem.kernels.compiling import cache_folder
 
 
 def kernels() -> dict[str, Any]:
@@ -21,20 +21,19 @@ def kernels() -> dict[str, Any]:
     return found
 
 
-def cache_folder() -> Path | None:
-    """Return where numba keeps compiled kernels, None where it found no folder to write to."""
-    paths = {kernel.stats.cache_path for kernel in kernels().values()} - {None}
-    return Path(sorted(paths)[0]) if paths else None
-
-
 def cached() -> int:
     """Return how many kernels are found compiled on disk."""
     folder = cache_folder()
-    return len(list(folder.glob("*.nbi"))) if folder and folder.is_dir() else 0
+    return len(list(folder.glob("*.nbi"))) if folder else 0
 
 
 @cache
 def tell_of_compilation() -> None:
     """Say on a terminal, once, that the first solve has to wait for the compiler."""
-    if sys.stderr.isatty() and not cached():
-        print("compiling kernels, once on this computer: some ten seconds ...", file=sys.stderr)
+    if not sys.stderr.isatty() or cached():
+        return
+    if cache_folder() is None:
+        how_often = "again in each process, since no folder can be written (NUMBA_CACHE_DIR names one)"
+    else:
+        how_often = "once on this computer"
+    print(f"compiling kernels, {how_often}: some ten seconds ...", file=sys.stderr)

@@ -26,8 +26,9 @@ def doctor(as_json: AsJson = False) -> None:
         begun = time.perf_counter()
         from beamfem import compiled
         from beamfem.cli import targets
+        from beamfem.kernels.compiling import cache_folder
 
-        cache = compiled.cache_folder()
+        cache = cache_folder()
         found: dict[str, Any] = {
             "versions": versions(),
             "cache": {

@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from beamfem.kernels.balance import balance
 from beamfem.kernels.band import factor, solve
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.corotate import keep_directions, turn, turns_since
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
@@ -25,7 +25,7 @@ def working_space(size: int, unknown: int) -> tuple[np.ndarray, ...]:
     return np.empty(size), np.empty(unknown), np.empty((4, size)), np.empty(size), np.empty(3)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def predict(state, before, differences, order, held, values, rule):
     """Store the state (4, n) in `before` and start a step from it, held coordinates at `values` (3, nh).
 
@@ -48,7 +48,7 @@ def predict(state, before, differences, order, held, values, rule):
             state[k, held[i]] = values[k, i]
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(fastmath=FAST)
 def correct(state, right, free, inverse_scale, coefficients):
     """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
     largest = 0.0
@@ -64,7 +64,7 @@ def correct(state, right, free, inverse_scale, coefficients):
     return largest
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def judge(iteration, size, last, rate, changed, tolerance, full):
     """Return whether a step is done after a correction, and the rate at which corrections shrink.
 
@@ -81,14 +81,14 @@ def judge(iteration, size, last, rate, changed, tolerance, full):
     return rate < 1.0 and rate * size <= (1.0 - rate) * min(_REMAINDER * tolerance, _SHARE * changed), rate
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def restore(state, before):
     """Return to the state before the step."""
     for i in range(state.shape[1]):
         state[0, i], state[1, i], state[2, i], state[3, i] = before[0, i], before[1, i], before[2, i], before[3, i]
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(fastmath=FAST)
 def complete(state, before, differences, inverse_scale, held, rule):
     """End a step: auxiliary acceleration and differences of p''.
 
@@ -119,7 +119,7 @@ def complete(state, before, differences, inverse_scale, held, rule):
     return order, e0
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def count_turns(pairs, before, now, turned):
     """Add to `turned` (m,) [rad] by how much the vectors at coordinates (m, 2) have turned between two states (n,)."""
     for i in range(pairs.shape[0]):
@@ -128,7 +128,7 @@ def count_turns(pairs, before, now, turned):
         turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def advance(
     forms,
     blocks,

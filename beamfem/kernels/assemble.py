@@ -4,10 +4,9 @@ Residual of the reduced equations: B^T (M e'' + F_el(e) - F_body), tangent with 
 changes p, p', p'' by ck, cv, ca times itself (see `coordinates`).
 """
 
-from numba import njit
-
 from beamfem.kernels.axis import interpolate, spread, spread_matrix
 from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.form import sizes
 from beamfem.kernels.measures import forces, hessian, resultants, strains
 from beamfem.kernels.reduce import add_forces, add_matrix, add_turnings, place_nodes, reduce_matrix
@@ -15,7 +14,7 @@ from beamfem.kernels.reduce import add_forces, add_matrix, add_turnings, place_n
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def assemble(form, block, layout, work, p, v, a, body, coefficients, geometric_stress, residual, matrix):
     """Add the residual of all elements to `residual` (n,) and their tangent to `matrix` (flat).
 
@@ -39,7 +38,7 @@ def assemble(form, block, layout, work, p, v, a, body, coefficients, geometric_s
         add_turnings(block, layout, e, geometric, coefficients[0], matrix)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def clear(values):
     """Set a table to zero; a slice assignment would compile the words of its error message as well."""
     for i in range(values.shape[0]):
@@ -47,7 +46,7 @@ def clear(values):
             values[i, j] = 0.0
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def add_element_forces(form, block, e, acceleration, body, inertia, force):
     """Add elastic forces and inertia less body forces of all elements to those of their nodes (N, per_node)."""
     nn, vpn, measures = sizes(form, block)
@@ -77,7 +76,7 @@ def add_element_forces(form, block, e, acceleration, body, inertia, force):
             spread(nn, vpn, bends, block, element, kind, point, forces(measures, q, s), force)
 
 
-@njit(cache=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(fastmath=FAST)
 def add_tangents(form, block, layout, work, e, v, a, coefficients, geometric_stress, geometric, matrix):
     """Add the tangents of all elements to the matrix.
 

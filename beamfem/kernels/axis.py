@@ -1,11 +1,11 @@
 """The beam axis at a quadrature point: q = (r0', d, third), third being d', or r0'' for the elastic line."""
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def interpolate(nn, vpn, bends, block, element, kind, point, e):
     """Return q (6) from nodal vectors e (N, per_node); bends: third is r0''."""
     node, slope, second, director = block.node, block.slope, block.second, block.director
@@ -30,7 +30,7 @@ def interpolate(nn, vpn, bends, block, element, kind, point, e):
     return rx, ry, dx, dy, ex, ey
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def spread(nn, vpn, bends, block, element, kind, point, f, force):
     """Add what f (6) on q gives to the forces (N, per_node) of the nodes."""
     node, slope, second, director = block.node, block.slope, block.second, block.director
@@ -54,7 +54,7 @@ def spread(nn, vpn, bends, block, element, kind, point, f, force):
         force[own, 2 * last + 1] += y
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def spread_matrix(nn, vpn, bends, block, kind, point, h, k):
     """Add T^T h T to k (2 nv, 2 nv) for pairs of nodes n <= m, T the tables of q; h: see `measures.hessian`."""
     slope, second, director = block.slope, block.second, block.director

@@ -1,16 +1,15 @@
 """Residual and tangent of a whole model: elements, loads at points and springs of all blocks."""
 
-from numba import njit
-
 from beamfem.kernels.assemble import assemble
 from beamfem.kernels.axis import interpolate
 from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.form import sizes
 from beamfem.kernels.loads import assemble_point_loads
 from beamfem.kernels.springs import assemble_springs
 
 
-@njit(cache=True, nogil=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(nogil=True, forceinline=True)
 def balance(
     forms, blocks, work, loads, springs, layouts, p, v, a, body, values, row, coefficients, predicted, residual, matrix
 ):
@@ -33,7 +32,7 @@ def balance(
         assemble_springs(springs, p, ck, residual, matrix)
 
 
-@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+@kernel(nogil=True)
 def smallest_jacobian(forms, blocks, work):
     """Return the smallest r0' x d of all quadrature points, at the nodal vectors in `work`; negative inside out."""
     smallest = 1.0

@@ -5,7 +5,7 @@ SciPy's pivoted solver. Where the half width is known to the compiler, loops are
 stay in registers: each value then waits for one multiplication, not for memory.
 """
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 ANY_WIDTH = (0.0,)
@@ -17,7 +17,7 @@ def known_width(half_width: int) -> tuple[float, ...]:
     return (0.0,) * half_width if half_width in _KNOWN else ANY_WIDTH
 
 
-@njit(cache=True, nogil=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(nogil=True, fastmath=FAST)
 def factor(ab, right, original, window):
     """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
@@ -93,14 +93,14 @@ def factor(ab, right, original, window):
     return worst
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def solve(lu, x, window):
     """Replace the right-hand side x (n,) by the solution; lu and window as for `factor`."""
     solve_lower(lu, x, window)
     solve_upper(lu, x, window)
 
 
-@njit(cache=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
+@kernel(fastmath={"contract"})
 def solve_lower(lu, x, window):
     """Replace the right-hand side x (n,) by that of the upper triangle; lu and window as for `factor`."""
     last, w = window, lu.shape[1] // 2
@@ -116,7 +116,7 @@ def solve_lower(lu, x, window):
         x[i] = total
 
 
-@njit(cache=True, nogil=True, _nrt=False, fastmath={"contract"}, error_model="numpy")
+@kernel(nogil=True, fastmath={"contract"})
 def solve_upper(lu, x, window):
     """Replace what `solve_lower` left in x by the solution; what x holds beyond the rows of lu is known already."""
     last, n, w = window, x.shape[0], lu.shape[1] // 2
@@ -137,6 +137,6 @@ def solve_upper(lu, x, window):
         x[i] = total
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def _push(window, value):
     return window[1:] + (value,)  # noqa: RUF005 (numba does not unpack)

@@ -11,18 +11,17 @@ A frame holds cosine and sine of the section's angle in the reference, and |r_x|
 
 import math
 
-from numba import njit
-
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
+from beamfem.kernels.compiling import kernel
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def linear(carrier, size):
     """Return how many of the first coordinates of a node are nodal vectors themselves."""
     return size if carrier == GRADIENTS else (2 if carrier in (STRETCH, SHEAR_RIGID) else size - 2)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def node_vectors(block, node, p, v, a, e, acceleration):
     """Fill a node's rows of e and e'' (N, per_node) from p, p', p'' (n,)."""
     carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]
@@ -53,7 +52,7 @@ def node_vectors(block, node, p, v, a, e, acceleration):
         acceleration[node, 2], acceleration[node, 3] = radial * ct - across * st, radial * st + across * ct
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def node_rates(block, node, e, v, rates):
     """Fill a node's row of e' = B p' (N, per_node) from p' (n,)."""
     carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]
@@ -74,7 +73,7 @@ def node_rates(block, node, e, v, rates):
         rates[node, 3] = spin * e[node, 2] - rate * e[node, size - 2]
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def add_node_force(block, node, row, e, force, residual):
     """Add B^T f of a node to the residual (n,); its e (N, per_node) and f a row of force (rows, per_node)."""
     carrier, dof, frame, size = block.carrier[node], block.dof, block.frame, e.shape[1]

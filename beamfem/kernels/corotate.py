@@ -5,12 +5,12 @@ Exact where a body has turned as a whole; then a pendulum or a rotor needs no ne
 
 import math
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def keep_directions(work, kept):
     """Store the vectors d (N, 2) of the nodes of all blocks."""
     row = 0
@@ -22,7 +22,7 @@ def keep_directions(work, kept):
             row += 1
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def turns_since(work, kept, turns):
     """Fill cosine and sine (N, 2) of how far the nodes have turned since their vectors d were kept."""
     row = 0
@@ -37,7 +37,7 @@ def turns_since(work, kept, turns):
             row += 1
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def turn(right, pairs, turns, sense):
     """Turn vectors in a right-hand side (n,) with their nodes, sense -1: back. pairs (np, 3): numbers of x, y, node."""
     for i in range(pairs.shape[0]):

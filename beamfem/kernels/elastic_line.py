@@ -5,12 +5,12 @@ eps = (|r'| - 1, (r' x r'') / |r'|^2, r'.d, (d.d - 1) / 2), primes by arc length
 
 import math
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def strains(q):
     """Return eps and two zeros."""
     rx, ry, dx, dy, bx, by = q
@@ -25,7 +25,7 @@ def strains(q):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def gradients(rx, ry, bx, by):
     """Return t = r' / |r'|, the gradient g of the angle of r' and that of the curvature with respect to r'."""
     inverse = 1.0 / math.sqrt(rx * rx + ry * ry)
@@ -35,7 +35,7 @@ def gradients(rx, ry, bx, by):
     return tx, ty, gx, gy, hxx * bx + hxy * by, hxy * bx - hxx * by
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def forces(q, s):
     """Return the vectors on r, d and b of stress resultants s."""
     rx, ry, dx, dy, bx, by = q
@@ -51,7 +51,7 @@ def forces(q, s):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def rates(q, dq):
     """Return the change of eps with changes of r, d and b."""
     rx, ry, dx, dy, bx, by = q
@@ -67,7 +67,7 @@ def rates(q, dq):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, rb (4 each), dd, db, bb."""
     rx, ry, dx, dy, bx, by = q

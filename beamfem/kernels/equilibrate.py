@@ -1,17 +1,17 @@
 """Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
 
 import numpy as np
-from numba import njit
 
 from beamfem.kernels.balance import balance, smallest_jacobian
 from beamfem.kernels.band import factor, solve_upper
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.stress import predict_stress
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, nogil=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(nogil=True, fastmath=FAST)
 def take(step, p, scale):
     """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
     size = 0.0
@@ -23,7 +23,7 @@ def take(step, p, scale):
     return size
 
 
-@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+@kernel(nogil=True)
 def negative_diagonal(rows):
     """Return how many of the inverse pivots that a factorised band (n, width) has on its diagonal are negative."""
     count, middle = 0, rows.shape[1] // 2
@@ -32,7 +32,7 @@ def negative_diagonal(rows):
     return count
 
 
-@njit(cache=True, error_model="numpy")
+@kernel(_nrt=True)
 def equilibrate(
     forms,
     blocks,
@@ -116,7 +116,7 @@ def equilibrate(
     return True
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def _predict(forms, blocks, work, p, step):
     for i in range(len(blocks)):
         predict_stress(forms[i], blocks[i], work[i], p, step, work[i].stress)

@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
-from numba import njit
-
 from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import STRUCTURAL
+from beamfem.kernels.compiling import kernel
 
 
 class Form(NamedTuple):
@@ -31,7 +30,7 @@ def known_form(nodes: int, vectors: int, measures: int, window: tuple[float, ...
     return Form((True,) * nodes, (True,) * vectors, (True,) * (1 + measures), window)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def sizes(form, block):
     """Return nn, vpn and the code of the strain measures, constants where the form knows them."""
     if len(form.nodes) > 0:

@@ -5,12 +5,12 @@ the product of two of these vectors, so that its gradient is one of them: with r
 r, d, e; with respect to d, eps 4, 3, 5; with respect to e, eps 1, 5, 2.
 """
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def strains(q):
     """Return eps."""
     rx, ry, dx, dy, ex, ey = q
@@ -24,7 +24,7 @@ def strains(q):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def forces(q, s):
     """Return the vectors on r, d and e of stress resultants s."""
     rx, ry, dx, dy, ex, ey = q
@@ -39,7 +39,7 @@ def forces(q, s):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def rates(q, dq):
     """Return the change of eps with changes of r, d and e."""
     rx, ry, dx, dy, ex, ey = q
@@ -54,7 +54,7 @@ def rates(q, dq):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def _products(w, q, c, k, p, rows, columns):
     """Return w sum_kl c[k, p, rows_k, columns_l] v_k v_l^T (xx, xy, yx, yy) of the vectors v = r, d, e in q."""
     rx, ry, dx, dy, ex, ey = q
@@ -74,7 +74,7 @@ def _products(w, q, c, k, p, rows, columns):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, re (4 each), dd, de, ee."""
     s0, s1, s2, s3, s4, s5 = s

@@ -2,13 +2,12 @@
 
 import math
 
-from numba import njit
-
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.coordinates import add_node_force
 from beamfem.kernels.reduce import add_matrix, add_turning, reduce_matrix
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def assemble_point_loads(block, loads, layout, work, values, ck, residual, matrix):
     """Subtract the generalized forces of point loads from `residual`, their tangent from `matrix`.
 

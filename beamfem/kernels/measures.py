@@ -4,10 +4,9 @@ A measure is a function eps(r, d, e) of r = r0', d and e, which is d', or r0'' f
 readable in `beamfem.element.forces`. All take six measures, of which some kinds use four.
 """
 
-from numba import njit
-
 from beamfem.kernels import elastic_line, green_lagrange, structural
 from beamfem.kernels.block import GREEN_LAGRANGE, STRUCTURAL
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
@@ -19,7 +18,7 @@ _line_strains, _line_forces = elastic_line.strains, elastic_line.forces
 _line_rates, _line_hessian = elastic_line.rates, elastic_line.hessian
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def strains(measures, q):
     """Return eps (6) of the kind that a block asks for."""
     if measures == GREEN_LAGRANGE:
@@ -29,7 +28,7 @@ def strains(measures, q):
     return _line_strains(q)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def rates(measures, q, dq):
     """Return the change of eps (6) with changes dq of q = (r, d, e)."""
     if measures == GREEN_LAGRANGE:
@@ -39,7 +38,7 @@ def rates(measures, q, dq):
     return _line_rates(q, dq)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def resultants(measures, w, c, reference, k, g, eps):
     """Return w c (eps - reference) (6) of class k and point g; c (nc, nq, ns, ns), reference (nc, nq, ns)."""
     a0, a1 = eps[0] - reference[k, g, 0], eps[1] - reference[k, g, 1]
@@ -77,7 +76,7 @@ def resultants(measures, w, c, reference, k, g, eps):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def forces(measures, q, s):
     """Return the vectors on r, d and e of stress resultants s (6)."""
     if measures == GREEN_LAGRANGE:
@@ -87,7 +86,7 @@ def forces(measures, q, s):
     return _line_forces(q, s)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def hessian(measures, q, c, k, g, w, s):
     """Return the blocks rr (3), rd, re (4 each), dd (3), de (4), ee (3) of w grad^T c grad + sum_i s_i d2 eps_i."""
     if measures == GREEN_LAGRANGE:

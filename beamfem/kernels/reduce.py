@@ -1,35 +1,34 @@
 """The reduction e' = B p' of element matrices and nodal forces, and their addition to those of the model."""
 
-from numba import njit
-
 from beamfem.kernels.block import GRADIENTS, ROTATION, STRETCH, TURNED_GRADIENTS
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.coordinates import add_node_force, node_vectors
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def place_nodes(block, p, v, a, e, acceleration):
     """Fill e and e'' (N, per_node) of all nodes of a block from p, p', p'' (n,) of the whole model."""
     for node in range(block.dof.shape[0]):
         node_vectors(block, node, p, v, a, e, acceleration)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def add_forces(block, e, force, residual):
     """Add B^T f of all nodes to the residual (n,); e and f (N, per_node)."""
     for node in range(block.dof.shape[0]):
         add_node_force(block, node, node, e, force, residual)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def add_turnings(block, layout, e, force, ck, matrix):
     """Add ck (dB^T/dp) f of all nodes to the matrix; e and f (N, per_node)."""
     for node in range(block.dof.shape[0]):
         add_turning(block, layout, node, node, e, force, ck, matrix)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def add_turning(block, layout, node, row, e, force, ck, matrix):
     """Add ck (dB^T/dp) f of a node to the matrix; its e (N, per_node), f a row of force."""
     carrier = block.carrier[node]
@@ -52,7 +51,7 @@ def add_turning(block, layout, node, row, e, force, ck, matrix):
         _add(layout, element, s, angle, place + 2, place + last, mixed, matrix)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def reduce_matrix(nn, vpn, block, element, kind, e, v, a, coefficients, k):
     """Replace k = ck K + ca M (2 nv, 2 nv) by B^T (ck K B + M C); a node's coordinates take its first places."""
     ck, cv, ca = coefficients
@@ -111,7 +110,7 @@ def reduce_matrix(nn, vpn, block, element, kind, e, v, a, coefficients, k):
                 k[to, x] = rx * right - ry * left + dx * k[d + 1, x] - dy * k[d, x]
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def _add_convective(nn, vpn, block, n, node, kind, carrier, to, e, v, a, ck, cv, k):
     """Add M (C - ca B) of a node that turns: what the change of e'' with p and p' adds to that with p''."""
     per = 2 * vpn
@@ -136,7 +135,7 @@ def _add_convective(nn, vpn, block, n, node, kind, carrier, to, e, v, a, ck, cv,
         _add_mass(nn, vpn, block, kind, n * vpn + 1, to, x, y, k)
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def _add_mass(nn, vpn, block, kind, slot, column, x, y, k):
     """Add the mass of a nodal vector times (x, y) to a column of k."""
     for i in range(nn * vpn):
@@ -144,7 +143,7 @@ def _add_mass(nn, vpn, block, kind, slot, column, x, y, k):
         k[2 * i + 1, column] += block.mass[kind, i, slot] * y
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def add_matrix(nn, vpn, block, layout, element, rows, k, matrix):
     """Add a reduced element matrix to that of the model; rows: work space (nn npn,)."""
     npn, per = block.dof.shape[1], 2 * vpn
@@ -172,7 +171,7 @@ def add_matrix(nn, vpn, block, layout, element, rows, k, matrix):
                         matrix[layout.slot[element, n * npn + own, m * npn + its]] += value
 
 
-@njit(cache=True, forceinline=True, _nrt=False, error_model="numpy")
+@kernel(forceinline=True)
 def _add(layout, element, dof_i, dof_j, i, j, value, matrix):
     row, column = layout.free[dof_i], layout.free[dof_j]
     if row >= 0 and column >= 0:

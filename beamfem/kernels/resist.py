@@ -1,12 +1,11 @@
 """Elastic forces of elements that are cut free, over the rows of a solution."""
 
-from numba import njit
-
 from beamfem.kernels.assemble import add_element_forces, clear
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.reduce import place_nodes
 
 
-@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+@kernel(nogil=True)
 def resist(form, block, p, v, a, nothing, e, acceleration, force):
     """Fill nodal vectors e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n).
 

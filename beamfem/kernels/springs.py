@@ -1,9 +1,9 @@
 """Residual and tangent of springs of single coordinates to the ground."""
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def assemble_springs(springs, p, ck, residual, matrix):
     """Add the forces k (p - rest) of springs to `residual` (n,), their stiffness to the diagonal of `matrix` (flat)."""
     for i in range(springs.dof.shape[0]):

@@ -1,16 +1,15 @@
 """Stress resultants at the quadrature points that a linearised step predicts."""
 
-from numba import njit
-
 from beamfem.kernels.axis import interpolate
 from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.kernels.compiling import kernel
 from beamfem.kernels.coordinates import node_rates
 from beamfem.kernels.form import sizes
 from beamfem.kernels.measures import rates, resultants, strains
 from beamfem.kernels.reduce import place_nodes
 
 
-@njit(cache=True, nogil=True, _nrt=False, error_model="numpy")
+@kernel(nogil=True)
 def predict_stress(form, block, work, p, step, stress):
     """Fill stress (ne, nq, ns) with C (eps + (d eps / de) B dp), B and eps at p, dp = step.
 

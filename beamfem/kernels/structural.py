@@ -5,12 +5,12 @@ With t = d / |d|, n = (t_y, -t_x): eps = (r'.n - 1, r'.t, (d x d') / |d|^2, |d| 
 
 import math
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def strains(q):
     """Return eps and two zeros."""
     rx, ry, dx, dy, ex, ey = q
@@ -22,7 +22,7 @@ def strains(q):
     return rx * ty - ry * tx - 1.0, rx * tx + ry * ty, turn, size - 1.0, 0.0, 0.0
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def gradients(q):
     """Return t, r'.n, r'.t, the gradient g of the angle of d and that of the curvature with respect to d."""
     rx, ry, dx, dy, ex, ey = q
@@ -33,7 +33,7 @@ def gradients(q):
     return tx, ty, rx * ty - ry * tx, rx * tx + ry * ty, gx, gy, hxx * ex + hxy * ey, hxy * ex - hxx * ey
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def forces(q, s):
     """Return the vectors on r, d and e of stress resultants s."""
     s0, s1, s2, s3, _, _ = s
@@ -49,7 +49,7 @@ def forces(q, s):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def rates(q, dq):
     """Return the change of eps with changes of r, d and e."""
     rx_, ry_, dx_, dy_, ex_, ey_ = dq
@@ -65,7 +65,7 @@ def rates(q, dq):
     )
 
 
-@njit(cache=True, forceinline=True, _nrt=False, fastmath=FAST, error_model="numpy")
+@kernel(forceinline=True, fastmath=FAST)
 def hessian(q, c, k, g, w, s):
     """Return w grad^T c[k, g] grad + sum_i s_i d2 eps_i, as its blocks rr (xx, xy, yy), rd, re (4 each), dd, de, ee."""
     _, _, dx, dy, ex, ey = q

@@ -1,9 +1,9 @@
 """Pairs of coordinates (x, y) of which only one direction is held: a roller on an inclined plane."""
 
-from numba import njit
+from beamfem.kernels.compiling import kernel
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def hold_normals(rows, first, normal):
     """Turn each pair of unknowns to (normal, tangent) in a band matrix and hold the normal one at zero change.
 
@@ -29,7 +29,7 @@ def hold_normals(rows, first, normal):
         rows[i, w] = size if size > 0.0 else 1.0
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def turn_in(right, first, normal):
     """Turn each pair of a right-hand side (n,) to (normal, tangent) in place, the normal one zero."""
     for k in range(first.shape[0]):
@@ -38,7 +38,7 @@ def turn_in(right, first, normal):
         right[i] = 0.0
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@kernel()
 def turn_back(x, first, normal):
     """Turn the solution's pairs (normal, tangent) back to (x, y), in place."""
     for k in range(first.shape[0]):

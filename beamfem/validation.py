@@ -3,6 +3,7 @@
 import inspect
 import math
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from functools import cache
 from typing import Any
 
@@ -12,8 +13,8 @@ from beamfem.errors import InputError
 
 
 def _number(value: Any) -> Any:
-    """Refuse text: float() would read it, arithmetic later would not."""
-    if isinstance(value, str | bytes):
+    """Refuse text and truth values: float() would read them, and they are not what was meant."""
+    if isinstance(value, str | bytes | bool | np.bool_):
         raise TypeError
     return value
 
@@ -46,6 +47,23 @@ def count(name: str, value: Any) -> int:
     return int(value)
 
 
+def flag(name: str, value: Any) -> bool:
+    """Return `value` as True or False, or raise InputError naming it: text and numbers count as neither."""
+    if not isinstance(value, bool | np.bool_):
+        raise InputError(f"{name} must be True or False, got {value!r}")
+    return bool(value)
+
+
+def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:
+    """Raise InputError where `value` is none of those `allowed`; it names the nearest."""
+    if isinstance(value, str | type(None)) and value in allowed:
+        return
+    listed = [repr(item) for item in allowed]
+    message = f"{name} must be {', '.join(listed[:-1])} or {listed[-1]}, got {value!r}"
+    near = get_close_matches(value, [item for item in allowed if item], 1) if isinstance(value, str) else []
+    raise InputError(f"{message}; did you mean {near[0]!r}?" if near else message)
+
+
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return `value` as two finite floats, or raise InputError naming it."""
     try:
@@ -70,7 +88,17 @@ def _members(protocol: type) -> tuple[str, ...]:
 
 def function_value(name: str, function: Callable[[float], float], at: float) -> float:
     """Return the finite value of a user's function, or raise InputError naming it and the argument."""
-    return finite(f"{name}({at:g})", function(at))
+    return finite(f"{name}({at:g})", called(name, function, at))
+
+
+def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return what a user's function gives, or raise InputError naming it and the arguments where it raises."""
+    try:
+        return function(*arguments)
+    except Exception as error:
+        given = ", ".join(f"{value:g}" if isinstance(value, float) else repr(value) for value in arguments)
+        what = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+        raise InputError(f"{name}({given}) cannot be computed: {what}") from error
 
 
 def function_of_one(name: str, function: Any, argument: str) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.analysis import memory
+from beamfem.memory import installed_memory
 
 LINE = bf.Line((0, 0), (1, 0))
 SECTION = bf.Rectangle(0.01, 0.01)
@@ -166,9 +167,9 @@ def test_memory_that_the_system_does_not_tell_refuses_nothing(monkeypatch):
     def unknown(name):
         raise ValueError(name)
 
-    assert memory.installed_memory() > 2**28
-    monkeypatch.setattr(memory.os, "sysconf", unknown)
-    assert memory.installed_memory() is None
+    assert installed_memory() > 2**28
+    monkeypatch.setattr("os.sysconf", unknown)
+    assert installed_memory() is None
     memory.require_memory(18, 1e15, 1e-3, 1)
 
 

@@ -15,7 +15,7 @@ from beamfem.model.reference import reference_position
 from beamfem.model.system import System, coordinate_columns
 from beamfem.postprocess import nodal_vectors
 from beamfem.solution import Solution, State
-from beamfem.validation import finite, vector
+from beamfem.validation import called, finite, vector
 
 _NEAR = 0.01  # of an element, between the points of a difference
 _FORWARD = (-25.0, 48.0, -36.0, 16.0, -3.0)  # twelfths
@@ -71,7 +71,7 @@ def _of_field(system: System, velocity: Callable[[np.ndarray], np.ndarray], p: n
     """Rates (n,) of a velocity field from the state p; a shared coordinate takes the mean of what its beams say."""
     total, times = np.zeros(len(p)), np.zeros(len(p))
     for mesh in system.model.meshes:
-        values = np.array([vector("velocity", velocity(x)) for x in mesh.position])
+        values = np.array([vector("velocity", called("velocity", velocity, x)) for x in mesh.position])
         slopes = _along(mesh, velocity) if "r_x" in mesh.vectors else values
         e = nodal_vectors(mesh, p[None])[0]
         for code, nodes in mesh.carriers:
@@ -129,7 +129,7 @@ def _along(mesh: BeamMesh, velocity: Callable[[np.ndarray], np.ndarray]) -> np.n
         for k, weight in enumerate(_FORWARD):
             xi = np.full(mesh.elements, -min(inward, 0.0) + inward * k * _NEAR)
             places = reference_position(mesh, number, xi)
-            slope += weight * np.array([vector("velocity", velocity(x)) for x in places])
+            slope += weight * np.array([vector("velocity", called("velocity", velocity, x)) for x in places])
         nodes = mesh.node[:, end]
         np.add.at(total, nodes, inward * slope / (12.0 * _NEAR * mesh.lengths[:, None]))
         np.add.at(elements, nodes, 1.0)

@@ -26,7 +26,7 @@ from beamfem.kernels.balance import smallest_jacobian
 from beamfem.kernels.equilibrate import equilibrate
 from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
-from beamfem.validation import count, positive
+from beamfem.validation import count, flag, positive
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 _SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
@@ -85,8 +85,16 @@ class Newton:
         positive("tolerance", self.tolerance)
         positive("residual_tolerance", self.residual_tolerance)
         count("iterations", self.iterations)
-        if not isinstance(self.independent_stresses, bool):
-            raise InputError(f"independent_stresses must be True or False, got {self.independent_stresses!r}")
+        flag("independent_stresses", self.independent_stresses)
+
+
+def require_newton(newton: Newton | None, default: Newton) -> Newton:
+    """Return what a user gives, or the default for None. Raises InputError for anything else."""
+    if newton is None:
+        return default
+    if not isinstance(newton, Newton):
+        raise InputError(f"newton must be a Newton(tolerance=..., iterations=...), got {newton!r}")
+    return newton
 
 
 def solve_equilibrium(

@@ -15,6 +15,7 @@ from beamfem.model.loads import factor
 from beamfem.model.model import Model
 from beamfem.model.supports import Prescribed
 from beamfem.model.system import System, system_of
+from beamfem.validation import function_value
 
 _AT_REST = "nothing acts at load factor 0"
 
@@ -61,7 +62,10 @@ def _growing(model: Model) -> Model:
 
 def _led(support: Prescribed) -> Prescribed:
     """Return a support with what it prescribes at load factor 0 in proportion to the load factor."""
-    values = {name: float(value(0.0)) if callable(value) else 0.0 for name, value in support.held().items()}
+    values = {
+        name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
+        for name, value in support.held().items()
+    }
     return Prescribed(support.point, **values)
 
 

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.load_steps import Snap, reach
-from beamfem.analysis.newton import Newton
+from beamfem.analysis.newton import Newton, require_newton
 from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.compiled import tell_of_compilation
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.solution import Solution
-from beamfem.validation import count
+from beamfem.validation import count, one_of
 
 
 def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error") -> Solution:
@@ -34,12 +34,11 @@ def solve_through(
 ) -> Solution:
     """Return the same with rows at load factors `stops` in between."""
     count("steps", steps)
-    if snap not in ("error", "jump"):
-        raise InputError(f'snap must be "error" or "jump", got {snap!r}')
+    one_of("snap", snap, ("error", "jump"))
     system = system_of(model, static=True)
     tell_of_compilation()
     require_support(system)
-    newton = newton or Newton()
+    newton = require_newton(newton, Newton())
     done = StaticRecord(model, system.symmetric)
     first = first_equilibrium(system, newton)
     done.iterations += first.iterations

@@ -11,7 +11,7 @@ from beamfem.analysis.branches import leave
 from beamfem.analysis.continuation import Continuation, PathPoint, begin
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
-from beamfem.analysis.newton import Newton
+from beamfem.analysis.newton import Newton, require_newton
 from beamfem.analysis.path_record import PathRecord, kept
 from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
@@ -62,13 +62,14 @@ def trace_equilibrium(
         raise InputError(f"direction must be 1 or -1, got {direction!r}")
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
+    newton = require_newton(newton, Newton(iterations=_ITERATIONS))
     system = system_of(model, static=True)
     require_support(system)
     _require_load(system)
     _require_crossing(model, start)
     record = PathRecord(model)
     with kept(record), progress("points of the path", points) as report:
-        line, point = _first(system, newton or Newton(iterations=_ITERATIONS), record)
+        line, point = _first(system, newton, record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
@@ -177,4 +178,13 @@ def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | 
 
 
 def _met(until: Until, state: PathState) -> bool:
-    return callable(until) and bool(until(state))
+    if not callable(until):
+        return False
+    try:
+        answer = until(state)
+    except Exception as error:
+        error.add_note(f"raised by `until`, for the state at load factor {state.load_factor:.6g}")
+        raise
+    if not isinstance(answer, bool | np.bool_):
+        raise InputError(f"until must give True or False for a state of the path, got {answer!r}")
+    return bool(answer)

@@ -55,7 +55,7 @@ class Course:
         """Return its values at times (n,) [s], without the care for each that `at` takes unless one asks for it."""
         try:
             values = np.array([self.function(time) for time in times.tolist()], dtype=float)
-        except (TypeError, ValueError):
+        except Exception:  # `at` tells which value it was
             values = np.full(len(times), np.nan)
         if values.shape == times.shape and np.isfinite(values).all():
             return values

@@ -15,6 +15,7 @@ from beamfem.errors import InputError
 DEGREE = 12
 _FIRST_PANELS = 8
 _HALVINGS = 17
+_MOST_PANELS = 4096  # at once; a corner needs two, noise all that there are
 # A panel is fine enough where its last coefficients, and its error between the nodes, fall to this share of the extent;
 # round-off of the values themselves cannot be asked for.
 _SMALL = 1e-14
@@ -46,7 +47,8 @@ class Panels:
 def approximate(function: Callable[[np.ndarray], np.ndarray], where: Callable[[float], str]) -> Panels:
     """Return the panels on which a function of v (n,) in [0, 1] with values (n, columns) is resolved to round-off.
 
-    where: name of a v for messages. Raises InputError where halving a panel 17 times does not resolve it.
+    where: name of a v for messages. Raises InputError for noise, and where halving a panel 17 times does not
+    resolve it.
     """
     nodes = chebyshev.chebpts1(DEGREE + 1)
     to_coefficients = np.linalg.inv(chebyshev.chebvander(nodes, DEGREE))
@@ -71,6 +73,11 @@ def approximate(function: Callable[[np.ndarray], np.ndarray], where: Callable[[f
         starts, widths = np.concatenate([starts, starts + widths]), np.concatenate([widths, widths])
         if fine.all():
             break
+        if len(starts) > _MOST_PANELS:
+            raise InputError(
+                f"the function is not smooth: between {_MOST_PANELS // 2} points it still varies, near "
+                f"{where(float(starts[0]))} by {float(tail[~fine][0].max()):.1g}, as noise does; fit a BSpline to it"
+            )
     else:
         raise InputError(
             f"the function is not smooth near {where(float(starts[0]))}; make the smooth parts before and after curves "

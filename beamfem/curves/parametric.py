@@ -12,7 +12,7 @@ from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
-from beamfem.validation import finite
+from beamfem.validation import called, finite
 
 PlaneFunction = Callable[[Any], Any]
 
@@ -146,18 +146,19 @@ def _takes_arrays(function: PlaneFunction, u: np.ndarray) -> bool:
     """Return whether a function gives for three numbers at once what it gives for each."""
     try:
         return np.allclose(_table(function, u), [function(float(each)) for each in u], rtol=1e-12, atol=0.0)
-    except (TypeError, ValueError):  # what functions of one number raise for an array
+    except Exception:  # functions of one number raise what they like for an array; for numbers they are asked later
         return False
 
 
 def _table(function: PlaneFunction, u: np.ndarray) -> np.ndarray:
-    x, y = function(u)
+    x, y = called("function", function, u)
     return np.stack([np.broadcast_to(np.asarray(part, dtype=float), u.shape) for part in (x, y)], axis=1)
 
 
 def _point(name: str, function: PlaneFunction, u: float) -> tuple[float, float]:
+    given = called(name, function, u)
     try:
-        x, y = (float(part) for part in function(u))
+        x, y = (float(part) for part in given)
     except (TypeError, ValueError):
-        raise InputError(f"{name}({u:g}) must be two numbers (x, y), got {function(u)!r}") from None
+        raise InputError(f"{name}({u:g}) must be two numbers (x, y), got {given!r}") from None
     return x, y

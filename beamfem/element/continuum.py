@@ -12,6 +12,7 @@ from beamfem.element.structural import section_frame
 from beamfem.kernels.block import GREEN_LAGRANGE
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
+from beamfem.validation import flag
 
 # a law maps a material to the stiffness (3, 3) of (exx, eyy, 2 exy) in the volume
 Law = Callable[[Material], np.ndarray]
@@ -71,6 +72,9 @@ class ContinuumMechanics(_Body):
 
     plane_stress: bool = False
     name: ClassVar[str] = "continuum"
+
+    def __post_init__(self) -> None:
+        flag("plane_stress", self.plane_stress)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
+from beamfem.validation import flag
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,9 @@ class ShearFree:
     """
 
     stretchable: bool = True
+
+    def __post_init__(self) -> None:
+        flag("stretchable", self.stretchable)
 
     @property
     def name(self) -> str:

@@ -11,7 +11,7 @@ from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
-from beamfem.validation import count
+from beamfem.validation import flag, one_of
 
 Integration = Literal["full", "reduced", "lobatto"]
 
@@ -34,8 +34,7 @@ class Element:
     label: str | None = None
 
     def __post_init__(self) -> None:
-        if self.integration not in (None, "full", "reduced", "lobatto"):
-            raise InputError(f'integration must be "full", "reduced" or "lobatto", got {self.integration!r}')
+        one_of("integration", self.integration, ("full", "reduced", "lobatto", None))
         kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
         for name, kind in kinds:
             if not isinstance(getattr(self, name), kind):
@@ -132,8 +131,6 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
 
     order: 1 to 8. Raises InputError.
     """
-    if count("order", order) > 8:
-        raise InputError(f"order must be at most 8, got {order}")
     return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")
 
 
@@ -145,7 +142,7 @@ def ShearRigid(
     stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in shear, and
     in stretch where the length is none; without it, as any cubic field, and "reduced" with continuum forces.
     """
-    label = "shear-rigid-stretchable" if stretchable else "shear-rigid"
+    label = "shear-rigid-stretchable" if flag("stretchable", stretchable) else "shear-rigid"
     chosen = forces or Structural()
     if integration is None and isinstance(chosen, ContinuumMechanics | SplitContinuum):
         integration = "reduced"

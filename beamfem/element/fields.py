@@ -9,6 +9,10 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 
 from beamfem.element.gauss import gauss
+from beamfem.errors import InputError
+from beamfem.validation import count
+
+HIGHEST_ORDER = 8
 
 
 @runtime_checkable
@@ -104,6 +108,10 @@ class Lagrange:
 
     order: int = 1
     vectors: ClassVar[tuple[str, ...]] = ("r", "r_y")
+
+    def __post_init__(self) -> None:
+        if count("order", self.order) > HIGHEST_ORDER:
+            raise InputError(f"order must be at most {HIGHEST_ORDER}, got {self.order}")
 
     @property
     def name(self) -> str:

@@ -14,7 +14,7 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import count, finite, fulfils, function_of_one
+from beamfem.validation import called, count, finite, fulfils, function_of_one
 
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
@@ -75,20 +75,14 @@ class Beam:
         """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
         if self.prismatic:
             return cast(CrossSection, self.section)
-        try:
-            section = cast(Tapered, self.section)(arc_length)
-        except InputError as error:
-            raise InputError(f"the section at arc length {arc_length:g} m cannot be made: {error}") from error
+        section = called("section", cast(Tapered, self.section), arc_length)
         if not fulfils(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
         return section
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction in [0, 1] of the arc length."""
-        share = finite("fraction", fraction)
-        if not 0.0 <= share <= 1.0:
-            raise InputError(f"the fraction along a beam lies between 0 and 1, got {share}")
-        return Point(self, share)
+        return Point(self, finite("fraction", fraction))
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
@@ -125,6 +119,12 @@ class Point:
     beam: Beam
     fraction: float
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.beam, Beam):
+            raise InputError(f"beam of a Point must be a Beam, got {self.beam!r}")
+        if not 0.0 <= finite("fraction", self.fraction) <= 1.0:
+            raise InputError(f"the fraction along a beam lies between 0 and 1, got {self.fraction}")
+
     @property
     def reference(self) -> np.ndarray:
         """Position in the reference (2,) [m]."""
@@ -133,6 +133,18 @@ class Point:
     def __str__(self) -> str:
         x, y = self.reference
         return f"({x:g}, {y:g}), fraction {self.fraction:g} of its beam"
+
+
+def require_point(kind: str, point: object, name: str = "point") -> None:
+    """Raise InputError where what a support, a load or a joint is given for its place is no point."""
+    if not isinstance(point, Point):
+        raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {point!r}")
+
+
+def require_beam(kind: str, beam: object) -> None:
+    """Raise InputError where what a load or a foundation is given for its place is no beam."""
+    if not isinstance(beam, Beam):
+        raise InputError(f"beam of {kind} must be a Beam, one of the model's beams, got {beam!r}")
 
 
 def reference_positions(points: Sequence[Point]) -> np.ndarray:

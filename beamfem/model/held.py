@@ -26,7 +26,7 @@ class Held:
     def change(self, time: float, static: bool) -> float:
         """Return the change from the reference at a time, in statics at a load factor."""
         if callable(self.value):
-            return function_value("prescribed value", self.value, time)
+            return function_value(f"Prescribed at {self.point}: value", self.value, time)
         return self.value * (time if static else 1.0)
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from beamfem.model.beam import Point
+from beamfem.model.beam import Point, require_point
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,6 +12,10 @@ class Rigid:
     a: Point
     b: Point
 
+    def __post_init__(self) -> None:
+        require_point("Rigid", self.a, "a")
+        require_point("Rigid", self.b, "b")
+
 
 @dataclass(frozen=True, slots=True)
 class Hinge:
@@ -19,6 +23,10 @@ class Hinge:
 
     a: Point
     b: Point
+
+    def __post_init__(self) -> None:
+        require_point("Hinge", self.a, "a")
+        require_point("Hinge", self.b, "b")
 
 
 Joint = Rigid | Hinge

@@ -7,9 +7,9 @@ from typing import Protocol
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
+from beamfem.model.beam import Beam, Point, require_beam, require_point
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import finite, function_of_one, function_value, vector
+from beamfem.validation import called, finite, flag, function_of_one, function_value, vector
 
 Amplitude = Callable[[float], float] | None
 Varying = Callable[[float], Sequence[float]]
@@ -30,13 +30,18 @@ def factor(load: Scaled, time: float, static: bool) -> float:
     amplitude(time) where there is one; else the load factor in statics for loads with `scale`, else 1.
     """
     if load.amplitude is not None:
-        return function_value("amplitude", load.amplitude, time)
+        return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)
     return time if static and load.scale else 1.0
 
 
-def _check_amplitude(amplitude: Amplitude) -> None:
-    if amplitude is not None:
-        function_of_one("amplitude", amplitude, "time")
+def _check_common(load: Scaled) -> None:
+    """Check what loads have besides their place and value: amplitude, scale, and where they have it follower."""
+    kind = type(load).__name__
+    if load.amplitude is not None:
+        function_of_one(f"amplitude of {kind}", load.amplitude, "time")
+    flag(f"scale of {kind}", load.scale)
+    if hasattr(load, "follower"):
+        flag(f"follower of {kind}", load.follower)
 
 
 @dataclass(frozen=True)
@@ -49,7 +54,7 @@ class Gravity:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vector", vector("vector of Gravity", self.vector))
-        _check_amplitude(self.amplitude)
+        _check_common(self)
 
 
 @dataclass(frozen=True)
@@ -69,20 +74,22 @@ class DistributedLoad:
     follower: bool = False
 
     def __post_init__(self) -> None:
+        require_beam("DistributedLoad", self.beam)
         if callable(self.vector):
             function_of_one("vector of DistributedLoad", self.vector, "arc length")
             _check_along(self)
         else:
             object.__setattr__(self, "vector", vector("vector of DistributedLoad", self.vector))
-        _check_amplitude(self.amplitude)
+        _check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError where a function gives none."""
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
-        given = self.vector
-        name = "vector of DistributedLoad at arc length"
-        return np.array([vector(f"{name} {s:g} m", given(s)) for s in arc_length.tolist()]).reshape(-1, 2)
+        given, name = self.vector, "vector of DistributedLoad"
+        return np.array(
+            [vector(f"{name} {s:g} m", called("vector of DistributedLoad", given, s)) for s in arc_length.tolist()]
+        ).reshape(-1, 2)
 
 
 @dataclass(frozen=True)
@@ -101,19 +108,20 @@ class Pressure:
     scale: bool = True
 
     def __post_init__(self) -> None:
+        require_beam("Pressure", self.beam)
         if callable(self.value):
             function_of_one("value of Pressure", self.value, "arc length")
             _check_along(self)
         else:
             object.__setattr__(self, "value", finite("value of Pressure", self.value))
-        _check_amplitude(self.amplitude)
+        _check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError where a function gives none."""
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given = self.value
-        return np.array([finite(f"value of Pressure at arc length {s:g} m", given(s)) for s in arc_length.tolist()])
+        return np.array([function_value("value of Pressure", given, s) for s in arc_length.tolist()])
 
 
 @dataclass(frozen=True)
@@ -127,8 +135,9 @@ class PointForce:
     follower: bool = False
 
     def __post_init__(self) -> None:
+        require_point("PointForce", self.point)
         object.__setattr__(self, "vector", vector("vector of PointForce", self.vector))
-        _check_amplitude(self.amplitude)
+        _check_common(self)
 
     @property
     def value(self) -> tuple[float, float, float]:
@@ -150,8 +159,9 @@ class PointMoment:
     follower: bool = False
 
     def __post_init__(self) -> None:
+        require_point("PointMoment", self.point)
         finite("moment", self.moment)
-        _check_amplitude(self.amplitude)
+        _check_common(self)
 
     @property
     def value(self) -> tuple[float, float, float]:

@@ -10,6 +10,7 @@ from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.body import require_body
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
@@ -17,6 +18,7 @@ from beamfem.model.joints import Hinge, Joint, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment, Pressure, kinks_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
+from beamfem.model.size import require_room
 from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
 
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
@@ -60,20 +62,16 @@ class Model:
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
         for item in (*self.supports, *self.loads):
             if isinstance(item, _AT_POINT):
-                self._require(item, "point", item.point)
+                self._require(item, item.point)
             elif isinstance(item, _ON_BEAM):
-                self._require(item, "beam", item.beam)
+                self._require(item, item.beam)
         for joint in self.joints:
-            self._require(joint, "a", joint.a)
-            self._require(joint, "b", joint.b)
+            self._require(joint, joint.a)
+            self._require(joint, joint.b)
         self._require_touches()
 
-    def _require(self, item: object, name: str, place: object) -> None:
+    def _require(self, item: object, place: Beam | Point) -> None:
         kind = type(item).__name__
-        wanted = Beam if name == "beam" else Point
-        if not isinstance(place, wanted):
-            example = "one of the model's beams" if wanted is Beam else "such as beam.end or beam.at(0.5)"
-            raise InputError(f"{name} of {kind} must be a {wanted.__name__}, {example}, got {place!r}")
         beam = place.beam if isinstance(place, Point) else place
         if id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""
@@ -103,6 +101,7 @@ class Model:
 
     @cached_property
     def _numbered(self) -> tuple[tuple[BeamMesh, ...], int]:
+        require_room(self.beams)
         fractions: list[list[float]] = [[] for _ in self.beams]
         places = [support.point for support in self.point_supports]
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
@@ -121,6 +120,8 @@ class Model:
         turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
         moving = np.concatenate([turning, hinged])
         grids = close_gaps(grids, moving)
+        for grid in grids:
+            require_body(grid)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {element: number for number, element in enumerate(self.groups)}

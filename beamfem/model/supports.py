@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, Point
+from beamfem.model.beam import Beam, Point, require_beam, require_point
 from beamfem.validation import finite, function_of_one, vector
 
 Value = float | Callable[[float], float]
@@ -18,6 +18,9 @@ class Clamp:
 
     point: Point
 
+    def __post_init__(self) -> None:
+        require_point("Clamp", self.point)
+
     def held(self) -> dict[str, Value]:
         return {"ux": 0.0, "uy": 0.0, "rotation": 0.0}
 
@@ -27,6 +30,9 @@ class Pin:
     """Hold the position."""
 
     point: Point
+
+    def __post_init__(self) -> None:
+        require_point("Pin", self.point)
 
     def held(self) -> dict[str, Value]:
         return {"ux": 0.0, "uy": 0.0}
@@ -40,6 +46,7 @@ class Roller:
     normal: tuple[float, float] = (0.0, 1.0)
 
     def __post_init__(self) -> None:
+        require_point("Roller", self.point)
         if not np.hypot(*vector("normal", self.normal)) > 0.0:
             raise InputError("the normal of a Roller must not be zero")
 
@@ -66,6 +73,7 @@ class Prescribed:
     rotation: Value | None = None
 
     def __post_init__(self) -> None:
+        require_point("Prescribed", self.point)
         if not self.held():
             raise InputError("Prescribed needs at least one of ux, uy and rotation")
         for name, value in self.held().items():
@@ -91,6 +99,7 @@ class Spring:
     rotational: float = 0.0
 
     def __post_init__(self) -> None:
+        require_point("Spring", self.point)
         object.__setattr__(self, "stiffness", vector("stiffness of Spring", self.stiffness))
         values = (*self.stiffness, finite("rotational", self.rotational))
         if min(values) < 0.0 or max(values) == 0.0:
@@ -116,6 +125,7 @@ class Foundation:
     stiffness: tuple[float, float]
 
     def __post_init__(self) -> None:
+        require_beam("Foundation", self.beam)
         object.__setattr__(self, "stiffness", vector("stiffness of Foundation", self.stiffness))
         if min(self.stiffness) < 0.0 or max(self.stiffness) == 0.0:
             raise InputError(f"the stiffness of a Foundation must not be negative, and somewhere positive: {self}")

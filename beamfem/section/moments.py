@@ -37,7 +37,12 @@ class Section:
             positive(name, getattr(self, name))
         if self.fourth_moment is None:
             object.__setattr__(self, "fourth_moment", self.area * self._equivalent_height**4 / 80.0)
-        positive("fourth_moment", self.fourth_moment)
+        fourth = positive("fourth_moment", self.fourth_moment)
+        if fourth * self.area < self.second_moment**2 * (1.0 - _ROUNDING):
+            raise InputError(
+                f"fourth_moment ({fourth:g}) must be at least second_moment^2 / area = "
+                f"{self.second_moment**2 / self.area:g}: no section has less"
+            )
         if self.height is not None:
             self._check_height()
         elif self.centroid is not None:

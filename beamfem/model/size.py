@@ -1,0 +1,35 @@
+"""Whether a model fits the memory, asked before it is meshed."""
+
+from collections.abc import Sequence
+
+from beamfem.element.coordinates import labels
+from beamfem.errors import InputError
+from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.model.beam import Beam
+
+_COORDINATE = 250  # bytes of a coordinate of the leanest model, measured
+
+
+def require_room(beams: Sequence[Beam]) -> None:
+    """Raise InputError where the elements of a model need more memory [bytes] than this computer has."""
+    memory = installed_memory()
+    needed = _COORDINATE * sum(map(_coordinates, beams))
+    if memory is None or needed <= SHARE * memory:
+        return
+    most = max(beams, key=_coordinates)
+    raise InputError(
+        f"the {sum(map(_elements, beams)):.4g} elements of this model need {in_gib(needed)} at the least, and this "
+        f"computer has {in_gib(memory)}; the most are in {most!r}, take fewer"
+    )
+
+
+def _elements(beam: Beam) -> int:
+    if isinstance(beam.elements, int):
+        return beam.elements
+    return len(beam.elements)
+
+
+def _coordinates(beam: Beam) -> int:
+    element = beam.element
+    names = labels(element.coordinates.code, element.field.vectors)
+    return _elements(beam) * (len(element.field.nodes) - 1) * len(names)

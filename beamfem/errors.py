@@ -38,6 +38,10 @@ class LimitPointError(ConvergenceError):
         self.load_factor = load_factor
 
 
+class FileError(BeamfemError, OSError):
+    """A file that the system does not let us write: no room, no permission, no such place."""
+
+
 class UnstableWarning(UserWarning):
     """Some rows of a static solution are equilibria that the structure would leave."""
 

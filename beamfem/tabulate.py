@@ -5,7 +5,6 @@ import sys
 from collections.abc import Sequence
 from io import StringIO
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from beamfem.files import whole
 
 Rows = Sequence[Sequence[Any]]
 
@@ -52,9 +53,7 @@ def as_markdown(header: Sequence[str], rows: Rows) -> str:
 
 def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> None:
     """Write every digit of the numbers; arrays as nested lists; folders are made."""
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with target.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
         writer.writerows([[v.tolist() if isinstance(v, np.ndarray) else v for v in row] for row in rows])

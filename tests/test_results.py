@@ -193,11 +193,13 @@ def test_killed_writer_leaves_the_rows_before(tmp_path, blocks):
     path = tmp_path / "killed.h5"
     ended = subprocess.run([sys.executable, "-c", KILLED, str(path), str(blocks)], check=False)
     assert ended.returncode == 9
+    (partial,) = tmp_path.glob("killed.*.part.h5")
+    assert not path.exists()
     if blocks == 0:
         with pytest.raises(bf.InputError, match="before the first rows"):
-            load(path)
+            load(partial)
         return
-    solution = load(path)
+    solution = load(partial)
     expected = np.arange(24 * solution.model.size, dtype=float).reshape(24, -1)
     for values, factor in ((solution.p, 1), (solution.v, -1), (solution.a, 2)):
         np.testing.assert_array_equal(values, factor * expected)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.io.hdf5 import read_checked, write_checked
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Solution
 
@@ -16,7 +17,7 @@ def save_critical(file: Any, path: Path) -> None:
     for name, states, parts in _groups(path):
         group = file.create_group(name)
         for part in parts:
-            group.create_dataset(part, data=np.array([getattr(state, part) for state in states]))
+            write_checked(group, part, np.array([getattr(state, part) for state in states]))
 
 
 def load_path(file: Any, rows: Solution) -> Solution:
@@ -44,4 +45,4 @@ def _groups(path: Path) -> tuple[tuple[str, tuple[PathState, ...], tuple[str, ..
 
 
 def _rows(group: Any, parts: tuple[str, ...]) -> Any:
-    return zip(*(np.asarray(group[part]) for part in parts), strict=True)
+    return zip(*(read_checked(group, part) for part in parts), strict=True)

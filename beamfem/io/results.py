@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
 from beamfem.io.critical import load_path, save_critical
 from beamfem.io.description import describe, rebuild
+from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
 from beamfem.path import Path as EquilibriumPath
 from beamfem.solution import Solution, Statistics
 from beamfem.status import Status
@@ -22,38 +23,38 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _BLOCK_BYTES = 2**20
 _STATES = ("at", "p", "v", "a")
 _OPTIONAL = ("stability", "turned", "loaded")
+_CHECKSUMS = "checksums"  # of each block of rows
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
-    """Write model and states into one HDF5 file; folders in the path are made.
+    """Write model and states into one HDF5 file with checksums; folders in the path are made.
 
-    Raises InputError for a model with parts that cannot be saved, BeamfemError without h5py.
+    It takes the place of an earlier file when it is complete. Raises InputError for a model with parts that cannot be
+    saved, FileError where the system refuses to write, BeamfemError without h5py.
     """
-    h5py = _h5py()
-    # a model that cannot be described must not cost the file that may already be there
-    description = json.dumps(describe(solution.model, solution.at))
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
+    description = _text(describe(solution.model, solution.at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
-    with h5py.File(target, "w") as file:
+    with written_hdf5(path) as (file, require_written):
         file.attrs["format"] = _FORMAT
         file.attrs["format_version"] = _FORMAT_VERSION
         file.attrs["beamfem_version"] = version("beamfem")
-        file.attrs["static"] = solution.static
-        file.attrs["statistics"] = json.dumps(asdict(solution.statistics) | {"status": solution.status.name})
+        about = asdict(solution.statistics) | {"status": solution.status.name}
+        write_checked(file, "statistics", _text({"static": solution.static, **about}))
         file.attrs["all_rows"] = len(solution)
         file.attrs["rows"] = 0
-        file.create_dataset("model", data=description)
+        write_checked(file, "model", description)
         for name in _OPTIONAL:
             values = getattr(solution, name)
             if values is not None and values.size:
-                file.create_dataset(name, data=values)
+                write_checked(file, name, values)
         for name in _STATES:
             row = getattr(solution, name).shape[1:]
             file.create_dataset(name, (0, *row), np.float64, maxshape=(None, *row), chunks=(block, *row))
+        file.create_dataset(_CHECKSUMS, (0,), np.int64, maxshape=(None,))
         file.flush()
         for first in range(0, len(solution), block):
             _append(file, solution, slice(first, min(first + block, len(solution))))
+            require_written()
         if isinstance(solution, EquilibriumPath):
             save_critical(file, solution)
 
@@ -64,7 +65,7 @@ def load(path: str | PathLike[str]) -> Solution:
     Of a file whose writer was killed the rows that were written. Raises FileNotFoundError, InputError for a file that
     is damaged, of a newer format or not of beamfem, BeamfemError without h5py.
     """
-    h5py = _h5py()
+    h5py = required_h5py("loading")
     source = Path(path)
     if not source.exists():
         raise FileNotFoundError(f"there is no file {source}")
@@ -81,18 +82,13 @@ def load(path: str | PathLike[str]) -> Solution:
         raise InputError(message) from error
 
 
-def _h5py() -> Any:
-    try:
-        import h5py
-    except ImportError:
-        raise BeamfemError("saving and loading solutions needs h5py: pip install beamfem[store]") from None
-    return h5py
-
-
 def _append(file: Any, solution: Solution, rows: slice) -> None:
     for name in _STATES:
         file[name].resize(rows.stop, axis=0)
         file[name][rows] = getattr(solution, name)[rows]
+    blocks = len(file[_CHECKSUMS])
+    file[_CHECKSUMS].resize(blocks + 1, axis=0)
+    file[_CHECKSUMS][blocks] = checksum(*(getattr(solution, name)[rows] for name in _STATES))
     # rows count only when their numbers have left for the file
     file.flush()
     file.attrs.modify("rows", rows.stop)
@@ -110,16 +106,47 @@ def _read(file: Any) -> Solution:
     rows, all_rows = int(file.attrs["rows"]), int(file.attrs["all_rows"])
     if rows == 0:
         raise InputError("its writing was cut off before the first rows")
-    model = rebuild(json.loads(file["model"].asstr()[()]))
+    model = rebuild(_read_text(file, "model"))
     at, p, v, a = (np.asarray(file[name][:rows]) for name in _STATES)
     if at.shape != (rows,) or any(values.shape != (rows, model.size) for values in (p, v, a)):
         raise InputError(f"its arrays do not fit its model of {model.size} coordinates and its {rows} rows")
-    statistics = _statistics(json.loads(file.attrs["statistics"]))
+    about = _about(file)
+    static = bool(about.pop("static"))
+    statistics = _statistics(about)
     if rows < all_rows:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
-    known = {name: np.asarray(file[name][:rows]) for name in _OPTIONAL if name in file}
-    return load_path(file, Solution(model, bool(file.attrs["static"]), at, p, v, a, statistics, **known))
+    _require_whole(file, rows, (at, p, v, a))
+    known = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
+    return load_path(file, Solution(model, static, at, p, v, a, statistics, **known))
+
+
+def _text(item: Any) -> np.ndarray:
+    """Return what JSON can hold as an array of one text, which can have a checksum."""
+    return np.array([json.dumps(item).encode()])
+
+
+def _read_text(file: Any, name: str) -> Any:
+    """Return what a text holds; files of earlier versions have it without a checksum."""
+    return json.loads(read_checked(file, name)[0] if file[name].shape else file[name].asstr()[()])
+
+
+def _require_whole(file: Any, rows: int, states: tuple[np.ndarray, ...]) -> None:
+    """Raise InputError where rows are not those that were written; files of earlier versions cannot tell."""
+    if _CHECKSUMS not in file:
+        return
+    block, sums = file["at"].chunks[0], file[_CHECKSUMS][:].tolist()
+    for number, first in enumerate(range(0, rows, block)):
+        last = min(first + block, rows)
+        if checksum(*(values[first:last] for values in states)) != sums[number]:
+            raise InputError(f"its rows {first} to {last - 1} are damaged: the checksum is that of other numbers")
+
+
+def _about(file: Any) -> dict[str, Any]:
+    """Return the statistics and whether the solution is static; in files of earlier versions they are attributes."""
+    if "statistics" in file:
+        return dict(_read_text(file, "statistics"))
+    return {"static": file.attrs["static"], **json.loads(file.attrs["statistics"])}
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:

@@ -13,7 +13,8 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
-from beamfem.errors import InputError
+from beamfem.errors import FileError, InputError
+from beamfem.files import whole
 from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ class _Series:
             file = self.folder / f"{len(self.lines):04d}.vtu"
             self.writer.SetFileName(os.fspath(file))
             if not self.writer.Write():
-                raise OSError(f"could not write {file}; is the disk full?")
+                raise FileError(f"{file} cannot be written: the disk is full, or takes no files")
             source = quoteattr(f"{self.folder.name}/{file.name}")
             time = float(self.times[len(self.lines)])
             self.lines.append(f'    <DataSet timestep="{time!r}" part="0" file={source}/>\n')
@@ -111,13 +112,9 @@ class _Series:
 
     def publish(self) -> None:
         """Rewrite the .pvd with the steps so far; readers see the old file or the new one, never a part."""
-        temporary = self.path.with_name(self.path.name + ".tmp")
         head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-        try:
-            temporary.write_text(head + "".join(self.lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
-            os.replace(temporary, self.path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with whole(self.path) as partial:
+            partial.write_text(head + "".join(self.lines) + "  </Collection>\n</VTKFile>\n", encoding="utf-8")
 
 
 def _named(name: str, values: np.ndarray) -> object:

@@ -3,13 +3,12 @@
 Source: Kitware, VTKHDF File Format 2.6 (temporal UnstructuredGrid), docs.vtk.org.
 """
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.errors import BeamfemError
+from beamfem.io.hdf5 import written_hdf5
 from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
@@ -25,18 +24,8 @@ def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> 
 
     Cells are stored once, points and point data for every step. Raises BeamfemError without h5py.
     """
-    try:
-        import h5py
-    except ImportError:
-        raise BeamfemError("writing .vtkhdf files needs h5py: pip install beamfem[store]") from None
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(path.name + ".tmp")
-    try:
-        with h5py.File(temporary, "w") as file:
-            _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with written_hdf5(path) as (file, _):
+        _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk)
 
 
 def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
+from beamfem.files import whole
 from beamfem.solution import Solution
 from beamfem.validation import count, positive
 from beamfem.view.acting import FORCE, draw_loads
@@ -48,9 +49,10 @@ def animate(
     rows = spread_rows(solution, most)
     duration = min(seconds / len(rows), _LONGEST_FRAME)
     write = _write_gif if target.suffix == ".gif" else _mp4_writer()
-    target.parent.mkdir(parents=True, exist_ok=True)
     shapes = Shapes(solution, rows, colour, _POINTS)
-    write(target, _frames(shapes, undeformed, supports, loads, count("dpi", dpi)), duration)
+    frames = _frames(shapes, undeformed, supports, loads, count("dpi", dpi))
+    with whole(target) as partial:
+        write(partial, frames, duration)
     return target
 
 

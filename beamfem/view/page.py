@@ -7,6 +7,8 @@ from html import escape
 from os import PathLike
 from pathlib import Path
 
+from beamfem.files import whole
+
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
 h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem 1.5rem;
@@ -53,11 +55,11 @@ class Part:
 def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> Path:
     """Write one self-contained HTML file with the SVG figures inside; return its path."""
     target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
     body = "".join(_part(part) for part in parts)
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
-    target.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
+    with whole(target) as partial:
+        partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
     return target
 
 

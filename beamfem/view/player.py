@@ -12,6 +12,7 @@ import numpy as np
 
 from beamfem.along import QUANTITIES, section_forces
 from beamfem.errors import InputError
+from beamfem.files import whole
 from beamfem.solution import Solution
 from beamfem.validation import count
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
@@ -37,7 +38,6 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
         raise InputError(f'a page is a .html file, got "{target}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
-    target.parent.mkdir(parents=True, exist_ok=True)
     heading = title or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
     statistics = [*solution_rows(solution), *model_rows(solution.model)]
     table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in statistics)
@@ -45,7 +45,8 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
     # "</" would end the script in which the numbers stand
     data = json.dumps(_data(solution, count("frames", frames)), separators=(",", ":")).replace("</", "<\\/")
     page = template.replace("@TITLE@", escape(heading)).replace("@TABLE@", table).replace("@DATA@", data)
-    target.write_text(page, encoding="utf-8")
+    with whole(target) as partial:
+        partial.write_text(page, encoding="utf-8")
     return target
 
 

@@ -4,7 +4,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from beamfem.errors import BeamfemError
+from beamfem.errors import BeamfemError, InputError
+from beamfem.files import whole
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
 COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#BBBBBB")
@@ -41,6 +42,9 @@ def quiet(axes: Any) -> None:
 
 def save_figure(figure: Any, path: str | PathLike[str]) -> None:
     """Write a figure to PNG, SVG or PDF by the suffix of `path`; folders are made."""
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(target, dpi=_DOTS_PER_INCH)
+    kinds = figure.canvas.get_supported_filetypes()
+    kind = Path(path).suffix.lower().removeprefix(".")
+    if kind not in kinds:
+        raise InputError(f'a picture is a .png, .svg or .pdf file, or one of {", ".join(sorted(kinds))}; got "{path}"')
+    with whole(path) as partial:
+        figure.savefig(partial, dpi=_DOTS_PER_INCH, format=kind)

@@ -1,0 +1,95 @@
+"""HDF5 files with checksums, written whole or not at all."""
+
+import io
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from beamfem.errors import BeamfemError, InputError
+from beamfem.files import whole
+
+# object headers of this version have checksums; those of later ones mark a file whose writer was killed as unreadable
+_VERSIONS = ("v108", "v110")
+_CHECKSUM = "crc32"
+
+
+@contextmanager
+def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], None]]]:
+    """Give an open HDF5 file that takes the place of `path` when it is complete, and a check whether all was written.
+
+    Raises FileError where the system refuses to write, BeamfemError without h5py.
+    """
+    h5py = required_h5py("writing")
+    with whole(path) as partial, _Stream(partial) as stream:
+        with h5py.File(stream, "w", libver=_VERSIONS) as file:
+            yield file, stream.require
+        stream.require()
+
+
+def required_h5py(purpose: str) -> Any:
+    """Return the module h5py. Raises BeamfemError where it is not installed."""
+    try:
+        import h5py
+    except ImportError:
+        raise BeamfemError(f"{purpose} HDF5 files needs h5py: pip install beamfem[store]") from None
+    return h5py
+
+
+def write_checked(group: Any, name: str, values: np.ndarray) -> None:
+    """Write an array with its checksum: HDF5's own does not cover where the parts of an array lie."""
+    group.create_dataset(name, data=values).attrs[_CHECKSUM] = checksum(values)
+
+
+def read_checked(group: Any, name: str) -> np.ndarray:
+    """Return an array. Raises InputError where it is not what was written; files of earlier versions cannot tell."""
+    data = group[name]
+    values = np.asarray(data)
+    if _CHECKSUM in data.attrs and checksum(values) != int(data.attrs[_CHECKSUM]):
+        raise InputError(f"its {name} is damaged: the checksum is that of other numbers")
+    return values
+
+
+def checksum(*arrays: np.ndarray) -> int:
+    """Return the CRC-32 of arrays, one after the other."""
+    result = 0
+    for values in arrays:
+        result = crc32(np.ascontiguousarray(values).tobytes(), result)
+    return result
+
+
+class _Stream(io.FileIO):
+    """A file that remembers an error of the system and goes on as if there was none.
+
+    HDF5 cannot close a file that it cannot write: it would bring down the process at its end.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path, "w+")
+        self._error: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        size = memoryview(data).nbytes
+        try:
+            written = 0
+            while self._error is None and written < size:
+                written += super().write(memoryview(data).cast("B")[written:])
+        except OSError as error:
+            self._error = error
+        return size
+
+    def truncate(self, size: int | None = None) -> int:
+        try:
+            return super().truncate(size)
+        except OSError as error:
+            self._error = self._error or error
+            return size or 0
+
+    def require(self) -> None:
+        """Raise the error that was remembered."""
+        if self._error is not None:
+            raise self._error

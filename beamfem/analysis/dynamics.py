@@ -6,7 +6,8 @@ import numpy as np
 
 from beamfem.analysis.initial import RigidVelocity, start_state, start_velocity
 from beamfem.analysis.integrators import GeneralizedAlpha
-from beamfem.analysis.march import ITERATIONS, Record, initial_acceleration, march, new_statistics
+from beamfem.analysis.interrupted import kept
+from beamfem.analysis.march import ITERATIONS, Last, Record, initial_acceleration, march, new_statistics
 from beamfem.analysis.memory import require_memory
 from beamfem.analysis.prescribed_motion import prescribed_motion
 from beamfem.analysis.time_steps import SIDE, stretches
@@ -17,6 +18,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.model.turns import turning_pairs
 from beamfem.solution import Solution, State, Statistics
+from beamfem.status import Status
 from beamfem.turns import first_turns
 from beamfem.validation import count, positive
 
@@ -34,7 +36,8 @@ def simulate(
 
     start: a state to start from, such as the last of a static solution; velocity: initial velocity field;
     save_every: keep each so many-th step, and the last.
-    Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails.
+    Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails. Any other
+    exception on the way, such as KeyboardInterrupt, gets the states so far as its `solution` as well.
     """
     positive("duration", duration)
     positive("step", step)
@@ -64,14 +67,17 @@ def simulate(
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
-    kept = np.empty((rows, 3, model.size)), save_every, new_statistics()
-    record = Record(*kept, pairs, np.empty((rows, len(pairs))))
+    table = np.empty((rows, 3, model.size))
+    record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
     record.states[0], record.turned[0] = state[:3], first_turns(model, state[0])
-    reached = march(system, integrator, parts, held, state, record)
-    solution = _solution(system, times, record, reached.steps, len(ends) - len(times), unresolved)
-    if reached.failed is not None:
+    further = len(ends) - len(times)
+    last = Last((0, state[:3].copy(), record.turned[0].copy()))
+    with kept(lambda: _solution(system, times, record, last, further, unresolved)):
+        failed = march(system, integrator, parts, held, state, record, last)
+    solution = _solution(system, times, record, last, further, unresolved)
+    if failed is not None:
         raise ConvergenceError(
-            f"the iteration of the step from {reached.failed[0]:.6g} s to {reached.failed[1]:.6g} s did not converge: "
+            f"the iteration of the step from {failed[0]:.6g} s to {failed[1]:.6g} s did not converge: "
             f"the last correction was {record.statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
             "A smaller step may help",
             solution,
@@ -80,14 +86,19 @@ def simulate(
 
 
 def _solution(
-    system: System, times: np.ndarray, record: Record, done: int, further: int, unresolved: list[str]
+    system: System, times: np.ndarray, record: Record, last: Last, further: int, unresolved: list[str]
 ) -> Solution:
+    done, state, turned_by = last.step
     kept_steps = np.append(np.arange(0, done, record.every), done)
-    kept, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
+    states, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
+    if done % record.every:
+        states[-1], turned[-1] = state, turned_by
     ended = f"{done} steps of {times[1]:g} s"
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
         ended += f"; the {name} varies within steps, which is lost"
-    summary = Statistics(int(record.statistics[0]), done, 0, ended)
-    return Solution(system.model, False, times[kept_steps], kept[:, 0], kept[:, 1], kept[:, 2], summary, turned=turned)
+    status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
+    summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
+    p, v, a = states.swapaxes(0, 1)
+    return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=turned)

@@ -39,12 +39,14 @@ def new_statistics() -> np.ndarray:
     return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0])
 
 
-@dataclass(frozen=True)
-class Reached:
-    """How many whole steps were completed, and the beginning and end [s] of the one that failed, if any did."""
+@dataclass
+class Last:
+    """The last whole step that was completed, whenever the work ends: its number, state (3, n) and turns (m,) [rad].
 
-    steps: int
-    failed: tuple[float, float] | None
+    One assignment sets it, so that an interruption finds it whole.
+    """
+
+    step: tuple[int, np.ndarray, np.ndarray]
 
 
 def march(
@@ -54,15 +56,17 @@ def march(
     held: np.ndarray,
     state: np.ndarray,
     record: Record,
-) -> Reached:
+    last: Last,
+) -> tuple[float, float] | None:
     """March from p, p', p'' and the auxiliary acceleration (4, n), in place, through stretches of steps.
 
-    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps.
+    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return the
+    beginning and end [s] of the step that failed, None where none did.
     """
     kind = BandMotion if system.unknowns.pattern is None else EntangledMotion
     limits, statistics = np.array([_TOLERANCE, ITERATIONS]), record.statistics
     done, row, size, failed = 0, 0, max(_FIRST_CHUNK // system.model.size, 1), None
-    whole, turned = state[:3].copy(), record.turned[0].copy()
+    turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
@@ -86,7 +90,7 @@ def march(
                 if completed < now:
                     failed = float(part.times[begun]), float(part.times[begun + 1])
                 if part.whole and completed:
-                    whole[:] = state[:3]
+                    last.step = done, state[:3].copy(), turned.copy()
                     report(float(part.times[begun]))
                 if part.whole and spent < _CHUNK_SECONDS:
                     size *= 4
@@ -94,13 +98,10 @@ def march(
                 break
             if part.ends_whole and not part.whole:
                 done += 1
-                whole[:] = state[:3]
+                last.step = done, state[:3].copy(), turned.copy()
                 if done % record.every == 0:
-                    record.states[done // record.every], record.turned[done // record.every] = whole, turned
-    if done % record.every:
-        last = done // record.every + 1
-        record.states[last], record.turned[last] = whole, turned
-    return Reached(done, failed)
+                    record.states[done // record.every], record.turned[done // record.every] = last.step[1:]
+    return failed
 
 
 def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:

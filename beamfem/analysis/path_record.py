@@ -1,14 +1,10 @@
 """What has been found of an equilibrium path, and how it outlives whatever ends the work."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 
 from beamfem.analysis.continuation import Continuation, PathPoint
 from beamfem.analysis.round_off import FEW_DIGITS, remainder
 from beamfem.analysis.steps import Step
-from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.path import Bifurcation, Path, PathState
@@ -81,16 +77,3 @@ class PathRecord:
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )
-
-
-@contextmanager
-def kept(record: PathRecord) -> Iterator[None]:
-    """Give the path so far to whatever exception ends it."""
-    try:
-        yield
-    except BaseException as error:
-        if record.points:
-            error.solution = record.path()  # type: ignore[attr-defined]
-            if not isinstance(error, ConvergenceError):
-                error.add_note("The path found before is the `solution` of this exception.")
-        raise

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from beamfem.analysis.free_motion import require_support
+from beamfem.analysis.interrupted import kept
 from beamfem.analysis.load_steps import Snap, reach
 from beamfem.analysis.newton import Newton, require_newton
 from beamfem.analysis.preload import first_equilibrium
@@ -24,7 +25,8 @@ def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, 
     scale=False), ..., 1. snap: what to do at a limit point, "error", or "jump" to the state in which a slow, damped
     structure comes to rest under the same load, and go on from there.
     Raises InputError and FreeMotionError before; LimitPointError with its load factor, and ConvergenceError where it
-    cannot go on, both with the states found.
+    cannot go on, both with the states found. Any other exception on the way, such as KeyboardInterrupt, gets them as
+    its `solution` as well.
     """
     return solve_through(model, (), steps, newton, snap=snap)
 
@@ -48,5 +50,6 @@ def solve_through(
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
     done.add(0.0, first.state, first.negative_pivots, first.ended, first.digits)
-    reach(system, done, 1.0 / steps, newton, snap, stops)
+    with kept(done.solution):
+        reach(system, done, 1.0 / steps, newton, snap, stops)
     return done.solution(complete=True)

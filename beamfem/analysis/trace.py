@@ -11,8 +11,9 @@ from beamfem.analysis.branches import leave
 from beamfem.analysis.continuation import Continuation, PathPoint, begin
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
+from beamfem.analysis.interrupted import kept
 from beamfem.analysis.newton import Newton, require_newton
-from beamfem.analysis.path_record import PathRecord, kept
+from beamfem.analysis.path_record import PathRecord
 from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import ConvergenceError, InputError
@@ -68,7 +69,7 @@ def trace_equilibrium(
     _require_load(system)
     _require_crossing(model, start)
     record = PathRecord(model)
-    with kept(record), progress("points of the path", points) as report:
+    with kept(lambda: record.path() if record.points else None), progress("points of the path", points) as report:
         line, point = _first(system, newton, record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if start is None:

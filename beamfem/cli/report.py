@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-FAILED, BAD_INPUT = 1, 2
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, mistakes too.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but mistakes.")]
@@ -29,18 +29,21 @@ def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
         raise
     except ConvergenceError as error:
         _fail(error, FAILED, as_json)
+    except KeyboardInterrupt as error:
+        _fail(error, INTERRUPTED, as_json)
     except (BeamfemError, OSError) as error:
         _fail(error, BAD_INPUT, as_json)
 
 
-def _fail(error: Exception, code: int, as_json: bool) -> None:
+def _fail(error: BaseException, code: int, as_json: bool) -> None:
     notes = list(getattr(error, "__notes__", ()))
+    message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
     if as_json:
         known = {name: getattr(error, name) for name in ("message", "file", "line", "key") if hasattr(error, name)}
-        fields = {"type": type(error).__name__, "message": str(error)} | known
+        fields = {"type": type(error).__name__, "message": message} | known
         print_json({"error": fields | ({"notes": notes} if notes else {}), "exit_code": code})
     else:
-        print("\n".join([f"error: {error}", *notes]), file=sys.stderr)
+        print("\n".join([f"error: {message}", *notes]), file=sys.stderr)
     raise typer.Exit(code) from None
 
 

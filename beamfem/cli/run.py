@@ -48,11 +48,12 @@ def run(
         begun = time.perf_counter()
         try:
             found = job.solve()
-        except ConvergenceError as error:
-            if error.solution is not None and out is not None:
-                error.solution.save(out)
-                last = float(error.solution.at[-1])
-                at = f"load factor {last:g}" if error.solution.static else f"{last:g} s"
+        except (ConvergenceError, KeyboardInterrupt) as error:
+            found_before = getattr(error, "solution", None)
+            if found_before is not None and out is not None:
+                found_before.save(out)
+                last = float(found_before.at[-1])
+                at = f"load factor {last:g}" if found_before.static else f"{last:g} s"
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun

@@ -1,0 +1,74 @@
+"""Ctrl-C: what was computed is kept."""
+
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import beamfem as bf
+from beamfem.analysis.band_motion import BandMotion
+from beamfem.cli.app import app
+
+ROOT = Path(__file__).parents[1]
+BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
+MODEL = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e5))])
+
+
+@pytest.fixture
+def third_time(monkeypatch):
+    """Send this process Ctrl-C in the third stretch of steps of a motion."""
+    advance, calls = BandMotion.advance, []
+
+    def interrupted(self, *arguments):
+        calls.append(None)
+        done = advance(self, *arguments)
+        if len(calls) == 3:
+            os.kill(os.getpid(), signal.SIGINT)
+        return done
+
+    monkeypatch.setattr(BandMotion, "advance", interrupted)
+    monkeypatch.setattr("beamfem.analysis.march._FIRST_CHUNK", 1000)
+
+
+@pytest.mark.parametrize("save_every", [1, 7])
+def test_a_motion_that_is_interrupted_keeps_its_states(third_time, save_every):
+    with pytest.raises(KeyboardInterrupt) as caught:
+        bf.simulate(MODEL, 1.0, 1e-5, save_every=save_every)
+    whole = bf.simulate(MODEL, 0.05, 1e-5, save_every=save_every)
+    found = caught.value.solution
+    assert found.status.name == "STOPPED"
+    steps = np.round(found.time / 1e-5).astype(int)
+    assert 60 < steps[-1] < 5000
+    rows = len(found) if steps[-1] % save_every == 0 else len(found) - 1
+    np.testing.assert_array_equal(found.p[:rows], whole.p[:rows])
+    assert np.all(np.diff(steps)[:-1] == save_every)
+    assert np.isfinite(found.p).all()
+    assert "`solution`" in caught.value.__notes__[0]
+
+
+def test_a_static_solve_that_is_interrupted_keeps_its_rows():
+    def amplitude(load_factor):
+        if load_factor > 0.6:
+            raise KeyboardInterrupt
+        return load_factor
+
+    model = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, -1e5), amplitude=amplitude)])
+    with pytest.raises(KeyboardInterrupt) as caught:
+        bf.solve_static(model, steps=4)
+    assert caught.value.solution.load_factor.tolist() == [0.0, 0.25]
+
+
+def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path):
+    model = (ROOT / "examples" / "cantilever.toml").read_text() + "\n"
+    assert "[analysis]" not in model
+    motion = '[analysis]\nkind = "dynamics"\nduration = 1.0\nstep = 1e-5\n'
+    (tmp_path / "long.toml").write_text(model + motion)
+    out = tmp_path / "long.h5"
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "long.toml"), "--out", str(out)])
+    assert done.exit_code == 130, done.stderr
+    assert done.stderr.startswith("error: interrupted\n")
+    assert f"are saved in {out}" in done.stderr
+    assert 1 < len(bf.load(out)) < 100_000

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
-from beamfem.io.critical import load_path, save_critical
+from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.path import Path as EquilibriumPath
 from beamfem.solution import Solution, Statistics
@@ -31,7 +31,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     """
     h5py = _h5py()
     # a model that cannot be described must not cost the file that may already be there
-    description = json.dumps(describe(solution.model, solution.at))
+    at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
+    description = json.dumps(describe(solution.model, at))
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)

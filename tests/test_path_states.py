@@ -125,6 +125,7 @@ def test_states_of_a_path_count_turns_and_files_keep_them(tmp_path):
         for state in (*found.limit_points, found[-1], found[len(found) // 2]):
             assert state.rotation(bar.end) == pytest.approx(0.12 * state.load_factor, abs=1e-9)
         state = found.limit_points[0]
+        assert not state.stable
         assert state.section_forces(crown).normal[0] == pytest.approx(-631.9, rel=2e-3)  # thrust of the reference
         marks = found.plot_load_displacement(bar.end, "rotation").axes[0].lines[2]
         np.testing.assert_allclose(marks.get_xdata(), 0.12 * marks.get_ydata(), atol=1e-9)

@@ -54,5 +54,9 @@ class RoundOffWarning(UserWarning):
     """Round-off leaves few digits of the forces of a solution, or of a critical load."""
 
 
+class NotJoinedWarning(UserWarning):
+    """Lines of a mesh end close to others without being joined to them."""
+
+
 class UnknownStressWarning(UserWarning):
     """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""

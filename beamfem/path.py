@@ -9,16 +9,19 @@ import numpy as np
 from beamfem.model.beam import Beam, Point
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
+from beamfem.turns import start_rotations
 
 
 @dataclass(frozen=True, eq=False)
 class PathState(State):
     """One state of a path, with what a Solution offers but without its axis of steps.
 
-    stability: whether it is a stable equilibrium, where that is known; critical points are not.
+    stability: whether it is a stable equilibrium, where that is known; critical points are not. turned (m,) [rad]: see
+    `turns.start_rotations`, as counted along the path.
     """
 
     stability: bool | None = field(default=None, kw_only=True)
+    turned: np.ndarray | None = field(default=None, kw_only=True)
 
     @property
     def load_factor(self) -> float:
@@ -27,7 +30,8 @@ class PathState(State):
     @cached_property
     def _alone(self) -> Solution:
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
-        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"))
+        turned = None if self.turned is None else self.turned[None]
+        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"), turned=turned)
 
     @property
     def stable(self) -> bool:
@@ -43,10 +47,7 @@ class PathState(State):
         return np.asarray(self._alone.displacement(point)[0])
 
     def rotation(self, point: Point) -> float:
-        """Return the rotation of the section from the reference [rad], counter-clockwise.
-
-        Several turns count with rotation coordinates; with gradients the beam's start is taken within half a turn.
-        """
+        """Return the rotation of the section from the reference [rad], counter-clockwise, full turns included."""
         return float(self._alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
@@ -98,7 +99,8 @@ class Path(Solution):
 
     def _state(self, row: int) -> PathState:
         stability = None if self.stability is None else bool(self.stability[row])
-        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stability=stability)
+        parts = (self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+        return PathState(*parts, stability=stability, turned=start_rotations(self)[row])
 
 
 def _first(value: Any) -> Any:

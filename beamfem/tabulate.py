@@ -17,6 +17,8 @@ from beamfem.files import whole
 
 Rows = Sequence[Sequence[Any]]
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a spreadsheet takes for the begin of a formula
+
 
 def cell(value: Any) -> str:
     """Return six digits of a number, the shape of an array, nothing for None and nan."""
@@ -55,8 +57,15 @@ def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> N
     """Write every digit of the numbers; arrays as nested lists; folders are made."""
     with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows([[v.tolist() if isinstance(v, np.ndarray) else v for v in row] for row in rows])
+        writer.writerow([_cell(name) for name in header])
+        writer.writerows([[_cell(value) for value in row] for row in rows])
+
+
+def _cell(value: Any) -> Any:
+    """Return what stands in a cell; text that spreadsheets would compute gets an apostrophe, which they do not show."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
 
 
 def _unicode() -> bool:

@@ -18,6 +18,11 @@ def first_turns(model: Model, p: np.ndarray) -> np.ndarray:
     return np.array([postprocess.nodal_rotations(mesh, p[None])[0, 0] for mesh in uncounted(model)])
 
 
+def nearest_turns(rotation: np.ndarray, like: np.ndarray) -> np.ndarray:
+    """Return rotations (m,) [rad] with the full turns that bring them nearest to others (m,)."""
+    return np.asarray(rotation + 2.0 * np.pi * np.round((like - rotation) / (2.0 * np.pi)))
+
+
 def start_rotations(solution: "Solution") -> np.ndarray:
     """Return the rotation of each such beam at its start (steps, m) [rad], full turns included.
 

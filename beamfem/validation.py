@@ -58,10 +58,10 @@ def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:
     """Raise InputError where `value` is none of those `allowed`; it names the nearest."""
     if isinstance(value, str | type(None)) and value in allowed:
         return
-    listed = [repr(item) for item in allowed]
+    listed = [f'"{item}"' if isinstance(item, str) else repr(item) for item in allowed]
     message = f"{name} must be {', '.join(listed[:-1])} or {listed[-1]}, got {value!r}"
     near = get_close_matches(value, [item for item in allowed if item], 1) if isinstance(value, str) else []
-    raise InputError(f"{message}; did you mean {near[0]!r}?" if near else message)
+    raise InputError(f'{message}; did you mean "{near[0]}"?' if near else message)
 
 
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:

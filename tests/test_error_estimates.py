@@ -259,6 +259,16 @@ def second_order(elements):
     return 2.5 + 0.3 * elements**-2.0
 
 
+@pytest.mark.parametrize("elements", [[2, 3, 4, 7], [2, 3, 4, 7, 10], [3, 4, 7, 10]])
+def test_locked_values_that_creep_are_no_round_off(elements):
+    """A locked element: 2 - 1e-3 / (1 + 1e-6 n^2). Its changes of 1e-8 rise and fall with n, the error stays 1e-3."""
+    h = 1.0 / np.array(elements)
+    q = 2.0 - 1e-3 / (1.0 + 1e-6 / h**2)
+    found = extrapolate(h, q)
+    assert np.isnan(found.error)
+    assert "do not close in" in found.note
+
+
 def test_whole_numbers_are_counts_in_whatever_order():
     """Read as step sizes they would fall from fine to coarse."""
     for elements in ([32, 16, 8, 4], [8, 32, 4, 16]):

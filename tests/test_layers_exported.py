@@ -5,6 +5,7 @@ import pytest
 import pyvista
 
 import beamfem as bf
+from beamfem.along import AxisPoints
 from beamfem.view import body
 from beamfem.view.shapes import Shapes
 
@@ -194,3 +195,27 @@ def test_vtkhdf_numbers_layers_as_the_vtu_files_do(tmp_path):
     with h5py.File(tmp_path / "one.vtkhdf") as file:
         np.testing.assert_array_equal(file["VTKHDF/CellData/layer"], grid["layer"])
         np.testing.assert_array_equal(file["VTKHDF/PointData/stress_xx"][-grid.n_points :], grid["stress_xx"])
+
+
+def test_on_a_face_between_layers_the_upper_one_is_stressed():
+    """The axis is on it; pulled without bending, both have one strain: N / (E_1 A_1 + E_2 A_2) at the neutral axis."""
+    section = bf.Layered([bf.Layer(STEEL, 0.02), bf.Layer(ALUMINIUM, 0.06)], 0.05, axis=0.02)
+    first = (-STEEL.youngs_modulus * 0.02**2 + ALUMINIUM.youngs_modulus * 0.06**2) / 2
+    axial = STEEL.youngs_modulus * 0.02 + ALUMINIUM.youngs_modulus * 0.06
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), section)
+    # a force at the neutral axis, as a force and a moment about the axis
+    loads = [bf.PointForce(beam.end, (1e3, 0.0)), bf.PointMoment(beam.end, -1e3 * first / axial)]
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads))
+    stress = solution.fields(beam.at(0.5)).stress.xx[-1]
+    assert stress == pytest.approx(ALUMINIUM.youngs_modulus * 1e3 / (axial * 0.05), rel=1e-5)
+
+
+def test_faces_are_those_of_the_layers_that_are_there():
+    """Two layers up to the middle and three behind it: the third has no thickness in front, on top of the second."""
+    thickness = (0.02, 0.03, 0.04)
+    two, three = (bf.Layered([bf.Layer(STEEL, h) for h in thickness[:n]], 0.1, axis=0.01) for n in (2, 3))
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), lambda s: two if s < 0.5 else three)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))])
+    points = AxisPoints(model.mesh_of(beam.start), 1)
+    np.testing.assert_allclose(points.faces, [[-0.01, 0.04]] * 2 + [[-0.01, 0.08]] * 2, atol=1e-15)
+    np.testing.assert_allclose(points.layers[0], [[-0.01, 0.01], [0.01, 0.04], [0.04, 0.04]], atol=1e-15)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_path import LIMIT_HEIGHT, bar, bar_force, cantilever, toggle
+from test_path import LIMIT_HEIGHT, WILLIAMS, bar, bar_force, cantilever, toggle
 
 import beamfem as bf
 from beamfem.analysis.trace import trace_equilibrium
@@ -101,3 +101,31 @@ def test_what_rows_say_of_stability_is_what_vibration_about_them_says(follower):
     growth = np.array([bf.solve_modes(model, 3, about=state).growth.max() for state in path])
     assert np.array_equal(path.stable, growth == 0.0)
     assert 0 < path.stable.sum() < len(path)
+
+
+def test_states_of_a_path_count_turns_and_files_keep_them(tmp_path):
+    """A toggle, and beside it a bar that its prescribed end swings by 0.12 rad per unit of the load factor.
+
+    So the bar's rotation is known at every load factor: 4.1 rad at the first limit point. In a file the functions that
+    swing it have their values at the limit points too, where reactions and section forces need them.
+    """
+    crown, alone = toggle()
+    bar = bf.Beam(bf.Line((0, 5), (2, 5)), 2, bf.ANCF(), bf.Rectangle(0.1, 0.1), bf.Material(1e4, 0.3, 1.0))
+    swung = bf.Prescribed(
+        bar.end, ux=lambda load: 2.0 * np.cos(0.12 * load) - 2.0, uy=lambda load: 2.0 * np.sin(0.12 * load)
+    )
+    model = bf.Model([crown, bar], [*alone.supports, bf.Pin(bar.start), swung], alone.loads)
+    path = trace_equilibrium(model, 50.0)
+    path.save(tmp_path / "path.h5")
+    loaded = bf.load(tmp_path / "path.h5")
+    assert path.limit_points[0].load_factor == pytest.approx(WILLIAMS[0][0], rel=1e-8)
+    for found in (path, loaded):
+        crown, bar = found.model.beams
+        np.testing.assert_allclose(found.rotation(bar.end), 0.12 * found.load_factor, atol=1e-9)
+        for state in (*found.limit_points, found[-1], found[len(found) // 2]):
+            assert state.rotation(bar.end) == pytest.approx(0.12 * state.load_factor, abs=1e-9)
+        state = found.limit_points[0]
+        assert not state.stable
+        assert state.section_forces(crown).normal[0] == pytest.approx(-631.9, rel=2e-3)  # thrust of the reference
+        marks = found.plot_load_displacement(bar.end, "rotation").axes[0].lines[2]
+        np.testing.assert_allclose(marks.get_xdata(), 0.12 * marks.get_ydata(), atol=1e-9)

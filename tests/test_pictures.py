@@ -142,6 +142,22 @@ def test_rollers_roll_and_supports_stand_where_they_hold(framed):
         assert tuple(np.round(point, 9)) in places
 
 
+def test_a_section_that_may_only_not_turn_is_drawn():
+    """A guide, alone and beside a roller; held in place as well it is a clamp."""
+    for held, symbol in (
+        ({}, symbols.NO_TURN),
+        ({"uy": 0.0}, symbols.NO_TURN),
+        ({"ux": 0.0, "uy": 0.0}, symbols.CLAMP),
+    ):
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SECTION, STEEL)
+        supports = [bf.Pin(beam.start), bf.Prescribed(beam.end, rotation=0.0, **held)]
+        solution = bf.solve_static(bf.Model([beam], supports, [bf.PointMoment(beam.start, 0.1 * EI)]))
+        stamps = supports_of(solution, 1, np.array([0.5, 0.0]))
+        down = np.array([0.0, -1.0]) if symbol is symbols.NO_TURN else np.array([1.0, 0.0])
+        outlines = [np.round(symbols.turned(outline, down), 6).tobytes() for outline in symbol]
+        assert set(outlines) <= set(stamps.outlines)
+
+
 def test_the_ground_of_a_symbol_lies_where_it_shall():
     for down in ((0.0, -1.0), (1.0, 0.0), (-0.6, 0.8)):
         ground = symbols.turned(symbols.PIN[1], np.array(down))
@@ -188,6 +204,29 @@ def test_a_load_is_drawn_where_it_is_largest():
     (arrow,) = arrows(solution, np.array([0, 5, 10, 20]))
     np.testing.assert_allclose([arrow.X[0], arrow.Y[0]], solution.position(beam.start)[10], atol=1e-12)
     assert arrows(solution, np.array([0, 20])) == []
+
+
+@pytest.mark.parametrize("kind", [bf.Pressure, bf.DistributedLoad])
+def test_a_load_that_acts_between_the_arrows_is_drawn_where_it_is(kind):
+    def narrow(arc_length):
+        size = 0.1 * EI if 0.42 < arc_length < 0.48 else 0.0
+        return size if kind is bf.Pressure else (0.0, size)
+
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SECTION, STEEL)
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [kind(beam, narrow)]))
+    (row,) = arrows(solution, np.array([len(solution) - 1]))
+    length = np.hypot(row.U, row.V)
+    x = np.asarray(row.X)[length > 0.0]
+    assert 0.42 < x.min() <= x.max() < 0.48
+
+
+def test_loads_of_a_vibration_are_those_of_its_equilibrium():
+    """About the reference none act; about the loaded state the load is there at all times."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), SECTION, STEEL)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.5 * EI, 0.0))])
+    pulled = bf.solve_static(model)
+    assert arrows(bf.solve_modes(model, 1).solution(), np.array([0, 3])) == []
+    assert len(arrows(bf.solve_modes(model, 1, about=pulled).solution(), np.array([0, 3]))) == 1
 
 
 def test_every_load_is_drawn(framed):

@@ -162,3 +162,18 @@ def test_a_saved_path_has_its_critical_points(tmp_path):
     assert np.array_equal(loaded.stable, path.stable)
     branch = bf.trace_equilibrium(loaded.model, start=crossing, points=3)
     assert abs(branch.displacement(loaded.model.beams[0].at(0.5))[-1, 1]) > 0.01
+
+
+def test_a_saved_vibration_keeps_the_loads_of_its_equilibrium(tmp_path):
+    """About half of its load: a motion has all of it otherwise. Vibration of 1e-6 of the length hardly changes that."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.DistributedLoad(beam, (500.0, 0.0))])
+    half = bf.solve_static(model, steps=2)[1]
+    assert half.at == 0.5
+    vibration = bf.solve_modes(model, 1, about=half).solution(amplitude=1e-6)
+    vibration.save(tmp_path / "mode.h5")
+    again = bf.load(tmp_path / "mode.h5")
+    for solution in (vibration, again):
+        forces = solution.section_forces(solution.model.beams[0])
+        expected = np.broadcast_to(250.0 * (1.0 - forces.arc_length), forces.normal.shape)
+        np.testing.assert_allclose(forces.normal, expected, atol=0.1)

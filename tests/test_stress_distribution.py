@@ -247,3 +247,12 @@ def test_a_users_own_section_by_its_moments(curvature):
 def test_heights_that_cannot_be_are_refused(arguments, message):
     with pytest.raises(bf.InputError, match=message):
         bf.Section(1e-3, 1e-6, **arguments)
+
+
+@pytest.mark.parametrize("curvature", [0.0, 3.0, -8.0])
+def test_two_flanges_of_a_curved_beam_carry_the_moment_as_a_couple(curvature):
+    """All of the area is at the faces, I = A h^2 / 4: each carries M / h on A / 2, however the beam is curved."""
+    section = bf.Section(2e-3, 2e-3 * 0.1**2 / 4, height=0.1)
+    own = distribution(section, bf.Material(2e11, 0.3, 7800.0), curvature)
+    faces = own.normal_stress(0, np.array([-0.05, 0.05]), np.array(0.0), np.array(700.0))
+    np.testing.assert_allclose(faces, [7e6, -7e6], rtol=1e-12)

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
@@ -164,6 +165,19 @@ def test_what_parameters_bring_along_counts(tmp_path, monkeypatch):
     shape = loaded(tmp_path, shapes_module=shapes.replace("self.a**2", "self.a"))
     with pytest.warns(bf.ChangedCodeWarning, match="before shapes_module changed"):
         assert bf.sweep(module.area, **arguments | {"shape": shape.Square(3.0)}).values == (60.0,)
+
+
+def test_the_value_behind_a_member_of_an_enum_counts(tmp_path, monkeypatch):
+    """It is a parameter by its name."""
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    text = "from enum import Enum\nclass Grade(Enum):\n    SOFT = 2\n"
+    main = loaded(tmp_path, graded_module="def value(grade):\n    return grade.value\n")
+    for content, expected in ((text, 2), (text.replace("2", "3"), 3)):
+        grades = loaded(tmp_path, grades_module=content)
+        expectation = nullcontext() if expected == 2 else pytest.warns(bf.ChangedCodeWarning, match="grades_module")
+        with expectation:
+            assert bf.sweep(main.value, grade=grades.Grade.SOFT, store=tmp_path / "s").values == (expected,)
 
 
 def test_packages_with_relative_imports(tmp_path, monkeypatch):

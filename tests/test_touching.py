@@ -44,6 +44,20 @@ def test_a_post_that_ends_inside_a_beam_carries_it(tmp_path, off, members):
     assert solution.displacement(tip)[-1, 1] == pytest.approx(push * of_tip - FORCE * whole, rel=1e-5)
 
 
+@pytest.mark.parametrize("off", [-1e-4, 2e-4])
+def test_a_post_that_ends_just_beside_a_beam_is_named(tmp_path, off):
+    """A gap of 1e-4 m carries nothing, and is hardly meant."""
+    with pytest.warns(bf.NotJoinedWarning, match=r"the end at \(1, [-+0-9.e]+\) is within 0.0006 of another line"):
+        mesh, _ = post_under_a_beam(tmp_path, off=off)
+    assert len(mesh.cells) == 2
+
+
+def test_two_ends_that_nearly_meet_are_named(tmp_path):
+    points = [(0, 0, 0), (1, 0, 0), (1, 1e-4, 0), (1, 1, 0)]
+    with pytest.warns(bf.NotJoinedWarning, match=r"the end at \(1, .*\) is within 0.0003"):
+        written(tmp_path / "corner.vtu", points, [("line", [[0, 1], [2, 3]])])
+
+
 def test_several_ends_divide_one_line(tmp_path):
     points = [(0, 0, 0), (3, 3, 0), (2, 2, 0), (2, 0, 0), (1, 1, 0), (0, 1, 0), (1, 2, 0)]
     mesh = written(tmp_path / "comb.vtu", points, [("line", [[0, 1], [3, 2], [5, 4], [4, 6]])])

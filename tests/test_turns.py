@@ -113,3 +113,25 @@ def test_tables_and_paraview_files_have_the_turns():
     (cells,) = centreline(motion.model.meshes[0])
     for rows in (slice(0, 3), slice(2, 3)):
         assert cells.arrays(motion, rows)["rotation"][:, -1] == pytest.approx(expected[rows], abs=1e-9)
+
+
+def test_each_of_several_beams_has_turns_of_its_own():
+    """Two pinned bars that turn by M t^2 / (2 I), the second four times as far."""
+    beams = [bf.Beam(bf.Line((0, y), (1, y)), 3, bf.ANCF(), SECTION, SOFT) for y in (0.0, 2.0)]
+    loads = [bf.PointMoment(beam.end, moment) for beam, moment in zip(beams, (1.0, 4.0), strict=True)]
+    motion = bf.simulate(bf.Model(beams, [bf.Pin(beam.start) for beam in beams], loads), 1.0, 1e-3, save_every=500)
+    for beam, moment in zip(beams, (1.0, 4.0), strict=True):
+        assert motion.rotation(beam.start)[-1] == pytest.approx(moment / (2 * INERTIA), abs=0.1)
+
+
+def test_a_motion_from_a_rolled_up_state_starts_with_its_rotations():
+    """Moments at both ends turn them by -2 and 2 rad: the start's own rotation is what turns are counted from."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.ANCF(bf.Structural()), SECTION, SOFT)
+    moment = 4.0 * SOFT.youngs_modulus * SECTION.second_moment
+    loads = [bf.PointMoment(beam.start, -moment), bf.PointMoment(beam.end, moment)]
+    model = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], loads)
+    rolled = bf.solve_static(model, steps=8)
+    assert rolled.rotation(beam.end)[-1] - rolled.rotation(beam.start)[-1] == pytest.approx(4.0, rel=1e-3)
+    motion = bf.simulate(model, 1e-5, 1e-5, start=rolled[-1])
+    for point in (beam.start, beam.end):
+        assert motion.rotation(point)[0] == pytest.approx(rolled.rotation(point)[-1], abs=1e-9)

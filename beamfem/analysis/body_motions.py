@@ -3,9 +3,10 @@
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import eigsh
+from scipy.sparse.linalg import ArpackError, eigsh
 
 from beamfem.analysis.initial import RigidVelocity, set_rigid_rates
+from beamfem.errors import ConvergenceError
 from beamfem.model.beam import Point
 from beamfem.model.joints import Rigid
 from beamfem.model.model import Model
@@ -107,7 +108,12 @@ def free_motions(conditions: Conditions) -> np.ndarray:
     wanted = _FIRST_FEW
     while size > 3 * _DENSE_BODIES and 2 * wanted < size:
         start = np.random.default_rng(1).standard_normal(size)
-        values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
+        try:
+            values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
+        except ArpackError as error:
+            raise ConvergenceError(
+                f"whether {conditions.bodies} bodies can move freely could not be found out: {error}"
+            ) from error
         if values.max() >= NEGLIGIBLE:
             return np.asarray(vectors.T[values < NEGLIGIBLE])
         wanted *= 4

@@ -10,6 +10,7 @@ from beamfem.model.system import system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Statistics
 from beamfem.status import Status
+from beamfem.turns import first_turns, nearest_turns
 
 
 class PathRecord:
@@ -21,6 +22,7 @@ class PathRecord:
         self.symmetric = system_of(model, static=True).symmetric
         self.points: list[np.ndarray] = []
         self.stable: list[bool] = []
+        self.turned: list[np.ndarray] = []
         self.limit_points: list[PathState] = []
         self.bifurcations: list[Bifurcation] = []
         self.iterations = 0
@@ -28,7 +30,9 @@ class PathRecord:
         self.ended = "the path was not followed to its end"
         self.status = Status.STOPPED
 
-    def add(self, y: np.ndarray, stable: bool) -> None:
+    def add(self, y: np.ndarray, stable: bool, turned: np.ndarray | None = None) -> None:
+        """Add a point y (n + 1,); turned (m,) [rad]: see `PathState`, by default continued from the last point."""
+        self.turned.append(self._turned(y) if turned is None else turned)
         self.points.append(y)
         self.stable.append(stable)
 
@@ -55,7 +59,13 @@ class PathRecord:
     def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
         rest = np.zeros(self.model.size)
-        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stability=stability)
+        turned = self._turned(y)
+        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stability=stability, turned=turned)
+
+    def _turned(self, y: np.ndarray) -> np.ndarray:
+        """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
+        found = first_turns(self.model, y[:-1])
+        return nearest_turns(found, self.turned[-1]) if self.turned else found
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)
@@ -74,6 +84,7 @@ class PathRecord:
             *states,
             statistics,
             stability=np.array(self.stable, dtype=bool) if self.symmetric else None,
+            turned=np.array(self.turned),
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )

@@ -76,7 +76,7 @@ def trace_equilibrium(
             point = replace(point, tangent=direction * point.tangent)
             record.add(point.y, point.negative_pivots == 0)
         else:
-            record.add(np.append(start.p, start.at), stable=False)
+            record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
             if points > 1:
                 point, size = _branch(line, start, direction, record)
         landed = False

@@ -98,7 +98,10 @@ def _bounded(h: np.ndarray, q: np.ndarray, change: np.ndarray, triples: list[_Tr
     finest, last = float(q[-1]), triples[-1]
     scale = scale_of(finest, q)
     rises = np.diff(change) >= 0.0
-    if len(change) == _LAST and rises.any() and not rises.all() and change.max() < PLATEAU_BELOW * np.abs(q).max():
+    # elements that lock creep on in one direction; round-off goes to and fro
+    turns = np.ptp(np.sign(np.diff(q)[-_LAST:])) > 0.0
+    small = len(change) == _LAST and change.max() < PLATEAU_BELOW * np.abs(q).max()
+    if small and turns and rises.any() and not rises.all():
         return Extrapolation(finest, float(change.max()) / scale, True, "the finest values differ by round-off")
     step, size = -np.diff(h)[-_LAST:], h[1:][-_LAST:]
     steep = change / step

@@ -8,6 +8,7 @@ Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); no
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -32,29 +33,29 @@ class _Section:
 
 @dataclass
 class _Sets:
-    """Named lists of numbers; names do not know upper from lower case."""
+    """Named lists of numbers, as ranges of them; names do not know upper from lower case."""
 
     kind: str
     names: dict[str, str] = field(default_factory=dict)
-    numbers: dict[str, list[int]] = field(default_factory=dict)
+    numbers: dict[str, list[range]] = field(default_factory=dict)
 
-    def add(self, name: str, numbers: list[int]) -> None:
+    def add(self, name: str, numbers: list[range]) -> None:
         self.names.setdefault(name.upper(), name)
         self.numbers.setdefault(name.upper(), []).extend(numbers)
 
     def define(self, section: _Section) -> None:
         """Add what a *NSET or *ELSET lists: numbers, ranges or other sets. Raises InputError."""
-        numbers: list[int] = []
+        numbers: list[range] = []
         for row in section.rows:
             if "GENERATE" in section.parameters:
                 first, last, *step = (int(value) for value in row)
-                numbers += range(first, last + 1, *step)
+                numbers.append(range(first, last + 1, *step))
                 continue
             for value in row:
                 if value.upper() in self.numbers:
                     numbers += self.numbers[value.upper()]
                 elif value.lstrip("-").isdigit():
-                    numbers.append(int(value))
+                    numbers.append(_one(int(value)))
                 else:
                     known = ", ".join(self.names.values()) or "none"
                     raise InputError(f"{section.place}: there is no {self.kind} {value!r} so far; known: {known}")
@@ -63,13 +64,18 @@ class _Sets:
     def placed(self, place: dict[int, int]) -> dict[str, np.ndarray]:
         """Return the sets as places. Raises InputError for a number that the file does not give."""
         for key, numbers in self.numbers.items():
-            missing = [number for number in numbers if number not in place]
-            if missing:
-                raise InputError(f"{self.kind} {self.names[key]} lists {missing[0]}, which the file does not give")
+            # one after the other: a range may be far longer than the file
+            missing = next((number for number in chain(*numbers) if number not in place), None)
+            if missing is not None:
+                raise InputError(f"{self.kind} {self.names[key]} lists {missing}, which the file does not give")
         return {
-            self.names[key]: np.array(sorted({place[number] for number in numbers}), dtype=np.int64)
+            self.names[key]: np.array(sorted({place[number] for number in chain(*numbers)}), dtype=np.int64)
             for key, numbers in self.numbers.items()
         }
+
+
+def _one(number: int) -> range:
+    return range(number, number + 1)
 
 
 def read_abaqus(path: Path) -> MeshFile:
@@ -105,7 +111,7 @@ def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Se
                 "must be written flat, without parts and assemblies"
             )
     if "NSET" in section.parameters:
-        sets.add(section.parameters["NSET"], [int(row[0]) for row in section.rows])
+        sets.add(section.parameters["NSET"], [_one(int(row[0])) for row in section.rows])
 
 
 def _add_elements(section: _Section, cells: dict[int, tuple[str, list[int]]], sets: _Sets) -> None:
@@ -125,7 +131,7 @@ def _add_elements(section: _Section, cells: dict[int, tuple[str, list[int]]], se
             raise InputError(f"{section.place}: element {row[0]} is given twice")
         cells[int(row[0])] = name, corners
     if "ELSET" in section.parameters:
-        sets.add(section.parameters["ELSET"], [int(row[0]) for row in section.rows])
+        sets.add(section.parameters["ELSET"], [_one(int(row[0])) for row in section.rows])
 
 
 def _assembled(

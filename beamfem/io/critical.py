@@ -12,12 +12,20 @@ _STATE = ("at", "p")
 _CROSSING = ("at", "p", "mode", "tangent")
 
 
+def load_factors(path: Path) -> np.ndarray:
+    """Return the load factors of the critical points of a path (m,), at which its functions are used as well."""
+    return np.array([state.at for state in (*path.limit_points, *path.bifurcations)])
+
+
 def save_critical(file: Any, path: Path) -> None:
     """Write the critical points of a path, each a row."""
     for name, states, parts in _groups(path):
         group = file.create_group(name)
         for part in parts:
             write_checked(group, part, np.array([getattr(state, part) for state in states]))
+        turned = [state.turned for state in states if state.turned is not None]
+        if turned and turned[0].size:
+            write_checked(group, "turned", np.array(turned))
 
 
 def load_path(file: Any, rows: Solution) -> Solution:
@@ -26,11 +34,12 @@ def load_path(file: Any, rows: Solution) -> Solution:
         return rows
     model, rest = rows.model, np.zeros(rows.model.size)
     states = tuple(
-        PathState(p, rest, rest, float(at), model, stability=False) for at, p in _rows(file["limit_points"], _STATE)
+        PathState(p, rest, rest, float(at), model, stability=False, turned=turned)
+        for at, p, turned in _rows(file["limit_points"], _STATE)
     )
     crossings = tuple(
-        Bifurcation(p, rest, rest, float(at), model, mode, tangent, stability=False)
-        for at, p, mode, tangent in _rows(file["bifurcations"], _CROSSING)
+        Bifurcation(p, rest, rest, float(at), model, mode, tangent, stability=False, turned=turned)
+        for at, p, mode, tangent, turned in _rows(file["bifurcations"], _CROSSING)
     )
     return Path(**_parts(rows), limit_points=states, bifurcations=crossings)
 
@@ -45,4 +54,6 @@ def _groups(path: Path) -> tuple[tuple[str, tuple[PathState, ...], tuple[str, ..
 
 
 def _rows(group: Any, parts: tuple[str, ...]) -> Any:
-    return zip(*(read_checked(group, part) for part in parts), strict=True)
+    """Return the parts of each state, and how far it has turned, None where no beam needs it or a file is older."""
+    turned = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
+    return zip(*(read_checked(group, part) for part in parts), turned, strict=True)

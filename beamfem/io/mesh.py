@@ -15,12 +15,13 @@ from beamfem.errors import InputError
 from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
-from beamfem.io.touching import divided, parts_of
+from beamfem.io.touching import divided, parts_of, warn_of_gaps
 from beamfem.material import Material
 
 # distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
 _SHORT = 1e-2  # of the shortest line: nodes further apart than this are two
+_GAPS = 30.0  # times the distance that is closed: wider gaps are meant
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +64,7 @@ def read_mesh(path: str | PathLike[str]) -> LineMesh:
     CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
-    its end.
+    its end. A `NotJoinedWarning` names ends that stand within 30 times that of another line and are not joined to it.
     Raises FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another kind, nodes
     off the plane z = 0, lines of no length, lines given twice, lines that end inside a line3, and nodes at the same
     place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
@@ -104,6 +105,7 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     nodes = points[:, :2].copy()
     near = _check_ends(nodes, cells, size)
     parts, owner = divided(nodes, cells, near)
+    warn_of_gaps(nodes, parts, _GAPS * near)
     _refuse_repeated(nodes, parts, owner, size)
     member = np.full(counted, -1)
     member[number] = np.arange(len(number))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.io.critical import load_path, save_critical
+from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
 from beamfem.path import Path as EquilibriumPath
@@ -32,7 +32,8 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     It takes the place of an earlier file when it is complete. Raises InputError for a model with parts that cannot be
     saved, FileError where the system refuses to write, BeamfemError without h5py.
     """
-    description = _text(describe(solution.model, solution.at))
+    at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
+    description = _text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
     with written_hdf5(path) as (file, require_written):
         file.attrs["format"] = _FORMAT

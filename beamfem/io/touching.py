@@ -1,12 +1,13 @@
 """Lines of a mesh that end inside another line: the straight one is divided there, so that the two are joined."""
 
+import warnings
 from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from beamfem.errors import InputError
+from beamfem.errors import InputError, NotJoinedWarning
 
 
 def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
@@ -36,6 +37,24 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
 def parts_of(sets: Mapping[str, np.ndarray], owner: np.ndarray) -> dict[str, np.ndarray]:
     """Return sets of cells as sets of the parts that they have been divided into."""
     return {name: np.flatnonzero(np.isin(owner, cells)) for name, cells in sets.items()}
+
+
+def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
+    """Warn of ends that stand within `reach` [m] of another end or line and are not joined to it."""
+    ends = np.unique(cells[:, :2])
+    pairs = ends[cKDTree(nodes[ends]).query_pairs(reach, output_type="ndarray")]
+    _, beside, _ = _touches(nodes, cells, reach)
+    loose = np.unique(np.concatenate([pairs[:, 0], beside]))
+    if not len(loose):
+        return
+    x, y = nodes[loose[0]]
+    others = f" (and {len(loose) - 1} more)" if len(loose) > 1 else ""
+    warnings.warn(
+        f"the end at ({x:g}, {y:g}){others} is within {reach:.2g} of another line but not joined to it: nothing is "
+        "carried over the gap. Where they shall be joined, let them meet",
+        NotJoinedWarning,
+        stacklevel=4,
+    )
 
 
 def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from beamfem.model.reference import curvature, sections_at
 from beamfem.section.distribution import Distribution, distribution, layers_of
 from beamfem.section.protocol import CrossSection
 
-# points (n,) and how the section distributes forces at them
+# points (n,), those of the groups follow each other, and how the section distributes forces at them
 _Group = tuple[np.ndarray, Distribution]
 
 
@@ -43,8 +43,7 @@ class Distributions:
         for here, own in self.groups:
             at = own.layer_at(0.0) if layer is None else min(layer, len(own.layers) - 1)
             parts.append(of(own, at, y[here], here))
-        order = np.argsort(np.concatenate([here for here, _ in self.groups]), kind="stable")
-        return np.concatenate(parts, axis=1)[:, order]
+        return np.concatenate(parts, axis=1)
 
     @property
     def number(self) -> np.ndarray:

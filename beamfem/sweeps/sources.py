@@ -8,6 +8,7 @@ import sys
 import sysconfig
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
+from enum import Enum
 from functools import cache, partial
 from importlib.machinery import PathFinder
 from itertools import accumulate
@@ -84,6 +85,8 @@ def _code(value: Any) -> Iterator[Any]:
         yield value
     elif isinstance(value, partial):
         yield from _code((value.func, value.args, value.keywords))
+    elif isinstance(value, Enum):
+        yield type(value)
     elif isinstance(value, tuple | list):
         for item in value:
             yield from _code(item)

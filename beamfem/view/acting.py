@@ -5,7 +5,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.element.coordinates import across
-from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure, factor
+from beamfem.loading import loading
+from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure, along, factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import length_points
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 from beamfem.view.held import Stamps
@@ -21,9 +24,10 @@ _ROW_OF_ARROWS = 11
 
 def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
     """Draw each load on that of the rows where it is largest, the last of equals; return what was drawn."""
+    system, at = loading(solution)
     acting = []
     for load in solution.model.loads:
-        weights = np.array([factor(load, float(solution.at[row]), solution.static) for row in rows])
+        weights = np.array([factor(load, float(at[row]), system.static) for row in rows])
         best = len(rows) - 1 - int(np.abs(weights[::-1]).argmax())
         if weights[best]:
             acting.append((load, float(weights[best]), int(rows[best])))
@@ -102,11 +106,22 @@ def _turned_by(vector: np.ndarray, angle: Any) -> np.ndarray:
     return np.cos(angle)[..., None] * vector + np.sin(angle)[..., None] * across(vector)
 
 
+def _shares(load: LineLoad, mesh: BeamMesh) -> np.ndarray:
+    """Return where along the beam arrows stand: spread evenly, and where a load that varies is largest."""
+    even, length = np.linspace(0.0, 1.0, _ROW_OF_ARROWS), load.beam.curve.length
+    if not callable(along(load)):
+        return even
+    arc = mesh.arc_length(*length_points(mesh)[:2])
+    sizes = [np.abs(load.values(at)).reshape(len(at), -1).max(axis=1) for at in (arc, even * length)]
+    largest = arc[sizes[0].argmax()] / length
+    return np.union1d(even, largest) if sizes[0].max() > sizes[1].max() else even
+
+
 def _distributed(axes: Any, solution: "Solution", load: LineLoad, weight: float, row: int) -> list[Any]:
     from matplotlib.transforms import ScaledTranslation
 
     only = one_row(solution, row)
-    shares = np.linspace(0.0, 1.0, _ROW_OF_ARROWS)
+    shares = _shares(load, solution.model.mesh_of(load.beam.start))
     points = [load.beam.at(share) for share in shares]
     places = np.array([only.position(point)[0] for point in points])
     values = weight * load.values(shares * load.beam.curve.length)

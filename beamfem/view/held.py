@@ -164,6 +164,8 @@ def _prescribed(stamps: Stamps, support: Prescribed, at: np.ndarray, now: np.nda
         for name, down in (("ux", (-1.0, 0.0)), ("uy", (0.0, -1.0))):
             if name in still:
                 _stamp(stamps, symbols.ROLLER, now, np.array(down))
+    if "rotation" in still and not still >= {"ux", "uy"}:
+        _stamp(stamps, symbols.NO_TURN, now, np.array([0.0, -1.0]), 1.2)
     for name, direction in (("ux", (1.0, 0.0)), ("uy", (0.0, 1.0))):
         if name in held and name not in still:
             value = held[name]

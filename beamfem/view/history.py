@@ -8,8 +8,8 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.path import Path
-from beamfem.solution import Solution, State
+from beamfem.path import Path, PathState
+from beamfem.solution import Solution
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
@@ -127,8 +127,9 @@ def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str
     return _OF_POINT[name]
 
 
-def _together(path: Solution, states: Sequence[State]) -> Solution:
+def _together(path: Solution, states: Sequence[PathState]) -> Solution:
     """Return states of a path as the rows of a solution."""
     at = np.array([state.at for state in states])
     p, v, a = (np.array([getattr(state, name) for state in states]) for name in "pva")
-    return Solution(path.model, True, at, p, v, a, path.statistics)
+    turned = [state.turned for state in states if state.turned is not None]
+    return Solution(path.model, True, at, p, v, a, path.statistics, turned=np.array(turned) if turned else None)

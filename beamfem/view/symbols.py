@@ -40,6 +40,8 @@ PIN = [_TRIANGLE, *_hatched(-0.75, 0.6)]
 ROLLER = [_TRIANGLE, circle(-0.22, -0.87, 0.12), circle(0.22, -0.87, 0.12), *_hatched(-0.99, 0.6)]
 SPRING = [_zigzag(), *_hatched(-1.1, 0.42)]
 ROTATIONAL_SPRING = [_spiral()]
+# a section that does not turn
+NO_TURN = [_line((-0.26, -0.26), (0.26, -0.26), (0.26, 0.26), (-0.26, 0.26), (-0.26, -0.26))]
 HINGE = circle(0.0, 0.0, 0.2)
 
 

@@ -220,7 +220,7 @@ def analysis(root: Table, places: Places) -> Analysis:
     if "analysis" not in root.values:
         return Static()
     readers = {"until": until, "newton": newton, "velocity": velocity}
-    return build_kind(root.table("analysis"), ANALYSES, readers)
+    return build_kind(root.table("analysis"), ANALYSES, readers, default="static")
 
 
 def critical_points(path: Path) -> dict[str, Any]:

@@ -158,9 +158,8 @@ def critical(output: Output, path: Path) -> dict[str, list[dict[str, Any]]]:
 
 def _alone(path: Path, state: PathState) -> Solution:
     """Return one state of a path as a Solution."""
-    return Solution(
-        path.model, True, np.array([state.at]), state.p[None], state.v[None], state.a[None], path.statistics
-    )
+    parts = (np.array([state.at]), state.p[None], state.v[None], state.a[None], path.statistics)
+    return Solution(path.model, True, *parts, turned=None if state.turned is None else state.turned[None])
 
 
 def _output(number: int) -> Any:

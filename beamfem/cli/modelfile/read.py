@@ -57,7 +57,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
     """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key."""
     file = Path(path)
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise ModelFileError("there is no such file", file, None, None) from None
     except IsADirectoryError:
@@ -66,12 +66,15 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         raise ModelFileError("this is not a text in UTF-8, as TOML files are", file, None, None) from None
     try:
         values = tomllib.loads(text)
+        lines = key_lines(text)
     except tomllib.TOMLDecodeError as error:
         message = str(error)
         place = re.search(r"\(at line (\d+), column \d+\)", message)
         line = int(place[1]) if place else text.count("\n") + 1
         raise ModelFileError(f"not valid TOML: {message}", file, line, None) from None
-    root = Table(Source(file, key_lines(text)), (), values)
+    except RecursionError:
+        raise ModelFileError("arrays or tables are nested too deeply", file, None, None) from None
+    root = Table(Source(file, lines), (), values)
     root.require_known(_KEYS)
     title = root.text("title") if "title" in values else file.stem
     beams = actions.beams(root)

@@ -113,9 +113,13 @@ def build(table: Table, make: Callable[..., Any], readers: Mapping[str, Reader] 
         raise table.refused(error) from None
 
 
-def build_kind(table: Table, kinds: Mapping[str, Callable[..., Any]], readers: Mapping[str, Reader]) -> Any:
-    """Return what a table with a `kind` describes. Raises ModelFileError."""
+def build_kind(
+    table: Table, kinds: Mapping[str, Callable[..., Any]], readers: Mapping[str, Reader], default: str | None = None
+) -> Any:
+    """Return what a table with a `kind` describes; without one of the default kind. Raises ModelFileError."""
     if "kind" not in table.values:
+        if default is not None:
+            return build(table, kinds[default], readers)
         raise table.error(f"the key kind is missing; it is one of {', '.join(kinds)}")
     kind = table.text("kind")
     if kind not in kinds:

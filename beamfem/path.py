@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.model.beam import Beam, Point
 from beamfem.postprocess import Components, Fields, SectionForces
 from beamfem.solution import Solution, State, Statistics
+from beamfem.turns import start_rotations
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,8 @@ class PathState(State):
     @cached_property
     def _alone(self) -> Solution:
         rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
-        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"))
+        turned = None if self.turned is None else self.turned[None]
+        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"), turned=turned)
 
     @property
     def stable(self) -> bool:
@@ -45,7 +47,8 @@ class PathState(State):
     def rotation(self, point: Point) -> float:
         """Return the rotation of the section from the reference [rad], counter-clockwise.
 
-        Several turns count with rotation coordinates; with gradients the beam's start is taken within half a turn.
+        Several turns count with rotation coordinates, and in rows of a path; elsewhere, with gradients the beam's start
+        is taken within half a turn.
         """
         return float(self._alone.rotation(point)[0])
 
@@ -98,7 +101,8 @@ class Path(Solution):
 
     def _state(self, row: int) -> PathState:
         stability = None if self.stability is None else bool(self.stability[row])
-        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, stability=stability)
+        known = {"stability": stability, "turned": start_rotations(self)[row]}
+        return PathState(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, **known)
 
 
 def _first(value: Any) -> Any:

@@ -13,9 +13,11 @@ if TYPE_CHECKING:
     from beamfem.solution import Solution
 
 
-def first_turns(model: Model, p: np.ndarray) -> np.ndarray:
-    """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn."""
-    return np.array([postprocess.nodal_rotations(mesh, p[None])[0, 0] for mesh in uncounted(model)])
+def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn of `near`."""
+    meshes = uncounted(model)
+    known = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
+    return np.array([rotations[0, 0] for rotations in known])
 
 
 def start_rotations(solution: "Solution") -> np.ndarray:

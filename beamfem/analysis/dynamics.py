@@ -10,6 +10,7 @@ from beamfem.analysis.march import ITERATIONS, Record, initial_acceleration, mar
 from beamfem.analysis.memory import require_memory
 from beamfem.analysis.prescribed_motion import prescribed_motion
 from beamfem.analysis.time_steps import SIDE, stretches
+from beamfem.analysis.transfer import transferred_turns
 from beamfem.analysis.unresolved import courses, name_unresolved
 from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
@@ -66,7 +67,8 @@ def simulate(
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
     kept = np.empty((rows, 3, model.size)), save_every, new_statistics()
     record = Record(*kept, pairs, np.empty((rows, len(pairs))))
-    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0])
+    near = transferred_turns(start, model, "start")
+    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0], near)
     reached = march(system, integrator, parts, held, state, record)
     solution = _solution(system, times, record, reached.steps, len(ends) - len(times), unresolved)
     if reached.failed is not None:

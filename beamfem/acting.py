@@ -8,10 +8,12 @@ import numpy as np
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.gauss import gauss
 from beamfem.loading import loading
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, scales
 from beamfem.model.system import System
+from beamfem.spread import nearest, to_more_points
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -102,6 +104,36 @@ def concentrated(system: System, mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray
     element, xi = element[own], actions.xi[own]
     _, first = np.unique(np.round(element + xi, 9), return_index=True)
     return element[first], xi[first]
+
+
+def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+    """Return the same with what is spread over elements (ne,) at as many Gauss points as its moments need.
+
+    The moment of a density that is interpolated is a polynomial of a higher degree, by that of the field.
+    """
+    field = mesh.beam.element.field
+    extra = max(field.degree, field.director_degree)
+    kept = acting.rule == 0
+    parts = [(*_of_points(acting, kept), acting.force[:, kept], acting.turning[:, kept])]
+    for rule in np.unique(acting.rule[~kept]).tolist():
+        own = acting.rule == rule
+        place = acting.element[own], nearest(gauss(rule)[0], acting.xi[own])
+        finer = to_more_points(rule, rule + extra)
+        spread = []
+        for values in (acting.force[:, own], acting.turning[:, own]):
+            summed = np.zeros((len(elements), rule, len(values), 2))
+            np.add.at(summed, place, np.moveaxis(values, 1, 0))
+            spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+        element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
+        # what turns where it is spread is inertia, and that turns with d
+        tables = _tables(mesh, elements[element], xi)
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
+    joined = zip(*parts, strict=True)
+    return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
+
+
+def _of_points(acting: Acting, own: np.ndarray) -> tuple[np.ndarray, ...]:
+    return tuple(getattr(acting, name)[own] for name in ("element", "xi", "rule", "position", "direction"))
 
 
 def _inside(xi: np.ndarray) -> np.ndarray:

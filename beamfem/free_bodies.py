@@ -5,20 +5,19 @@ are among those of its nodes, so that these forces balance its loads exactly, ho
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.acting import NEAR, Acting, Rows, acting_on
+from beamfem.acting import NEAR, Acting, Rows, acting_on, at_more_points
 from beamfem.element.axis import cross, dot
-from beamfem.element.gauss import gauss
 from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import Block
 from beamfem.kernels.resist import resist
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import interpolate
 from beamfem.postprocess import direction
+from beamfem.spread import shares_before
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +91,7 @@ class FreeBodies:
             own = np.flatnonzero(acting.rule[column] == rule)
             at, cut = acting.xi[column[own]], cuts.xi[row[own]]
             if rule:
-                share[own] = _gauss_shares(int(rule), at, cut)
+                share[own] = shares_before(int(rule), at, cut)
             else:
                 share[own] = (at < cut - NEAR) | ((at < cut + NEAR) & cuts.behind[row[own]])
         return coo_array((share, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
@@ -119,7 +118,8 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     pulls = [force[:, :, place][:, :, 0] for place in (first, last)]
     arm = e[:, :, last][:, :, 0] - e[:, :, 0]
     ends = np.stack([-pulls[0], pulls[1]])
-    return FreeBodies(mesh, elements, e, acting, ends, np.stack([-turns[0], turns[1] + cross(arm, pulls[1])]))
+    moments = np.stack([-turns[0], turns[1] + cross(arm, pulls[1])])
+    return FreeBodies(mesh, elements, e, at_more_points(acting, mesh, elements), ends, moments)
 
 
 def _parted(block: Block, elements: np.ndarray) -> Block:
@@ -138,24 +138,3 @@ def _shared(share: csr_array, values: np.ndarray) -> np.ndarray:
     flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
     found = (share @ flat).reshape(share.shape[0], len(values), *values.shape[2:])
     return np.asarray(np.moveaxis(found, 0, 1))
-
-
-def _gauss_shares(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
-    """Share of what stands for a Gauss point at xi `at` (m,) that is before a cut (m,), its density interpolated.
-
-    The integral from 0 to the cut of the polynomial that is one there and zero at the other points, over its whole.
-    """
-    xi, integral = _integrals(points)
-    place = np.abs(xi - at[:, None]).argmin(axis=1)
-    return np.einsum("mk,mk->m", integral[place], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
-
-
-@lru_cache(maxsize=32)
-def _integrals(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss points on [0, 1] and the integrals, as Legendre series, of the polynomials through them."""
-    xi, weights = gauss(points)
-    degree = np.arange(points)
-    legendre = np.polynomial.legendre.legvander(2.0 * xi - 1.0, points - 1)
-    # a row of coefficients for each polynomial
-    coefficients = legendre * weights[:, None] * (2 * degree + 1)
-    return xi, np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / (2.0 * weights[:, None])

@@ -16,12 +16,11 @@ from beamfem.turns import start_rotations
 class PathState(State):
     """One state of a path, with what a Solution offers but without its axis of steps.
 
-    stability: whether it is a stable equilibrium, where that is known; critical points are not. turned (m,) [rad]: see
-    `turns.start_rotations`, as counted along the path.
+    stability: whether it is a stable equilibrium, where that is known; critical points are not. turned is counted along
+    the path.
     """
 
     stability: bool | None = field(default=None, kw_only=True)
-    turned: np.ndarray | None = field(default=None, kw_only=True)
 
     @property
     def load_factor(self) -> float:

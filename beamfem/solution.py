@@ -1,7 +1,7 @@
 """A solution: states of a model over load factor or time, and what users ask of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from operator import index
 from os import PathLike
@@ -44,13 +44,17 @@ class Statistics:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s]."""
+    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s].
+
+    turned (m,) [rad]: see `turns.start_rotations`, where it is known.
+    """
 
     p: np.ndarray
     v: np.ndarray
     a: np.ndarray
     at: float
     model: Model
+    turned: np.ndarray | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +105,8 @@ class Solution:
         return self._state(number)
 
     def _state(self, row: int) -> State:
-        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+        turned = start_rotations(self)[row]
+        return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, turned=turned)
 
     def _rows(self, rows: slice) -> "Solution":
         if len(self.at[rows]) == 0:

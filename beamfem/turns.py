@@ -13,14 +13,11 @@ if TYPE_CHECKING:
     from beamfem.solution import Solution
 
 
-def first_turns(model: Model, p: np.ndarray) -> np.ndarray:
-    """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn."""
-    return np.array([postprocess.nodal_rotations(mesh, p[None])[0, 0] for mesh in uncounted(model)])
-
-
-def nearest_turns(rotation: np.ndarray, like: np.ndarray) -> np.ndarray:
-    """Return rotations (m,) [rad] with the full turns that bring them nearest to others (m,)."""
-    return np.asarray(rotation + 2.0 * np.pi * np.round((like - rotation) / (2.0 * np.pi)))
+def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn of `near`."""
+    meshes = uncounted(model)
+    known = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
+    return np.array([rotations[0, 0] for rotations in known])
 
 
 def start_rotations(solution: "Solution") -> np.ndarray:

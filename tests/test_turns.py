@@ -135,3 +135,19 @@ def test_a_motion_from_a_rolled_up_state_starts_with_its_rotations():
     motion = bf.simulate(model, 1e-5, 1e-5, start=rolled[-1])
     for point in (beam.start, beam.end):
         assert motion.rotation(point)[0] == pytest.approx(rolled.rotation(point)[-1], abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_motion_that_goes_on_from_another_keeps_its_turns(kind):
+    """In two parts the motion is that in one; its rotation fell back by two turns, its energy by the moment's work."""
+    (beam,), whole = spun(KINDS[kind](), 500)
+    model = whole.model
+    first = bf.simulate(model, 0.9, 1e-3, save_every=450)
+    held = bf.Model([beam], [bf.Pin(beam.start), bf.Spring(beam.end, rotational=1e-9)], model.loads)
+    for other in (model, held):
+        rest = bf.simulate(other, 0.1, 1e-3, save_every=50, start=first[-1])
+        assert first.rotation(beam.end)[-1] > np.pi + 6.0
+        # a node that angles carry ties the direction of r_x to that of r_y
+        assert rest.rotation(beam.end)[0] == pytest.approx(first.rotation(beam.end)[-1], abs=1e-4)
+        assert rest.rotation(beam.end)[-1] == pytest.approx(whole.rotation(beam.end)[-1], abs=1e-3)
+        assert rest.energy().total == pytest.approx(0.0, abs=2e-3 * whole.energy().kinetic[-1])

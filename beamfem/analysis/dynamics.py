@@ -11,6 +11,7 @@ from beamfem.analysis.march import ITERATIONS, Last, Record, initial_acceleratio
 from beamfem.analysis.memory import require_memory
 from beamfem.analysis.prescribed_motion import prescribed_motion
 from beamfem.analysis.time_steps import SIDE, stretches
+from beamfem.analysis.transfer import transferred_turns
 from beamfem.analysis.unresolved import courses, name_unresolved
 from beamfem.compiled import tell_of_compilation
 from beamfem.errors import ConvergenceError, InputError
@@ -69,7 +70,8 @@ def simulate(
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
     table = np.empty((rows, 3, model.size))
     record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
-    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0])
+    near = transferred_turns(start, model, "start")
+    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0], near)
     further = len(ends) - len(times)
     last = Last((0, state[:3].copy(), record.turned[0].copy()))
     with kept(lambda: _solution(system, times, record, last, further, unresolved)):

@@ -7,10 +7,11 @@ from beamfem.analysis.round_off import FEW_DIGITS, remainder
 from beamfem.analysis.steps import Step
 from beamfem.model.model import Model
 from beamfem.model.system import system_of
+from beamfem.model.turns import uncounted
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.solution import Statistics
 from beamfem.status import Status
-from beamfem.turns import first_turns, nearest_turns
+from beamfem.turns import first_turns
 
 
 class PathRecord:
@@ -64,8 +65,8 @@ class PathRecord:
 
     def _turned(self, y: np.ndarray) -> np.ndarray:
         """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
-        found = first_turns(self.model, y[:-1])
-        return nearest_turns(found, self.turned[-1]) if self.turned else found
+        last = self.turned[-1] if self.turned else np.zeros(len(uncounted(self.model)))
+        return first_turns(self.model, y[:-1], last)
 
     def path(self) -> Path:
         rows = np.array(self.points).reshape(len(self.points), -1)

@@ -11,6 +11,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_angle
 from beamfem.model.system import System, coordinate_columns
+from beamfem.model.turns import uncounted
 from beamfem.solution import State
 
 _SAME = 1e-9  # of the length of a beam, within which its nodes are at the same place
@@ -37,6 +38,26 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     return p, v
 
 
+def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:
+    """Return the rotation at the start (m,) [rad], full turns included, of each beam of a model that does not count it.
+
+    Zero without a state. Raises InputError where the beams do not match.
+    """
+    meshes = uncounted(model)
+    if state is None or not meshes:
+        return np.zeros(len(meshes))
+    pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else _matched(state.model, model, name)
+    old = {id(new): source for source, new in pairs}
+    return np.array([_rotations(old[id(mesh)], state)[0] for mesh in meshes])
+
+
+def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
+    """Return the rotation of each node's section (nodes,) [rad] in a state."""
+    own = [i for i, other in enumerate(uncounted(state.model)) if other is mesh]
+    turned = state.turned[own] if own and state.turned is not None else None
+    return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
+
+
 def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Every coordinate that a node could have (nodes,), and its rate, by name."""
     p, v = state.p[None], state.v[None]
@@ -49,7 +70,7 @@ def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict
     director, turning = e[:, -1], rate[:, -1]
     normal = -across(director)
     angle = np.arctan2(normal[:, 1], normal[:, 0]) - reference_angle(mesh)
-    turns = np.round((postprocess.nodal_rotations(mesh, p)[0] - angle) / (2.0 * np.pi))
+    turns = np.round((_rotations(mesh, state) - angle) / (2.0 * np.pi))
     values["theta"] = angle + 2.0 * np.pi * turns
     rates["theta"] = cross(director, turning) / dot(director, director)
     if "r_x" in mesh.vectors:

@@ -84,7 +84,7 @@ class AxisPoints:
 
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
-    cuts = Cuts(points.element, points.xi, np.zeros(len(points.xi), dtype=bool))
+    cuts = Cuts(points.element, points.xi)
     found = at_points(solution, points.mesh, cuts, rows)
     return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
 

@@ -173,7 +173,7 @@ class Solution:
 
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        forces = at_points(self, mesh, Cuts(element, xi, np.array([True])))
+        forces = at_points(self, mesh, Cuts(element, xi))
         found = postprocess.fields(mesh, self.p, element, xi, forces, turned_of(self, mesh))
         return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
 

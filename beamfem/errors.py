@@ -54,6 +54,10 @@ class ChangedCodeWarning(UserWarning):
     """Stored results of a sweep were computed before code that its function runs was changed."""
 
 
+class NotStoredWarning(UserWarning):
+    """The store of a sweep cannot be written any more, so that further results are not found by the next run."""
+
+
 class RoundOffWarning(UserWarning):
     """Round-off leaves few digits of the forces of a solution, or of a critical load."""
 

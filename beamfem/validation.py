@@ -12,6 +12,8 @@ import numpy as np
 
 from beamfem.errors import InputError
 
+# norms take squares, which must be neither infinite nor without digits
+SMALLEST, LARGEST = math.sqrt(np.finfo(float).tiny), math.sqrt(np.finfo(float).max)
 _MOST = 2**53  # from here on, floating-point numbers cannot count
 _SHOWN = 200  # characters of a value in a message
 
@@ -97,6 +99,22 @@ def text(name: str, value: Any) -> str:
     return value
 
 
+def squared(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
+    """Return a check that refuses numbers, other than zero, whose square double precision does not hold as well."""
+
+    def checked(name: str, value: Any) -> Any:
+        found = check(name, value)
+        for number in found if isinstance(found, tuple) else (found,):
+            if number != 0.0 and not SMALLEST <= abs(number) <= LARGEST:
+                raise InputError(
+                    f"{name} is {number:g}, which double precision cannot square ({SMALLEST:.1g} to {LARGEST:.1g}); "
+                    "take zero, or units in which it is closer to 1"
+                )
+        return found
+
+    return checked
+
+
 def optional(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
     """Return a check that lets None pass."""
     return lambda name, value: None if value is None else check(name, value)
@@ -166,7 +184,7 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 def fulfils(item: object, protocol: type) -> bool:
     """Tell whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
     kind = type(item)
-    return all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
+    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
 
 
 @cache

@@ -74,10 +74,10 @@ BAD = {
     "integrator by name": (lambda: bf.simulate(MODEL, 1.0, 0.1, integrator="newmark"), "GeneralizedAlpha"),
     "integrator as a class": (lambda: bf.simulate(MODEL, 1.0, 0.1, integrator=bf.GeneralizedAlpha), "GeneralizedAlpha"),
     "integrator as a number": (lambda: bf.simulate(MODEL, 1.0, 0.1, 0.9), "integrator"),
-    "negative tolerance": (lambda: bf.Newton(tolerance=-1e-9), "tolerance must be greater"),
+    "negative tolerance": (lambda: bf.Newton(tolerance=-1e-9), "tolerance of Newton must be greater"),
     "negative residual tolerance": (lambda: bf.Newton(residual_tolerance=-1.0), "residual_tolerance"),
-    "no iterations": (lambda: bf.Newton(iterations=0), "iterations must be at least 1"),
-    "half an iteration": (lambda: bf.Newton(iterations=2.5), "iterations must be a whole"),
+    "no iterations": (lambda: bf.Newton(iterations=0), "iterations of Newton must be at least 1"),
+    "half an iteration": (lambda: bf.Newton(iterations=2.5), "iterations of Newton must be a whole"),
     "stresses of words": (lambda: bf.Newton(independent_stresses="no"), "independent_stresses"),
     "save every half step": (lambda: bf.simulate(bf.Model([BEAM]), 1.0, 0.1, save_every=0.5), "save_every"),
 }

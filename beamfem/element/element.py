@@ -38,7 +38,7 @@ class Element:
         optional(text)("label of an element", self.label)
         kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
         for name, kind in kinds:
-            if not isinstance(getattr(self, name), kind):
+            if isinstance(getattr(self, name), type) or not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {shown(getattr(self, name))}")
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:

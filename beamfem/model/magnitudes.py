@@ -1,6 +1,5 @@
 """Whether double precision holds what the solvers form of a beam."""
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -8,13 +7,10 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.section.protocol import CrossSection
+from beamfem.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from beamfem.model.beam import Beam
-
-# solvers take norms, whose squares must be neither infinite nor without digits
-_LARGEST = math.sqrt(np.finfo(float).max)
-_SMALLEST = math.sqrt(np.finfo(float).tiny)
 
 
 def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
@@ -26,10 +22,10 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     with np.errstate(over="ignore", under="ignore", divide="ignore", invalid="ignore"):
         formed = tuple(_formed(beam, section))
     for name, value, unit in formed:
-        if not _SMALLEST <= value <= _LARGEST:
+        if not SMALLEST <= value <= LARGEST:
             raise InputError(
-                f"{name} of {beam!r} is {value:g} {unit}, beyond what double precision can square ({_SMALLEST:.1g} to "
-                f"{_LARGEST:.1g}); give all lengths, forces and masses in units in which they are closer to 1"
+                f"{name} of {beam!r} is {value:g} {unit}, beyond what double precision can square ({SMALLEST:.1g} to "
+                f"{LARGEST:.1g}); give all lengths, forces and masses in units in which they are closer to 1"
             )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point
-from beamfem.validation import convert, finite, function_of_one, vector
+from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 Value = float | Callable[[float], float]
 
@@ -47,9 +47,9 @@ class Roller:
 
     def __post_init__(self) -> None:
         require_point("Roller", self.point)
-        convert(self, vector, "normal")
-        if not 0.0 < np.hypot(*self.normal) < np.inf:
-            raise InputError(f"the normal of a Roller must not be zero, and have a length, got {self.normal}")
+        convert(self, squared(vector), "normal")
+        if not any(self.normal):
+            raise InputError("the normal of a Roller must not be zero")
 
     def held(self) -> dict[str, Value]:
         return {"normal": 0.0}
@@ -81,7 +81,7 @@ class Prescribed:
             if callable(value):
                 function_of_one(f"{name} of Prescribed", value, "time")
             else:
-                convert(self, finite, name)
+                convert(self, squared(finite), name)
 
     def held(self) -> dict[str, Value]:
         given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
@@ -101,8 +101,8 @@ class Spring:
 
     def __post_init__(self) -> None:
         require_point("Spring", self.point)
-        convert(self, vector, "stiffness")
-        convert(self, finite, "rotational")
+        convert(self, squared(vector), "stiffness")
+        convert(self, squared(finite), "rotational")
         values = (*self.stiffness, self.rotational)
         if min(values) < 0.0 or max(values) == 0.0:
             raise InputError(f"the stiffness of a Spring must not be negative, and somewhere positive, got {values}")
@@ -128,7 +128,7 @@ class Foundation:
 
     def __post_init__(self) -> None:
         require_beam("Foundation", self.beam)
-        convert(self, vector, "stiffness")
+        convert(self, squared(vector), "stiffness")
         if min(self.stiffness) < 0.0 or max(self.stiffness) == 0.0:
             raise InputError(f"the stiffness of a Foundation must not be negative, and somewhere positive: {self}")
 

@@ -27,10 +27,10 @@ class StiffnessSection:
     def __post_init__(self) -> None:
         convert(self, positive, "axial", "shear", "bending", "mass", "rotary_inertia")
         convert(self, finite, "coupling")
-        if abs(self.coupling) >= np.sqrt(self.axial) * np.sqrt(self.bending):
+        if self.coupling * self.coupling >= self.axial * self.bending:
             raise InputError(
                 f"coupling ({self.coupling:g}) must be smaller than sqrt(axial * bending) = "
-                f"{np.sqrt(self.axial) * np.sqrt(self.bending):g}: the section would gain energy by deforming"
+                f"{np.sqrt(self.axial * self.bending):g}: the section would gain energy by deforming"
             )
 
     @property

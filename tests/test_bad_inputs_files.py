@@ -1,4 +1,4 @@
-"""Bad files of meshes, results, drawings and models get an error that names them, on the command line without a trace."""
+"""Bad files of meshes, results, drawings and models get an error that names them, on the command line no traceback."""
 
 import h5py
 import pytest

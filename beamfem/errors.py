@@ -39,7 +39,11 @@ class LimitPointError(ConvergenceError):
 
 
 class FileError(BeamfemError, OSError):
-    """A file that the system does not let us write: no room, no permission, no such place."""
+    """A file that the system does not let us read or write: no room, no permission, no such place."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """A file to read that is not there."""
 
 
 class UnstableWarning(UserWarning):

@@ -28,7 +28,7 @@ ELEMENTS = tuple(combinations())
 # the same kernels with other tables: every integration is tested where strains and forces are, one where models are
 USUAL = tuple(e for e in ELEMENTS if e.integration == bf.Element(e.field, e.coordinates, e.forces).integration)
 # kinds that are most used: nodes, vectors a node, strain measures, half width of the band of a chain or 1 for any
-NAMED = {(2, 2, 1, 5), (3, 2, 1, 8), (2, 3, 0, 11), (2, 3, 0, 9), (2, 3, 2, 9), (2, 2, 1, 1)}
+NAMED = {(2, 2, 1, 5), (3, 2, 1, 8), (5, 2, 1, 14), (2, 3, 0, 11), (2, 3, 0, 9), (2, 3, 2, 9), (2, 2, 1, 1)}
 
 
 def identify(element):

@@ -150,7 +150,8 @@ def test_two_sweeps_write_one_store(tmp_path):
         for first in (0, 150)
     ]
     said = [one.communicate(timeout=60)[0] for one in both]
-    assert said[0] == "300\n"
+    # what the other one has written when one begins is found
+    assert 450 <= sum(map(int, said)) <= 600
     for first in ("0", "150"):
         again = subprocess.run([sys.executable, str(script), str(store), first], capture_output=True, text=True)
         assert again.stdout == "0\n", again.stderr

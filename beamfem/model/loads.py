@@ -87,9 +87,8 @@ class DistributedLoad:
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
         given, name = self.vector, "vector of DistributedLoad"
-        return np.array(
-            [vector(f"{name} {s:g} m", called("vector of DistributedLoad", given, s)) for s in arc_length.tolist()]
-        ).reshape(-1, 2)
+        found = [vector(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()]
+        return np.array(found).reshape(-1, 2)
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,8 @@ class Pressure:
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given = self.value
-        return np.array([function_value("value of Pressure", given, s) for s in arc_length.tolist()])
+        name = "value of Pressure"
+        return np.array([finite(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()])
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,8 @@ def _frame(rng: Random, elements: Sequence[bf.Element]) -> tuple[list[bf.Beam], 
     modulus = 10.0 ** (rng.uniform(5.0, 12.0) if rng.random() < 0.5 else 11.3)
     slenderness = 10.0 ** (rng.uniform(0.5, 3.0) if rng.random() < 0.7 else rng.uniform(0.0, 5.0))
     alike = rng.random() < 0.7
-    kind = elements[rng.integers(len(elements))]
+    # each number of kinds in a model is compiled anew
+    kinds = [elements[rng.integers(len(elements))] for _ in range(1 if alike else 2)]
     beams, joints = [], []
     for number in range(count):
         start = len(corners) - 1 if rng.random() < 0.8 else int(rng.integers(len(corners)))
@@ -95,7 +96,7 @@ def _frame(rng: Random, elements: Sequence[bf.Element]) -> tuple[list[bf.Beam], 
             corners.append(_corner(rng, corners, size))
             end = len(corners) - 1
         stiffer = 10.0 ** (rng.uniform(-9.0, 9.0) if rng.random() < 0.15 else 0.0)
-        own = kind if alike else elements[rng.integers(len(elements))]
+        own = kinds[rng.integers(len(kinds))]
         curve = _curve(rng, corners[start], corners[end])
         beam = _beam(rng, curve, max(round(total / count), 1), own, slenderness, modulus * min(stiffer, 1e16 / modulus))
         for corner, point in ((start, beam.start), (end, beam.end)):
@@ -149,7 +150,9 @@ def _beam(rng: Random, curve, count: int, element, slenderness: float, modulus: 
         height = min(height, 0.1 * curve.length)
     ratio = float(rng.choice([0.3, 0.3, 0.0, 0.49, -0.3]))
     material = bf.Material(modulus, ratio, float(10.0 ** rng.uniform(0.0, 4.5)))
-    kind = rng.choice(["rectangle", "tube", "taper", "layers", "moments", "stiffness"], p=[0.5, 0.1, 0.1, 0.1, 0.1, 0.1])
+    kind = rng.choice(
+        ["rectangle", "tube", "taper", "layers", "moments", "stiffness"], p=[0.5, 0.1, 0.1, 0.1, 0.1, 0.1]
+    )
     width = height * 10.0 ** rng.uniform(-1.0, 1.0)
     section: object = bf.Rectangle(width, height)
     if kind == "tube":
@@ -249,7 +252,9 @@ def _loads(rng: Random, beams, analysis: str) -> list[object]:
         if analysis == "motion" and rng.random() < 0.4:
             how["amplitude"] = rng.choice([_Wave(float(rng.uniform(0.1, 10.0))), bf.Interpolated([(0, 0), (1, 1)])])
         point = beam.at(float(rng.choice([1.0, 1.0, 0.5, rng.uniform(0.0, 1.0)])))
-        kind = rng.choice(["force", "moment", "line", "along", "pressure", "gravity"], p=[0.4, 0.15, 0.15, 0.1, 0.1, 0.1])
+        kind = rng.choice(
+            ["force", "moment", "line", "along", "pressure", "gravity"], p=[0.4, 0.15, 0.15, 0.1, 0.1, 0.1]
+        )
         if kind == "force":
             found.append(bf.PointForce(point, _pair(size * away), follower=follower, **how))
         elif kind == "moment":

@@ -4,13 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from complex_steps import cross, elastic, external, nodal_force, sprung, to_coordinates
+from scipy.linalg import LinAlgError
 
 import beamfem as bf
+from beamfem.analysis.equations import linearise
 from beamfem.model.system import system_of
 from beamfem.postprocess import axis, nodal_vectors
 
 TOLERANCE = 1e-7  # of the largest force that acts; solvers are content with 1e-9
 LAST_DIGITS = 30.0  # times what a change of the last digit of the coordinates leaves in a row
+NEAR = 64.0 * np.finfo(float).eps  # of the model: an equilibrium so near to a static state cannot be told from it
+STEPPED = 1e-8  # of the model: the same for a step of a motion, which is iterated to 1e-9
 _SAMPLES = 3
 
 
@@ -63,6 +67,8 @@ def balance(solution: bf.Solution, row: int = -1) -> Balance:
     allowed = TOLERANCE * acting + LAST_DIGITS * floor * scale
     worst = int(np.argmax(np.abs(unbalanced * scale) / np.maximum(allowed, 1e-300)))
     share = float(np.abs(unbalanced * scale)[worst] / max(allowed[worst], 1e-300))
+    if share > 1.0 and _away(solution, row, left) <= (NEAR if solution.static else STEPPED):
+        share = 1.0
     only = solution[row:] if row == -1 else solution[row : row + 1]
     reach = size
     for point in _points(model):
@@ -75,6 +81,25 @@ def balance(solution: bf.Solution, row: int = -1) -> Balance:
     whole = max(size * abs(parts[0]), size * abs(parts[1]), abs(parts[2]) * size / reach)
     noise = float((floor * scale).max(initial=0.0))
     return Balance(share, float(allowed[worst]), float(whole), 1e-6 * acting + LAST_DIGITS * noise, acting)
+
+
+def _away(solution: bf.Solution, row: int, left: np.ndarray) -> float:
+    """Return how far the equilibrium is from a row that leaves forces (n,), as a share of the model or of a radian.
+
+    By the tangent, of a motion that of a step: K + 4 M / h^2, as stiff as the integrators of any damping have it.
+    """
+    system = system_of(solution.model, solution.static)
+    state, at = (solution.p[row], solution.v[row], solution.a[row]), float(solution.at[row])
+    inertia = 0.0 if solution.static else 4.0 / float(np.diff(solution.at).min()) ** 2
+    _, tangent = linearise(system, *state, at, (1.0, 0.0, inertia))
+    try:
+        step = tangent.factorised(system.turned).solve(left[system.free_dofs])
+    except (LinAlgError, ValueError):
+        return np.inf
+    turn = np.maximum(np.abs(state[0]), 1.0)
+    reach = max(system.extent, float(np.abs(state[0][system.positions]).max(initial=0.0)))
+    size = np.where(system.positions, reach, turn)[system.free_dofs]
+    return float(np.abs(step / size).max())
 
 
 def floor_of(model: bf.Model, p: np.ndarray) -> np.ndarray:

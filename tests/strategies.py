@@ -59,15 +59,17 @@ def recipes(
     led: bool = True,
     most: int = 3,
     largest: float = 1.0,
+    alike: bool | None = None,
 ) -> Recipe:
     """One to three bars one behind the other, rigidly joined or by hinges; clamped, so that nothing moves freely."""
     count = draw(st.integers(1, most))
-    alike, kind = draw(st.booleans()), draw(st.sampled_from(kinds))
+    alike, kind = draw(st.booleans()) if alike is None else alike, draw(st.sampled_from(kinds))
+    other = kind if alike else draw(st.sampled_from(kinds))  # each number of kinds in a model is compiled anew
     height = draw(between(0.01, 0.08))
     bars, start = [], (0.0, 0.0)
     for _ in range(count):
         axis = draw(axes(start, axis_kinds))
-        own = kind if alike else draw(st.sampled_from(kinds))
+        own = other if bars and draw(st.booleans()) else kind
         bars.append(Bar(axis, 2 * draw(st.integers(1, 2)), own, 0.02, height))
         start = _pair(axis.ends[1])
     unit = MODULUS * 0.02 * height**3 / 12.0
@@ -82,7 +84,9 @@ def recipes(
     if all(support.place != last for support in supports):
         supports += draw(_ends(last, unit, led))
     if draw(st.integers(0, 4)) == 0:
-        supports.append(Support("foundation", (draw(st.integers(0, count - 1)), 0.0), (draw(between(0.1, 20.0)) * unit, 0.0)))
+        supports.append(
+            Support("foundation", (draw(st.integers(0, count - 1)), 0.0), (draw(between(0.1, 20.0)) * unit, 0.0))
+        )
     loads = tuple(draw(_load(count, largest * unit, load_kinds, followers)) for _ in range(draw(st.integers(1, 3))))
     if not any(load.scale for load in loads):
         loads = (replace(loads[0], scale=True), *loads[1:])

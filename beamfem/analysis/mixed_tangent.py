@@ -45,7 +45,7 @@ class MixedFactors:
         if self.matrix.shape[0] > _COUNTED:
             return self.tangent.plain.factorised(self.turned).negative_pivots
         _, blocks, _ = ldl(self.matrix.toarray())
-        return _negative(blocks) - (self.matrix.shape[0] - int(self.kept.sum()))
+        return negative_eigenvalues(blocks) - (self.matrix.shape[0] - int(self.kept.sum()))
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
@@ -139,7 +139,7 @@ class MixedTangent:
         return self.plain.sparse(turned)
 
 
-def _negative(blocks: np.ndarray) -> int:
+def negative_eigenvalues(blocks: np.ndarray) -> int:
     """Return how many eigenvalues of a symmetric matrix (n, n) of blocks of one or two rows are negative."""
     pivots, beside = np.diagonal(blocks).copy(), np.append(np.diagonal(blocks, 1), 0.0)
     first = np.flatnonzero(beside)

@@ -18,8 +18,6 @@ from beamfem.spread import nearest, to_more_points
 if TYPE_CHECKING:
     from beamfem.solution import Solution
 
-NEAR = 1e-9  # of an element, within which a point is that of a node
-
 
 @dataclass(frozen=True, eq=False)
 class Rows:
@@ -53,7 +51,7 @@ class Acting:
     """Forces at points of elements, their virtual work f . delta r + h . delta g of a vector g that turns with them.
 
     element (m,): place among the elements that are cut free; xi (m,); rule (m,): Gauss points of the element that share
-    what is spread over it, 0 for what acts at a point; position, direction (m, nv): r = sum position_i e_i, and g;
+    what is spread over it; position, direction (m, nv): r = sum position_i e_i, and g;
     force f (steps, m, 2) [N], turning h (steps, m, 2) [N m over the unit of g].
     """
 
@@ -82,28 +80,18 @@ class Acting:
 def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
     """Return what acts on elements (ne,) of a beam with nodal vectors e and e'' (steps, ne, nv, 2).
 
-    Loads at the nodes at their ends are left out: these act between elements.
+    Point loads are left out: they have nodes, and act between elements.
     """
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
         _along(rows, mesh, elements),
-        _at_points(rows, mesh, elements, e),
+        _spread(rows, mesh, elements, e),
     ]
     found = {
         name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "turning") else 0)
         for name in Acting.__dataclass_fields__
     }
     return Acting(**found)
-
-
-def concentrated(system: System, mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return element of the beam and xi (m,) of the points inside of elements where loads act, each once."""
-    actions = system.actions[mesh.block]
-    element = actions.points.element - mesh.first_element
-    own = (element >= 0) & (element < mesh.elements) & (actions.rule == 0) & _inside(actions.xi)
-    element, xi = element[own], actions.xi[own]
-    _, first = np.unique(np.round(element + xi, 9), return_index=True)
-    return element[first], xi[first]
 
 
 def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
@@ -113,9 +101,8 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
     """
     field = mesh.beam.element.field
     extra = max(field.degree, field.director_degree)
-    kept = acting.rule == 0
-    parts = [(*_of_points(acting, kept), acting.force[:, kept], acting.turning[:, kept])]
-    for rule in np.unique(acting.rule[~kept]).tolist():
+    parts = []
+    for rule in np.unique(acting.rule).tolist():
         own = acting.rule == rule
         place = acting.element[own], nearest(gauss(rule)[0], acting.xi[own])
         finer = to_more_points(rule, rule + extra)
@@ -130,14 +117,6 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
         parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
     joined = zip(*parts, strict=True)
     return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
-
-
-def _of_points(acting: Acting, own: np.ndarray) -> tuple[np.ndarray, ...]:
-    return tuple(getattr(acting, name)[own] for name in ("element", "xi", "rule", "position", "direction"))
-
-
-def _inside(xi: np.ndarray) -> np.ndarray:
-    return (xi > NEAR) & (xi < 1.0 - NEAR)
 
 
 def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
@@ -164,11 +143,11 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
     return Acting(_numbers(elements, where), xi, rule, position, direction, force, np.zeros_like(force))
 
 
-def _at_points(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
-    """Point loads, loads that follow and springs of foundations, as the kernels have them."""
+def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Loads along beams that follow or vary and springs of foundations, as the kernels have them."""
     actions = rows.system.actions[mesh.block]
     points, own = actions.points, actions.points.element - mesh.first_element
-    here = np.flatnonzero(np.isin(own, elements) & ((actions.rule > 0) | _inside(actions.xi)))
+    here = np.flatnonzero(np.isin(own, elements) & (actions.rule > 0))
     element, position, direction = _numbers(elements, own[here]), points.position[here], points.direction[here]
     values = rows.values[mesh.block][:, here]
     r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[here]

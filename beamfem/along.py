@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem import postprocess
-from beamfem.errors import InputError
 from beamfem.free_bodies import Cuts
 from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
 from beamfem.section_forces import at_points
 from beamfem.turns import turned_of
+from beamfem.validation import require_known, shown
 
 if TYPE_CHECKING:
     from beamfem.solution import Solution
@@ -84,7 +84,7 @@ class AxisPoints:
 
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
-    cuts = Cuts(points.element, points.xi, np.zeros(len(points.xi), dtype=bool))
+    cuts = Cuts(points.element, points.xi)
     found = at_points(solution, points.mesh, cuts, rows)
     return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
 
@@ -142,6 +142,5 @@ QUANTITIES = {
 
 def quantity(name: str) -> Quantity:
     """Return a quantity by its name. Raises InputError."""
-    if name not in QUANTITIES:
-        raise InputError(f"there is no quantity {name!r} along a beam; those that are: {', '.join(QUANTITIES)}")
+    require_known(f"there is no quantity {shown(name)} along a beam", name, QUANTITIES)
     return QUANTITIES[name]

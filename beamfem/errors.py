@@ -39,7 +39,11 @@ class LimitPointError(ConvergenceError):
 
 
 class FileError(BeamfemError, OSError):
-    """A file that the system does not let us write: no room, no permission, no such place."""
+    """A file that the system does not let us read or write: no room, no permission, no such place."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """A file to read that is not there."""
 
 
 class UnstableWarning(UserWarning):
@@ -48,6 +52,10 @@ class UnstableWarning(UserWarning):
 
 class ChangedCodeWarning(UserWarning):
     """Stored results of a sweep were computed before code that its function runs was changed."""
+
+
+class NotStoredWarning(UserWarning):
+    """The store of a sweep cannot be written any more, so that further results are not found by the next run."""
 
 
 class RoundOffWarning(UserWarning):

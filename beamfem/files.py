@@ -1,4 +1,7 @@
-"""Files that are written whole or not at all: beside their place first, and moved there when all of it is on disk."""
+"""Files of the user: their paths checked, read where they can be, written whole or not at all.
+
+What is written is written beside its place first, and moved there when all of it is on disk.
+"""
 
 import os
 from collections.abc import Iterator
@@ -7,7 +10,39 @@ from os import PathLike
 from pathlib import Path
 from uuid import uuid4
 
-from beamfem.errors import FileError
+from beamfem.errors import FileError, InputError, MissingFileError
+from beamfem.validation import shown
+
+
+def path_of(path: str | PathLike[str]) -> Path:
+    """Return a path. Raises InputError for what is none."""
+    try:
+        given = os.fspath(path)
+    except TypeError:
+        given = None
+    if not isinstance(given, str) or not given or "\0" in given:
+        raise InputError(f'a path is a text such as "out/result.h5", or a pathlib.Path, got {shown(path)}')
+    return Path(given)
+
+
+def readable(path: str | PathLike[str]) -> Path:
+    """Return the path of a file that can be opened. Raises InputError, FileNotFoundError, FileError."""
+    source = path_of(path)
+    try:
+        with source.open("rb"):
+            return source
+    except FileNotFoundError:
+        raise MissingFileError(f"there is no file {source}") from None
+    except OSError as error:
+        raise FileError(f"{source} cannot be read: {error.strerror or error}") from error
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it where they are not there. Raises FileError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"the folder {folder} cannot be made: {error.strerror or error}") from error
 
 
 @contextmanager
@@ -15,9 +50,10 @@ def whole(path: str | PathLike[str]) -> Iterator[Path]:
     """Give a path beside `path` to write to, with the same suffix; what is there takes the place of `path` at the end.
 
     Folders are made. Where writing fails the earlier file stays as it was and nothing is left behind; where the process
-    is killed, a file <stem>.<token>.part<suffix>. Raises FileError where the system refuses to write.
+    is killed, a file <stem>.<token>.part<suffix>. Raises InputError for what is no path, FileError where the system
+    refuses to write.
     """
-    target = Path(os.path.realpath(path))  # a link stays one
+    target = Path(os.path.realpath(path_of(path)))  # a link stays one
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.is_dir():

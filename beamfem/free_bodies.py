@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from beamfem.acting import NEAR, Acting, Rows, acting_on, at_more_points
+from beamfem.acting import Acting, Rows, acting_on, at_more_points
 from beamfem.element.axis import cross, dot
 from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import Block
@@ -22,14 +22,10 @@ from beamfem.spread import shares_before
 
 @dataclass(frozen=True, eq=False)
 class Cuts:
-    """Points of a beam (points,) that cut it, behind what acts there or before.
-
-    element, xi; behind: whether a load at the point itself is on the side of the beam's start.
-    """
+    """Points of a beam (points,) that cut it: element and xi."""
 
     element: np.ndarray
     xi: np.ndarray
-    behind: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +85,7 @@ class FreeBodies:
         share = np.empty(len(row))
         for rule in np.unique(acting.rule):
             own = np.flatnonzero(acting.rule[column] == rule)
-            at, cut = acting.xi[column[own]], cuts.xi[row[own]]
-            if rule:
-                share[own] = shares_before(int(rule), at, cut)
-            else:
-                share[own] = (at < cut - NEAR) | ((at < cut + NEAR) & cuts.behind[row[own]])
+            share[own] = shares_before(int(rule), acting.xi[column[own]], cuts.xi[row[own]])
         return coo_array((share, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from beamfem.errors import InputError
-from beamfem.validation import finite, positive
+from beamfem.validation import convert, finite, positive
 
 
 @dataclass(frozen=True)
@@ -18,11 +18,12 @@ class Material:
     density: float
 
     def __post_init__(self) -> None:
-        positive("youngs_modulus", self.youngs_modulus)
-        positive("density", self.density)
-        ratio = finite("poisson_ratio", self.poisson_ratio)
-        if not -1.0 < ratio < 0.5:
-            raise InputError(f"poisson_ratio must lie between -1 and 0.5 (both excluded), got {ratio}")
+        convert(self, positive, "youngs_modulus", "density")
+        convert(self, finite, "poisson_ratio")
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise InputError(
+                f"poisson_ratio of Material must lie between -1 and 0.5 (both excluded), got {self.poisson_ratio}"
+            )
 
     @property
     def shear_modulus(self) -> float:

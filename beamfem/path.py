@@ -94,7 +94,7 @@ class Path(Solution):
     def __getitem__(self, row: slice) -> Solution: ...
     def __getitem__(self, row: int | slice) -> PathState | Solution:
         """Return the state of a row, or a Solution of the rows of a slice, without limit points and bifurcations."""
-        return self._state(row) if isinstance(row, int) else super().__getitem__(row)
+        return super().__getitem__(row)  # type: ignore[return-value]
 
     def _state(self, row: int) -> PathState:
         stability = None if self.stability is None else bool(self.stability[row])

@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.acting import Rows, concentrated, rows_of
+from beamfem.acting import Rows, rows_of
 from beamfem.free_bodies import Cuts, cut_free
 from beamfem.last_digits import exactly
-from beamfem.loading import loading
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
 from beamfem.postprocess import SectionForces
@@ -22,7 +21,7 @@ _VALUES = 2_000_000  # in one array
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     """Return the section forces of a beam at both ends of every element, and inside; see `SectionForces`."""
     mesh = solution.model.mesh_of(beam.start)
-    cuts = _stations(solution, mesh)
+    cuts = _stations(mesh)
     found = at_points(solution, mesh, cuts)
     arc = mesh.arc_length(cuts.element, cuts.xi)
     arc = np.where(cuts.xi == 0.0, mesh.vertices[cuts.element], arc)
@@ -48,12 +47,7 @@ def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, cuts: Cuts, p: np
     return cut_free(rows, mesh, elements, p).at(cuts)
 
 
-def _stations(solution: "Solution", mesh: BeamMesh) -> Cuts:
-    """Return the ends and Gauss points of every element, and both sides of point loads inside of elements."""
+def _stations(mesh: BeamMesh) -> Cuts:
+    """Return the ends and Gauss points of every element."""
     own = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
-    loaded, at = concentrated(loading(solution)[0], mesh)
-    element = np.concatenate([np.repeat(np.arange(mesh.elements), len(own)), loaded, loaded])
-    xi = np.concatenate([np.tile(own, mesh.elements), at, at])
-    behind = np.repeat([False, True], [len(element) - len(at), len(at)])
-    order = np.lexsort((behind, xi, element))
-    return Cuts(element[order], xi[order], behind[order])
+    return Cuts(np.repeat(np.arange(mesh.elements), len(own)), np.tile(own, mesh.elements))

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from operator import index
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -20,6 +19,7 @@ from beamfem.model.reference import reference_position
 from beamfem.postprocess import Fields, SectionForces
 from beamfem.status import Status
 from beamfem.turns import start_rotations, turned_of
+from beamfem.validation import number_below, shown
 
 if TYPE_CHECKING:
     from beamfem.energy_drift import EnergyDrift
@@ -98,11 +98,11 @@ class Solution:
         """
         if isinstance(row, slice):
             return self._rows(row)
-        try:
-            number = index(row)
-        except TypeError:
-            raise InputError(f"a row of a solution is a number or a slice such as solution[2:5], got {row!r}") from None
-        return self._state(number)
+        if isinstance(row, bool) or not isinstance(row, int | np.integer):
+            raise InputError(f"a row of a solution is a number or a slice such as solution[2:5], got {shown(row)}")
+        if not -len(self) <= row < len(self):
+            raise IndexError(f"the solution has {len(self)} rows, so there is no row {row}")
+        return self._state(int(row))
 
     def _state(self, row: int) -> State:
         turned = start_rotations(self)[row]
@@ -173,7 +173,7 @@ class Solution:
 
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        forces = at_points(self, mesh, Cuts(element, xi, np.array([True])))
+        forces = at_points(self, mesh, Cuts(element, xi))
         found = postprocess.fields(mesh, self.p, element, xi, forces, turned_of(self, mesh))
         return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
@@ -260,12 +260,13 @@ class Solution:
 
         Knots are those of the beam's own spline, or arc lengths. Raises InputError for other elements.
         """
-        mesh = self.model.mesh_of(beam.start)
+        mesh = self.model.meshes[self.model.number_of(beam)]
         if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
             raise InputError(
                 f"the axis of {beam.element.name} elements is no cubic spline; cubic ones such as ANCF are"
             )
-        e = postprocess.nodal_vectors(mesh, self.p[row][None])[0]
+        number = number_below("row", row, len(self), -len(self))
+        e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
     def to_vtk(self, path: str | PathLike[str]) -> None:

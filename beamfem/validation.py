@@ -2,7 +2,8 @@
 
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from contextlib import suppress
 from difflib import get_close_matches
 from functools import cache
 from typing import Any
@@ -11,20 +12,38 @@ import numpy as np
 
 from beamfem.errors import InputError
 
+# norms take squares, which must be neither infinite nor without digits
+SMALLEST, LARGEST = math.sqrt(np.finfo(float).tiny), math.sqrt(np.finfo(float).max)
+_MOST = 2**53  # from here on, floating-point numbers cannot count
+_SHOWN = 200  # characters of a value in a message
 
-def _number(value: Any) -> Any:
-    """Refuse text and truth values: float() would read them, and they are not what was meant."""
-    if isinstance(value, str | bytes | bool | np.bool_):
+
+def shown(value: Any) -> str:
+    """Return a value as a message shows it: cut where it is long, its class where it has no text."""
+    try:
+        text = repr(value)
+    except Exception:
+        return f"an object of {type(value).__name__}"
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+
+
+def _number(value: Any) -> float:
+    """Return a float of what is one number; float() would read text and truth values as well, and cut complex ones."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, str | bytes | bool | np.bool_ | np.complexfloating | np.ndarray):
         raise TypeError
-    return value
+    return float(value)
 
 
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float, or raise InputError naming it."""
     try:
-        number = float(_number(value))
+        number = _number(value)
     except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number, got {value!r}") from None
+        raise InputError(f"{name} must be a number, got {shown(value)}") from None
+    except OverflowError:
+        raise InputError(f"{name} must be a number below 1.8e308, the largest in double precision") from None
     if not math.isfinite(number):
         raise InputError(f"{name} must be finite, got {number}")
     return number
@@ -41,16 +60,81 @@ def positive(name: str, value: Any) -> float:
 def count(name: str, value: Any) -> int:
     """Return `value` as an integer of at least one, or raise InputError naming it."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise InputError(f"{name} must be a whole number, got {value!r}")
+        raise InputError(f"{name} must be a whole number, got {shown(value)}")
     if value < 1:
         raise InputError(f"{name} must be at least 1, got {value}")
+    if value > _MOST:
+        raise InputError(f"{name} must be at most 2^53, about 9e15")
     return int(value)
+
+
+def number_below(name: str, value: Any, size: int, lowest: int = 0) -> int:
+    """Return `value` as an integer from `lowest` to size - 1, or raise InputError naming it."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise InputError(f"{name} must be a whole number, got {shown(value)}")
+    if not lowest <= value < size:
+        raise InputError(f"{name} must be between {lowest} and {size - 1}, got {shown(value)}")
+    return int(value)
+
+
+def convert(item: object, check: Callable[[str, Any], Any], *names: str) -> None:
+    """Replace attributes of a frozen dataclass by what a check returns; it names them "<name> of <class>"."""
+    kind = type(item).__name__
+    for name in names:
+        object.__setattr__(item, name, check(f"{name} of {kind}", getattr(item, name)))
+
+
+def items(name: str, values: Any) -> list[Any]:
+    """Return what a list, tuple or array holds, or raise InputError naming it: text, sets and mappings are none."""
+    if not isinstance(values, str | bytes | bytearray | Set | Mapping):
+        with suppress(TypeError):
+            return list(values)
+    raise InputError(f"{name} must be a list, got {shown(values)}")
+
+
+def text(name: str, value: Any) -> str:
+    """Return `value` if it is text, or raise InputError naming it."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} must be a text, got {shown(value)}")
+    return value
+
+
+def squared(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
+    """Return a check that refuses numbers, other than zero, whose square double precision does not hold as well."""
+
+    def checked(name: str, value: Any) -> Any:
+        found = check(name, value)
+        for number in found if isinstance(found, tuple) else (found,):
+            if number != 0.0 and not SMALLEST <= abs(number) <= LARGEST:
+                raise InputError(
+                    f"{name} is {number:g}, which double precision cannot square ({SMALLEST:.1g} to {LARGEST:.1g}); "
+                    "take zero, or units in which it is closer to 1"
+                )
+        return found
+
+    return checked
+
+
+def optional(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
+    """Return a check that lets None pass."""
+    return lambda name, value: None if value is None else check(name, value)
+
+
+def number_table(name: str, values: Any, columns: int) -> np.ndarray:
+    """Return `values` as an array (n, columns) of finite numbers, or raise InputError naming it."""
+    try:
+        found = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        found = np.empty(0)
+    if found.dtype.kind not in "iuf" or found.ndim != 2 or found.shape[1] != columns or not np.isfinite(found).all():
+        raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got {shown(values)}")
+    return found
 
 
 def flag(name: str, value: Any) -> bool:
     """Return `value` as True or False, or raise InputError naming it: text and numbers count as neither."""
     if not isinstance(value, bool | np.bool_):
-        raise InputError(f"{name} must be True or False, got {value!r}")
+        raise InputError(f"{name} must be True or False, got {shown(value)}")
     return bool(value)
 
 
@@ -59,26 +143,48 @@ def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:
     if isinstance(value, str | type(None)) and value in allowed:
         return
     listed = [f'"{item}"' if isinstance(item, str) else repr(item) for item in allowed]
-    message = f"{name} must be {', '.join(listed[:-1])} or {listed[-1]}, got {value!r}"
-    near = get_close_matches(value, [item for item in allowed if item], 1) if isinstance(value, str) else []
-    raise InputError(f'{message}; did you mean "{near[0]}"?' if near else message)
+    message = f"{name} must be {', '.join(listed[:-1])} or {listed[-1]}, got {shown(value)}"
+    near = _nearest(value, [item for item in allowed if item])
+    raise InputError(f'{message}; did you mean "{near}"?' if near else message)
+
+
+def require_known(sentence: str, name: Any, known: Iterable[str]) -> None:
+    """Raise InputError where a name is none of those known: the sentence, the nearest and all that there are."""
+    known = list(known)
+    if not isinstance(name, str) or name not in known:
+        raise InputError(f"{sentence}; {nearest(name, known)}")
+
+
+def nearest(word: Any, known: Iterable[str]) -> str:
+    """Return in words what a name could have meant."""
+    known = list(known)
+    near = _nearest(word, known)
+    listed = ", ".join(known) if known else "none"
+    return f"did you mean {near}? Known are {listed}" if near else f"known are {listed}"
+
+
+def _nearest(word: Any, known: Sequence[str]) -> str | None:
+    if not isinstance(word, str):
+        return None
+    close = get_close_matches(word.lower(), [name.lower() for name in known], 1)
+    return next((name for name in known if close and name.lower() == close[0]), None)
 
 
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return `value` as two finite floats, or raise InputError naming it."""
     try:
-        numbers = tuple(float(_number(component)) for component in value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be two numbers (x, y), got {value!r}") from None
+        numbers = tuple(map(_number, items(name, value)))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} must be two numbers (x, y), got {shown(value)}") from None
     if len(numbers) != 2 or not all(map(math.isfinite, numbers)):
-        raise InputError(f"{name} must be two finite numbers (x, y), got {value!r}")
+        raise InputError(f"{name} must be two finite numbers (x, y), got {shown(value)}")
     return numbers[0], numbers[1]
 
 
 def fulfils(item: object, protocol: type) -> bool:
     """Tell whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
     kind = type(item)
-    return all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
+    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
 
 
 @cache
@@ -96,7 +202,7 @@ def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
     try:
         return function(*arguments)
     except Exception as error:
-        given = ", ".join(f"{value:g}" if isinstance(value, float) else repr(value) for value in arguments)
+        given = ", ".join(f"{value:g}" if isinstance(value, float) else shown(value) for value in arguments)
         what = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         raise InputError(f"{name}({given}) cannot be computed: {what}") from error
 
@@ -104,7 +210,7 @@ def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
 def function_of_one(name: str, function: Any, argument: str) -> None:
     """Raise InputError where `function` cannot be called with one argument, the `argument`."""
     if not callable(function):
-        raise InputError(f"{name} must be a function of {argument}, got {function!r}")
+        raise InputError(f"{name} must be a function of {argument}, got {shown(function)}")
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):  # some compiled functions have none

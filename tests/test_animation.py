@@ -2,6 +2,7 @@
 
 import sys
 from itertools import pairwise
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -76,6 +77,7 @@ def test_mp4_gives_every_frame_to_ffmpeg(falling, tmp_path, monkeypatch):
                 seen["frames"].append(picture)
                 picture = yield
         finally:
+            Path(path).write_bytes(b"a video")
             seen["closed"] = True
 
     library = ModuleType("imageio_ffmpeg")
@@ -88,6 +90,7 @@ def test_mp4_gives_every_frame_to_ffmpeg(falling, tmp_path, monkeypatch):
     assert all(picture.shape == (height, width, 3) and picture.dtype == np.uint8 for picture in seen["frames"])
     assert seen["fps"] == pytest.approx(10.0)
     assert seen["closed"]
+    assert (tmp_path / "fall.mp4").read_bytes() == b"a video"
 
 
 def test_mp4_of_ffmpeg(falling, tmp_path):

@@ -155,7 +155,7 @@ def test_only_one_layer(read):
         space.add_text("a beam", dxfattribs={"layer": "notes"})
 
     assert read(draw, "axes") == (Line((0, 0), (1, 0)),)
-    with pytest.raises(InputError, match=r"nothing is drawn in layer 'beams'; layers with entities: Axes, notes"):
+    with pytest.raises(InputError, match=r"nothing is drawn in layer 'beams'; known are Axes, notes"):
         read(draw, "beams")
     with pytest.raises(InputError, match=r"TEXT on layer 'notes', handle [0-9A-F]+, is no curve"):
         read(draw)

@@ -246,11 +246,11 @@ BAD = {
     "a function that gives a number": (lambda: a_beam(lambda s: 0.1), r"arc length 0 m must be a section"),
     "a height below zero at the end": (
         lambda: a_beam(lambda s: bf.Rectangle(0.1, 0.1 - 0.2 * s)),
-        r"arc length 0\.5 m.*height",
+        r"section\(0\.5\) .*height",
     ),
     "a height below zero between": (
         lambda: run(lambda s: bf.Rectangle(0.1, 1.0 if abs(s - 0.7) > 0.1 else -1.0)),
-        r"arc length 0\.\d+ m.*height",
+        r"section\(0\.\d+\) .*height",
     ),
     "no material somewhere": (lambda: run(lambda s: LAYERS if s > 0.5 else "steel"), "arc length 0 m"),
     "elements that fall": (lambda: a_beam(SQUARE, elements=[0.0, 0.5, 0.4, 1.0]), "rise"),

@@ -9,6 +9,7 @@ import numpy as np
 
 from beamfem.analysis.balance import left_over
 from beamfem.analysis.critical import LIMIT_POINT, Critical, critical_points
+from beamfem.analysis.eigenpairs import digits_for
 from beamfem.analysis.equations import STATICS, linearise, load_slope
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.initial import resting_state
@@ -21,7 +22,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
-from beamfem.validation import positive
+from beamfem.validation import number_below, positive
 
 _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
@@ -66,8 +67,7 @@ class Buckling:
         """
         if len(self) == 0:
             raise InputError(f"there is no critical point: {self.ended}")
-        if mode not in range(len(self)):
-            raise InputError(f"mode must be between 0 and {len(self) - 1}, got {mode!r}")
+        mode = number_below("mode", mode, len(self))
         if amplitude is None:
             amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
         p = self.states[mode] + np.outer([0.0, positive("amplitude", amplitude)], self.modes[mode])
@@ -96,10 +96,11 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     unknown = len(system.free_dofs)
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
-    p, load_factor = _stable_start(system, about)
-    path = LoadingPath(system, p, load_factor)
-    slope = path.start.tangent[:-1] / path.start.tangent[-1]
-    linearised = linearised_loads(system, p, load_factor, slope, count)
+    with digits_for("critical load factors"):
+        p, load_factor = _stable_start(system, about)
+        path = LoadingPath(system, p, load_factor)
+        slope = path.start.tangent[:-1] / path.start.tangent[-1]
+        linearised = linearised_loads(system, p, load_factor, slope, count)
     linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
     if not len(linearised):
         raise InputError(
@@ -107,7 +108,8 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
             "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
         )
     farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
-    found, ended = _criticals(path, count, farthest)
+    with digits_for("critical load factors"):
+        found, ended = _criticals(path, count, farthest)
     if not found and path.lost:
         raise ConvergenceError(
             f"the loading path was lost before any load factor was critical: {ended}", path.solution()

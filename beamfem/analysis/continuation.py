@@ -10,6 +10,7 @@ from beamfem.analysis.equations import STATICS, linearise, load_slope, predicted
 from beamfem.analysis.newton import Ended, Newton, verdict
 from beamfem.analysis.round_off import loses_digits
 from beamfem.analysis.tangent import Factorised
+from beamfem.errors import ConvergenceError
 from beamfem.model.system import System
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
@@ -198,7 +199,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     A soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
     prescribed motions are that large. The load scale lies between it and many times it, where possible so that the
     tangent of the first point is as much movement as load. Neither depends on the size of the loads or on units.
-    Raises LinAlgError where the tangent is singular.
+    Raises LinAlgError where the tangent is singular, ConvergenceError where loads are too large or small to go on.
     """
     plain = Continuation(system, newton, 1.0, 1.0)
     rest = np.zeros(len(p))
@@ -210,6 +211,11 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     # an amplitude may start with slope zero: then what it does up to load factor 1 tells
     per_load = _reach(plain, p, load_factor, stiffness, 1e-6) or _reach(plain, p, load_factor, stiffness, 1.0)
     soft = 1.0 / per_load if per_load > 0.0 else 1.0
+    if not np.finfo(float).tiny <= soft * soft < np.inf:
+        raise ConvergenceError(
+            f"the loads would move this model by {per_load:.1g} times its size, which double precision cannot square; "
+            "take loads closer to its stiffness"
+        )
     growing = np.zeros(len(p) + 1)
     growing[-1] = 1.0
     y = np.append(p, load_factor)

@@ -21,7 +21,7 @@ from beamfem.model.turns import turning_pairs
 from beamfem.solution import Solution, State, Statistics
 from beamfem.status import Status
 from beamfem.turns import first_turns
-from beamfem.validation import count, positive
+from beamfem.validation import count, positive, shown
 
 
 def simulate(
@@ -40,13 +40,11 @@ def simulate(
     Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails. Any other
     exception on the way, such as KeyboardInterrupt, gets the states so far as its `solution` as well.
     """
-    positive("duration", duration)
-    positive("step", step)
-    count("save_every", save_every)
+    duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
     if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
-        raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {integrator!r}")
+        raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {shown(integrator)}")
     system = system_of(model, static=False)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)

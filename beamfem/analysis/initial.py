@@ -15,7 +15,7 @@ from beamfem.model.reference import reference_position
 from beamfem.model.system import System, coordinate_columns
 from beamfem.postprocess import nodal_vectors
 from beamfem.solution import Solution, State
-from beamfem.validation import called, finite, vector
+from beamfem.validation import called, convert, finite, vector
 
 _NEAR = 0.01  # of an element, between the points of a difference
 _FORWARD = (-25.0, 48.0, -36.0, 16.0, -3.0)  # twelfths
@@ -30,9 +30,8 @@ class RigidVelocity:
     about: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vector", vector("vector of RigidVelocity", self.vector))
-        object.__setattr__(self, "about", vector("about of RigidVelocity", self.about))
-        finite("angular", self.angular)
+        convert(self, vector, "vector", "about")
+        convert(self, finite, "angular")
 
 
 def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:

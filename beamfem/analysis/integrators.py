@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.validation import finite
+from beamfem.validation import convert, finite
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,8 @@ class GeneralizedAlpha:
     rho_inf: float = 0.9
 
     def __post_init__(self) -> None:
-        if not 0.0 <= finite("rho_inf", self.rho_inf) <= 1.0:
+        convert(self, finite, "rho_inf")
+        if not 0.0 <= self.rho_inf <= 1.0:
             raise InputError(f"rho_inf lies between 0 and 1, got {self.rho_inf}")
 
     def rule(self, step: float) -> np.ndarray:

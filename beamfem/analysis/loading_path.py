@@ -10,7 +10,7 @@ from beamfem.analysis.lowest import lowest_pairs
 from beamfem.analysis.newton import Newton
 from beamfem.analysis.pencil import Pencil
 from beamfem.analysis.steps import longest_step, too_small
-from beamfem.errors import BeamfemError
+from beamfem.errors import BeamfemError, ConvergenceError
 from beamfem.model.system import System
 from beamfem.solution import Solution, Statistics
 
@@ -123,6 +123,8 @@ class LoadingPath:
         while shift is not None and pencil.below(shift) > 0:
             shift *= 4.0
         found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
+        if not len(found[0]):
+            raise ConvergenceError("round-off leaves the softest modes of the tangent no digits")
         # of the size of the lowest values, which change little from here to the next state
         self._shift = 2.0 * min(float(found[0][0]), 0.0) - float(np.abs(found[0][:2]).max())
         return Softest(found[0][:count], found[1][:, :count])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.analysis.balance import left_over
-from beamfem.analysis.eigenpairs import Pairs, general_pairs, nothing_known
+from beamfem.analysis.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.analysis.initial import resting_state
 from beamfem.analysis.lowest import lowest_pairs
 from beamfem.analysis.pencil import UNTURNED, Pencil
@@ -18,7 +18,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.solution import Solution, State, Statistics
 from beamfem.validation import count as whole_number
-from beamfem.validation import positive
+from beamfem.validation import number_below, positive
 
 _REAL = 1e-8  # imaginary parts of lambda below this share are round-off
 _SPARE = 4  # eigenvalues found beyond those asked for
@@ -67,8 +67,7 @@ class Modes:
         mode: its row; amplitude [m] of the largest displacement of a node, by default a tenth of the longest beam.
         Exact while the amplitude is small.
         """
-        if mode not in range(len(self)):
-            raise InputError(f"mode must be between 0 and {len(self) - 1}, got {mode!r}")
+        mode = number_below("mode", mode, len(self))
         if whole_number("frames", frames) < 2:
             raise InputError("frames must be at least 2")
         if amplitude is None:
@@ -117,9 +116,10 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
         )
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")
-    rigid, words = unresisted(pencil)
-    missing = max(count - len(rigid), 0)
-    squares, vectors = (lowest_pairs if pencil.symmetric else _general)(pencil, missing, rigid[:, system.free_dofs].T)
+    with digits_for("modes"):
+        rigid, words = unresisted(pencil)
+        missing, free = max(count - len(rigid), 0), rigid[:, system.free_dofs].T
+        squares, vectors = (lowest_pairs if pencil.symmetric else _general)(pencil, missing, free)
     rates = _rates(squares)
     order = np.lexsort((-rates.real, rates.imag))
     shapes = np.zeros((missing, model.size), dtype=vectors.dtype)

@@ -26,7 +26,7 @@ from beamfem.kernels.balance import smallest_jacobian
 from beamfem.kernels.equilibrate import equilibrate
 from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
-from beamfem.validation import count, flag, positive
+from beamfem.validation import convert, count, flag, positive, shown
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 _SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
@@ -82,10 +82,14 @@ class Newton:
     independent_stresses: bool = True
 
     def __post_init__(self) -> None:
-        positive("tolerance", self.tolerance)
-        positive("residual_tolerance", self.residual_tolerance)
-        count("iterations", self.iterations)
-        flag("independent_stresses", self.independent_stresses)
+        convert(self, positive, "tolerance", "residual_tolerance")
+        convert(self, count, "iterations")
+        convert(self, flag, "independent_stresses")
+        if max(self.tolerance, self.residual_tolerance) >= 1.0:
+            raise InputError(
+                "tolerance and residual_tolerance of Newton are shares of the model and of its loads, below 1, got "
+                f"{self.tolerance:g} and {self.residual_tolerance:g}"
+            )
 
 
 def require_newton(newton: Newton | None, default: Newton) -> Newton:
@@ -93,7 +97,7 @@ def require_newton(newton: Newton | None, default: Newton) -> Newton:
     if newton is None:
         return default
     if not isinstance(newton, Newton):
-        raise InputError(f"newton must be a Newton(tolerance=..., iterations=...), got {newton!r}")
+        raise InputError(f"newton must be a Newton(tolerance=..., iterations=...), got {shown(newton)}")
     return newton
 
 

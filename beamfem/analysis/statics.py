@@ -35,7 +35,7 @@ def solve_through(
     model: Model, stops: Sequence[float], steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error"
 ) -> Solution:
     """Return the same with rows at load factors `stops` in between."""
-    count("steps", steps)
+    steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
     system = system_of(model, static=True)
     tell_of_compilation()

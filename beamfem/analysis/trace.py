@@ -21,7 +21,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.path import Bifurcation, Path, PathState
 from beamfem.progress import progress
-from beamfem.validation import count, finite, positive
+from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
 _ITERATIONS = 15  # a shorter step is cheaper than more
@@ -52,15 +52,19 @@ def trace_equilibrium(
     cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
     Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
     """
-    if until is not None and not callable(until):
-        until = finite("until", until)
+    if callable(until):
+        function_of_one("until", until, "a state of the path")
+    else:
+        until = optional(finite)("until", until)
     if step is not None:
-        positive("step", step)
+        step = positive("step", step)
         if start is not None:
             raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
     count("points", points)
+    if direction is not None and (isinstance(direction, bool) or not isinstance(direction, int | np.integer)):
+        raise InputError(f"direction must be 1 or -1, got {shown(direction)}")
     if direction not in (None, 1, -1):
-        raise InputError(f"direction must be 1 or -1, got {direction!r}")
+        raise InputError(f"direction must be 1 or -1, got {direction}")
     if direction is None:
         direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
@@ -72,6 +76,8 @@ def trace_equilibrium(
     with kept(lambda: record.path() if record.points else None), progress("points of the path", points) as report:
         line, point = _first(system, newton, record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
+        if step is not None and too_small(line, point, size):
+            raise InputError(f"step must be larger: {step:g} of the load factor moves the model by round-off only")
         if start is None:
             point = replace(point, tangent=direction * point.tangent)
             record.add(point.y, point.negative_pivots == 0)

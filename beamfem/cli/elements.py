@@ -3,9 +3,9 @@
 import re
 
 from beamfem.cli.modelfile.parts import ELEMENTS
-from beamfem.cli.modelfile.table import nearest
 from beamfem.element.element import CRBF, Element
 from beamfem.errors import InputError
+from beamfem.validation import nearest
 
 _TEXT = re.compile(r"(?P<name>\w+)(?:\((?P<order>\d+)\))?")
 

@@ -66,8 +66,8 @@ def find_studies(folder: Path) -> list[Study]:
 
 
 def _named(name: str, studies: list[Study], folder: Path) -> Study:
-    from beamfem.cli.modelfile.table import nearest
     from beamfem.errors import InputError
+    from beamfem.validation import nearest
 
     for item in studies:
         if item.name == name.removesuffix(".py"):

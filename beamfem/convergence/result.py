@@ -11,6 +11,7 @@ import numpy as np
 from beamfem import tabulate
 from beamfem.convergence.curve import Curve
 from beamfem.sweeps.tasks import Failure
+from beamfem.validation import flag
 
 EXPLANATION = (
     "Order between a value and the one before it; order of a curve: slope of the least-squares line of log error over "
@@ -57,6 +58,7 @@ class Convergence:
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
         others = list(dict.fromkeys(name for curve in self.curves for name in curve.others))
+        flag("rounded", rounded)
         header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
         rows = []
         for curve in self.curves:

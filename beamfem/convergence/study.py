@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem import validation
 from beamfem.convergence.curve import Curve, judge
 from beamfem.convergence.expected import highest_order
 from beamfem.convergence.result import Convergence
@@ -14,7 +15,7 @@ from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
-from beamfem.validation import finite, positive
+from beamfem.validation import finite, optional, positive, require_known, shown
 
 MOST_DOUBLINGS = 8
 
@@ -55,11 +56,12 @@ def converge(
     Raises InputError; BeamfemError where no worker starts.
     """
     varied, fixed = split(parameters)
-    if refine not in varied:
-        raise InputError(f"refine names the parameter {refine!r}, which must be given as a list of values")
+    require_known(
+        f"refine names the parameter {shown(refine)}, which must be given as a list of values", refine, varied
+    )
+    optional(validation.text)("quantity", quantity)
     refinement, counts = _from_coarse_to_fine(refine, varied.pop(refine))
-    reference = None if reference is None else finite("reference", reference)
-    goal = None if until is None else positive("until", until)
+    reference, goal = optional(finite)("reference", reference), optional(positive)("until", until)
     lines = _lines(function, varied, fixed)
     check_call(function, lines[0].parameters | {refine: refinement[0]})
     with TaskRunner(function, executor) as runner:
@@ -132,8 +134,7 @@ def _quantity(value: Any, quantity: str | None) -> str | None:
         return None
     if quantity is None and len(value) == 1:
         return str(next(iter(value)))
-    if quantity not in value:
-        raise InputError(f"quantity must be one of {', '.join(value)}, which the function returns; got {quantity!r}")
+    require_known(f"quantity must be one that the function returns, got {quantity!r}", quantity, value)
     return quantity
 
 

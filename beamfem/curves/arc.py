@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.validation import finite, positive, vector
+from beamfem.validation import convert, finite, positive, vector
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,9 @@ class Arc:
     end_angle: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "center", vector("center", self.center))
-        object.__setattr__(self, "radius", positive("radius", self.radius))
-        object.__setattr__(self, "start_angle", finite("start_angle", self.start_angle))
-        object.__setattr__(self, "end_angle", finite("end_angle", self.end_angle))
+        convert(self, vector, "center")
+        convert(self, positive, "radius")
+        convert(self, finite, "start_angle", "end_angle")
         if self.start_angle == self.end_angle:
             raise InputError(f"an Arc needs two different angles, start_angle and end_angle are both {self.end_angle}")
 

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import numbers, points, turned, unit
 from beamfem.errors import InputError
-from beamfem.validation import count
+from beamfem.validation import convert, count, optional
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,10 @@ class BSpline:
     weights: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "degree", count("degree", self.degree))
+        convert(self, count, "degree")
         object.__setattr__(self, "knots", numbers("knots", self.knots))
         object.__setattr__(self, "control_points", points("control_points", self.control_points))
-        if self.weights is not None:
-            object.__setattr__(self, "weights", numbers("weights", self.weights))
+        object.__setattr__(self, "weights", optional(numbers)("weights", self.weights))
         self._check_counts()
         self._check_knots()
         _ = self._arc_length  # refuses cusps

@@ -9,6 +9,8 @@ from beamfem.curves.curve import points
 from beamfem.errors import InputError
 from beamfem.validation import finite, vector
 
+_MOST_TURNS = 1000
+
 
 def elliptic_arc(
     center: Sequence[float], first: Sequence[float], second: Sequence[float], start: float, end: float
@@ -23,9 +25,18 @@ def elliptic_arc(
     begin, turn = finite("start", start), finite("end", end) - finite("start", start)
     if turn == 0.0:
         raise InputError(f"an elliptic arc needs two different angles, start and end are both {begin}")
-    if one[0] * two[1] == one[1] * two[0]:
+    with np.errstate(over="ignore", invalid="ignore"):
+        area = one[0] * two[1] - one[1] * two[0]
+    if not np.isfinite(area):
+        raise InputError(f"the half diameters of an elliptic arc are too large to be multiplied, got {one} and {two}")
+    if area == 0.0:
         raise InputError(f"the half diameters of an elliptic arc must not be parallel, got {first!r} and {second!r}")
-    pieces = int(np.ceil(abs(turn) / (np.pi / 2) - 1e-12))
+    if not abs(turn) <= 2.0 * np.pi * _MOST_TURNS:
+        raise InputError(
+            f"an elliptic arc turns at most {_MOST_TURNS} times, got {abs(turn) / (2.0 * np.pi):.3g} turns from start "
+            f"({start:g}) to end ({end:g}); angles are in rad"
+        )
+    pieces = max(1, int(np.ceil(abs(turn) / (np.pi / 2) - 1e-12)))
     angles = begin + turn * np.arange(2 * pieces + 1) / (2 * pieces)
     weights = np.ones(len(angles))
     weights[1::2] = np.cos(turn / (2 * pieces))

@@ -5,8 +5,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from beamfem.errors import InputError
-from beamfem.validation import finite, vector
+from beamfem.validation import finite, items, vector
 
 # A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
 CORNER = 1e-8
@@ -47,16 +46,9 @@ def turned(before: np.ndarray, after: np.ndarray, limit: float = CORNER) -> np.n
 
 def points(name: str, values: Sequence[Any] | np.ndarray) -> tuple[tuple[float, float], ...]:
     """Return `values` as a tuple of finite points, or raise InputError naming the one that is none."""
-    return tuple(vector(f"{name}[{i}]", value) for i, value in enumerate(_sequence(name, values)))
+    return tuple(vector(f"{name}[{i}]", value) for i, value in enumerate(items(name, values)))
 
 
 def numbers(name: str, values: Sequence[Any] | np.ndarray) -> tuple[float, ...]:
     """Return `values` as a tuple of finite floats, or raise InputError naming the one that is none."""
-    return tuple(finite(f"{name}[{i}]", value) for i, value in enumerate(_sequence(name, values)))
-
-
-def _sequence(name: str, values: Any) -> list[Any]:
-    try:
-        return list(values)
-    except TypeError:
-        raise InputError(f"{name} must be a list, got {values!r}") from None
+    return tuple(finite(f"{name}[{i}]", value) for i, value in enumerate(items(name, values)))

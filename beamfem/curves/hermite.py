@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.curves.bspline import BSpline
-from beamfem.curves.curve import points
+from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
+from beamfem.validation import shown
 
 # Largest distance between two splines, as a share of their largest coordinate (times the ratio of neighbouring spans),
 # up to which they are the same: about a hundred times the round-off that was measured.
@@ -23,12 +24,13 @@ def spline_through_hermite(
     Exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
     Raises InputError where u does not increase or the numbers do not match.
     """
-    knots, position, rate = (np.asarray(values, dtype=float) for values in (u, r, r_u))
-    if knots.ndim != 1 or len(knots) < 2 or not np.all(np.diff(knots) > 0.0):
-        raise InputError(f"u must be at least two increasing numbers, got {u!r}")
+    knots = np.array(numbers("u", u))
+    if len(knots) < 2 or not np.all(np.diff(knots) > 0.0):
+        raise InputError(f"u must be at least two increasing numbers, got {shown(u)}")
+    position, rate = (np.array(points(name, values)) for name, values in (("r", r), ("r_u", r_u)))
     for name, values in (("r", position), ("r_u", rate)):
-        if values.shape != (len(knots), 2) or not np.isfinite(values).all():
-            raise InputError(f"{name} must be {len(knots)} finite points (x, y), one for each u, got {values!r}")
+        if len(values) != len(knots):
+            raise InputError(f"{name} must be {len(knots)} finite points (x, y), one for each u, got {len(values)}")
     return _spline(knots, _bezier(knots, position, rate), np.full(len(knots) - 2, 2))
 
 
@@ -39,6 +41,8 @@ def without_removable_knots(spline: BSpline) -> BSpline:
     spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends come back clamped.
     Raises InputError unless `spline.hermite()` exists.
     """
+    if not isinstance(spline, BSpline):
+        raise InputError(f"knots are removed from a BSpline, got {shown(spline)}")
     u, r, r_u = spline.hermite()
     bezier = _bezier(u, r, r_u)
     h = np.diff(u)[:, None]

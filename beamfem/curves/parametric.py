@@ -12,7 +12,7 @@ from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
-from beamfem.validation import called, finite
+from beamfem.validation import called, convert, finite
 
 PlaneFunction = Callable[[Any], Any]
 
@@ -38,8 +38,7 @@ class Parametric:
         for name, value in (("function", self.function), ("derivative", self.derivative)):
             if not callable(value) and not (name == "derivative" and value is None):
                 raise InputError(f"{name} of a Parametric must be a function of u, got {value!r}")
-        object.__setattr__(self, "start", finite("start", self.start))
-        object.__setattr__(self, "end", finite("end", self.end))
+        convert(self, finite, "start", "end")
         if self.start == self.end:
             raise InputError(f"a Parametric needs two different parameters, start and end are both {self.start}")
         _ = self._arc_length  # refuses cusps

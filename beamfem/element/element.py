@@ -11,7 +11,7 @@ from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
-from beamfem.validation import flag, one_of
+from beamfem.validation import flag, one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
 
@@ -35,10 +35,11 @@ class Element:
 
     def __post_init__(self) -> None:
         one_of("integration", self.integration, ("full", "reduced", "lobatto", None))
+        optional(text)("label of an element", self.label)
         kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
         for name, kind in kinds:
-            if not isinstance(getattr(self, name), kind):
-                raise InputError(f"{name} of an element must be one of {kind}, got {getattr(self, name)!r}")
+            if isinstance(getattr(self, name), type) or not isinstance(getattr(self, name), kind):
+                raise InputError(f"{name} of an element must be one of {kind}, got {shown(getattr(self, name))}")
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:
             free_of_locking = has_slope and isinstance(self.forces, Structural | ElasticLine)
@@ -108,22 +109,22 @@ class Element:
 
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
-    return Element(Cubic(), Gradients(), forces or ContinuumMechanics(), integration, "ANCF")
+    return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
-    return Element(Cubic(), Rotation(), forces or ContinuumMechanics(), integration, "ANCF-CRBF")
+    return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by gradients, 4 coordinates a node; paper, eqs. (8) to (10)."""
-    return Element(Lagrange(1), Gradients(), forces or ContinuumMechanics(), integration, "bilinear-ANCF")
+    return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by rotations, 3 coordinates a node; paper, section 4."""
-    return Element(Lagrange(1), Rotation(), forces or ContinuumMechanics(), integration, "bilinear-CRBF")
+    return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
@@ -131,7 +132,7 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
 
     order: 1 to 8. Raises InputError.
     """
-    return Element(Lagrange(order), Rotation(), forces or Structural(), integration, f"CRBF-{order}")
+    return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
 
 def ShearRigid(
@@ -143,7 +144,11 @@ def ShearRigid(
     in stretch where the length is none; without it, as any cubic field, and "reduced" with continuum forces.
     """
     label = "shear-rigid-stretchable" if flag("stretchable", stretchable) else "shear-rigid"
-    chosen = forces or Structural()
+    chosen = _chosen(forces, Structural())
     if integration is None and isinstance(chosen, ContinuumMechanics | SplitContinuum):
         integration = "reduced"
     return Element(Cubic(), ShearFree(stretchable), chosen, integration, label)
+
+
+def _chosen(forces: Forces | None, usual: Forces) -> Forces:
+    return usual if forces is None else forces

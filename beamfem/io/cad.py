@@ -5,13 +5,14 @@ Source: Autodesk, DXF Reference (entities, object coordinate systems, bulges), r
 
 from collections.abc import Callable
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc
 from beamfem.errors import BeamfemError, InputError
+from beamfem.files import readable
+from beamfem.validation import nearest, optional, text
 
 # distance from the plane z = 0, tilt against it and length of a piece that count as none, as a share of the coordinates
 _FLAT = 1e-9
@@ -26,22 +27,22 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
 
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines), all
     exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does.
-    Raises FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the plane z = 0,
-    and where there is no curve; BeamfemError without ezdxf.
+    Raises FileError, FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the
+    plane z = 0, and where there is no curve; BeamfemError without ezdxf.
     """
     ezdxf = _ezdxf()
-    source = Path(path)
-    if not source.is_file():
-        raise FileNotFoundError(f"there is no file {source}")
+    source = readable(path)
+    optional(text)("layer", layer)
     try:
         entities = list(ezdxf.readfile(source).modelspace())
     except (OSError, UnicodeDecodeError, ezdxf.DXFError) as error:
         raise InputError(f"{source} is not a DXF file that can be read: {error}") from error
     chosen = [entity for entity in entities if layer is None or entity.dxf.layer.lower() == layer.lower()]
     if not chosen:
-        layers = ", ".join(sorted({entity.dxf.layer for entity in entities})) or "none"
-        wanted = "modelspace" if layer is None else f"layer {layer!r}"
-        raise InputError(f"{source}: nothing is drawn in {wanted}; layers with entities: {layers}")
+        layers = sorted({entity.dxf.layer for entity in entities})
+        if layer is None:
+            raise InputError(f"{source}: nothing is drawn in its modelspace")
+        raise InputError(f"{source}: nothing is drawn in layer {layer!r}; {nearest(layer, layers)}")
     return tuple(_curve(entity) for entity in chosen)
 
 

@@ -12,7 +12,7 @@ from beamfem.errors import InputError
 from beamfem.io.chains import Piece, chains
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.validation import count, vector
+from beamfem.validation import count, items, one_of, require_known, shown, vector
 
 if TYPE_CHECKING:
     from beamfem.io.mesh import LineMesh
@@ -69,10 +69,9 @@ def build_frame(
     hinges: str | Sequence[str],
 ) -> Frame:
     """Return the frame of a mesh; see `LineMesh.frame`."""
-    if members not in ("cells", "chains"):
-        raise InputError(f'members must be "cells" or "chains", got {members!r}')
+    one_of("members", members, ("cells", "chains"))
     hinged = np.zeros(len(mesh.nodes), dtype=bool)
-    for name in (hinges,) if isinstance(hinges, str) else hinges:
+    for name in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
         nodes = _named(mesh.point_sets, "point", name)
         hinged[nodes[nodes >= 0]] = True
     given = {
@@ -103,8 +102,7 @@ def build_frame(
 
 
 def _named(sets: Mapping[str, np.ndarray], kind: str, name: str) -> np.ndarray:
-    if name not in sets:
-        raise InputError(f"the mesh has no {kind} set {name!r}; its {kind} sets: {', '.join(sets) or 'none'}")
+    require_known(f"the mesh has no {kind} set {shown(name)}", name, sets)
     return sets[name]
 
 

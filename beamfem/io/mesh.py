@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,13 @@ from scipy.spatial import cKDTree
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError
+from beamfem.files import readable
 from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.io.touching import divided, parts_of, warn_of_gaps
 from beamfem.material import Material
+from beamfem.validation import number_table, shown
 
 # distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
@@ -36,6 +37,20 @@ class LineMesh:
     cells: np.ndarray
     member_sets: Mapping[str, np.ndarray]
     point_sets: Mapping[str, np.ndarray]
+
+    def __post_init__(self) -> None:
+        nodes, cells = (
+            number_table("nodes of LineMesh", self.nodes, 2),
+            number_table("cells of LineMesh", self.cells, 3),
+        )
+        object.__setattr__(self, "nodes", nodes.astype(float))
+        object.__setattr__(self, "cells", _numbers_below("cells of LineMesh", cells, len(nodes), -1))
+        for name, size, lowest in (("member_sets", len(cells), 0), ("point_sets", len(nodes), -1)):
+            sets = getattr(self, name)
+            if not isinstance(sets, Mapping):
+                raise InputError(f"{name} of LineMesh must be a mapping from names to numbers, got {shown(sets)}")
+            for key, numbers in sets.items():
+                _numbers_below(f"{name}[{key!r}] of LineMesh", np.asarray(numbers), size, lowest)
 
     def frame(
         self,
@@ -65,13 +80,11 @@ def read_mesh(path: str | PathLike[str]) -> LineMesh:
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
     its end. A `NotJoinedWarning` names ends that stand within 30 times that of another line and are not joined to it.
-    Raises FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another kind, nodes
-    off the plane z = 0, lines of no length, lines given twice, lines that end inside a line3, and nodes at the same
+    Raises FileError, FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another
+    kind, nodes off the plane z = 0, lines of no length or given twice, lines that end inside a line3, and nodes at one
     place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
     """
-    source = Path(path)
-    if not source.is_file():
-        raise FileNotFoundError(f"there is no file {source}")
+    source = readable(path)
     content = read_abaqus(source) if source.suffix.lower() == ".inp" else read_through_meshio(source)
     try:
         return _line_mesh(content)
@@ -184,6 +197,16 @@ def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, si
         raise InputError(
             f"lines {owner[other]} and {owner[again[0]]} (counted from 0) are the same line from {where}; remove one"
         )
+
+
+def _numbers_below(name: str, numbers: np.ndarray, size: int, lowest: int) -> np.ndarray:
+    """Return whole numbers from `lowest` to size - 1. Raises InputError for others."""
+    if numbers.size and numbers.dtype.kind not in "iu":
+        raise InputError(f"{name} must be whole numbers, got {shown(numbers)}")
+    wrong = numbers[(numbers < lowest) | (numbers >= size)]
+    if wrong.size:
+        raise InputError(f"{name} must be between {lowest} and {size - 1}, got {wrong[0]}")
+    return numbers.astype(np.int64)
 
 
 def _at(nodes: np.ndarray, node: int) -> str:

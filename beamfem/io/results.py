@@ -4,12 +4,12 @@ import json
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.files import readable
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
@@ -63,13 +63,11 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
 def load(path: str | PathLike[str]) -> Solution:
     """Return the solution in a file; functions of time come back as `Sampled`, their values at the saved rows.
 
-    Of a file whose writer was killed the rows that were written. Raises FileNotFoundError, InputError for a file that
-    is damaged, of a newer format or not of beamfem, BeamfemError without h5py.
+    Of a file whose writer was killed the rows that were written. Raises FileError, FileNotFoundError; InputError for
+    a file that is damaged, of a newer format or not of beamfem; BeamfemError without h5py.
     """
     h5py = required_h5py("loading")
-    source = Path(path)
-    if not source.exists():
-        raise FileNotFoundError(f"there is no file {source}")
+    source = readable(path)
     with source.open("rb") as stream:
         if stream.read(len(_SIGNATURE)) != _SIGNATURE:
             raise InputError(f"{source} is not a file that beamfem saved: it is no HDF5 file")

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_L
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from beamfem.errors import FileError, InputError
-from beamfem.files import whole
+from beamfem.files import make_folder, path_of, whole
 from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
     5.12 or newer. Fields, names and units: docs/paraview.md. Raises InputError for another suffix; BeamfemError where
     .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
     """
-    path = Path(path)
+    path = path_of(path)
     if path.suffix not in (".pvd", ".vtkhdf"):
         right = path.with_suffix(".pvd") if path.name else path / "result.pvd"
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
@@ -69,7 +69,7 @@ class _Series:
     def __init__(self, path: Path, cells: Cells, name: str, at: np.ndarray) -> None:
         self.path, self.cells, self.folder = path, cells, path.with_suffix("")
         self.name, self.times = name, at
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         self.lines: list[str] = []
         table = vtkCellArray()
         table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, np.arange(cells.points))))

@@ -110,6 +110,12 @@ class _KernelCache(FunctionCache):
 
     def save_overload(self, sig, data):
         try:
-            super().save_overload(sig, data)
+            try:
+                super().save_overload(sig, data)
+            except OSError:
+                raise
+            except Exception:  # a damaged index is written anew
+                self.flush()
+                super().save_overload(sig, data)
         except OSError:
             self.disable()

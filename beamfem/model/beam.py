@@ -8,13 +8,15 @@ from typing import Literal, cast
 import numpy as np
 
 from beamfem.curves import BSpline, Curve, Line
+from beamfem.curves.curve import numbers
 from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
+from beamfem.model.magnitudes import require_magnitudes
 from beamfem.section.protocol import CrossSection
-from beamfem.validation import called, count, finite, fulfils, function_of_one
+from beamfem.validation import called, count, finite, fulfils, function_of_one, shown
 
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
@@ -27,7 +29,7 @@ class Beam:
     elements: number of equal elements, or the fractions of the arc length from 0 to 1 where elements end, or "knots"
     for one cubic element a knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
     or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
-    own. Raises InputError.
+    own. Raises InputError, also where double precision has no squares of its stiffness, mass and lengths.
 
     Where a support, a joint, a point load or a jump of the section needs a node inside an element, that is divided; an
     end of elements that is very near (1 % of one) moves there. Jumps are found, or declared as `kinks` of the function.
@@ -47,20 +49,19 @@ class Beam:
         else:
             object.__setattr__(self, "elements", count("elements", self.elements))
         if not isinstance(self.element, Element):
-            raise InputError(f"element of a Beam must be an Element, got {self.element!r}")
+            raise InputError(f"element of a Beam must be an Element, got {shown(self.element)}")
         if not fulfils(self.curve, Curve):
-            raise InputError(f"curve of a Beam must be a curve such as Line, got {self.curve!r}")
+            raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")
         if self.material is not None and not isinstance(self.material, Material):
-            raise InputError(f"material of a Beam must be a Material, got {self.material!r}")
+            raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}")
         if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
-            raise InputError(f"section of a Beam must be a section or a function of arc length, got {self.section!r}")
+            raise InputError(
+                f"section of a Beam must be a section or a function of arc length, got {shown(self.section)}"
+            )
         if not self.prismatic:
             function_of_one("section", self.section, "arc length")
         for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
-            section = self.section_at(share * self.curve.length)
-            section.inertia(self.material)
-            if self.element.forces.fills_body:
-                section.moments(self.material)
+            require_magnitudes(self, self.section_at(share * self.curve.length))
 
     def __repr__(self) -> str:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
@@ -77,12 +78,12 @@ class Beam:
             return cast(CrossSection, self.section)
         section = called("section", cast(Tapered, self.section), arc_length)
         if not fulfils(section, CrossSection):
-            raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {section!r}")
+            raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {shown(section)}")
         return section
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction in [0, 1] of the arc length."""
-        return Point(self, finite("fraction", fraction))
+        return Point(self, fraction)
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
@@ -90,6 +91,13 @@ class Beam:
         if self.prismatic:
             return ()
         return find_jumps(self.section, self._measured, self.curve.length, self.samples)
+
+    @property
+    def shortest(self) -> float:
+        """Share of the shortest element in the length, before supports and loads divide it."""
+        if isinstance(self.elements, str):
+            return 1.0 / (len(cast(BSpline, self.curve).breaks) - 1)
+        return 1.0 / self.elements if isinstance(self.elements, int) else float(np.diff(self.elements).min())
 
     @property
     def samples(self) -> int:
@@ -121,9 +129,11 @@ class Point:
 
     def __post_init__(self) -> None:
         if not isinstance(self.beam, Beam):
-            raise InputError(f"beam of a Point must be a Beam, got {self.beam!r}")
-        if not 0.0 <= finite("fraction", self.fraction) <= 1.0:
-            raise InputError(f"the fraction along a beam lies between 0 and 1, got {self.fraction}")
+            raise InputError(f"beam of a Point must be a Beam, got {shown(self.beam)}")
+        fraction = finite("fraction", self.fraction)
+        if not 0.0 <= fraction <= 1.0:
+            raise InputError(f"the fraction along a beam lies between 0 and 1, got {fraction}")
+        object.__setattr__(self, "fraction", fraction)
 
     @property
     def reference(self) -> np.ndarray:
@@ -138,13 +148,13 @@ class Point:
 def require_point(kind: str, point: object, name: str = "point") -> None:
     """Raise InputError where what a support, a load or a joint is given for its place is no point."""
     if not isinstance(point, Point):
-        raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {point!r}")
+        raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {shown(point)}")
 
 
 def require_beam(kind: str, beam: object) -> None:
     """Raise InputError where what a load or a foundation is given for its place is no beam."""
     if not isinstance(beam, Beam):
-        raise InputError(f"beam of {kind} must be a Beam, one of the model's beams, got {beam!r}")
+        raise InputError(f"beam of {kind} must be a Beam, one of the model's beams, got {shown(beam)}")
 
 
 def reference_positions(points: Sequence[Point]) -> np.ndarray:
@@ -165,11 +175,13 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:
     """Check the ends of elements that a user gives."""
-    if not isinstance(values, Sequence | np.ndarray):
-        raise InputError(f'elements must be a whole number, a list of fractions or "knots", got {values!r}')
-    ends = tuple(finite("elements", value) for value in values)
+    if not isinstance(values, Sequence | np.ndarray) or np.ndim(values) != 1:
+        raise InputError(f'elements must be a whole number, a list of fractions or "knots", got {shown(values)}')
+    ends = numbers("elements", values)
     if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or np.any(np.diff(ends) <= 0.0):
-        raise InputError(f"elements as a list must rise from 0 to 1, the fractions where elements end, got {ends!r}")
+        raise InputError(
+            f"elements as a list must rise from 0 to 1, the fractions where elements end, got {shown(ends)}"
+        )
     return ends
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.validation import count, positive
 
 
@@ -11,8 +12,10 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
     ratio: length of the last element over that of the first; below 1 they shrink. For `Beam(elements=...)`.
     Raises InputError.
     """
-    number = count("elements", elements)
-    growth = positive("ratio", ratio) ** (1.0 / max(number - 1, 1))
+    number, ratio = count("elements", elements), positive("ratio", ratio)
+    growth = ratio ** (1.0 / max(number - 1, 1))
     ends = np.cumsum(np.concatenate([[0.0], growth ** np.arange(number)]))
     ends /= ends[-1]
+    if not np.all(np.diff(ends) > 0.0):
+        raise InputError(f"a ratio of {ratio:g} leaves elements without length; take one closer to 1, or fewer")
     return (*(float(end) for end in ends[:-1]), 1.0)

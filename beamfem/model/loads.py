@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import called, finite, flag, function_of_one, function_value, vector
+from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, squared, vector
 
 Amplitude = Callable[[float], float] | None
 Varying = Callable[[float], Sequence[float]]
@@ -53,7 +53,7 @@ class Gravity:
     scale: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vector", vector("vector of Gravity", self.vector))
+        convert(self, squared(vector), "vector")
         _check_common(self)
 
 
@@ -79,7 +79,7 @@ class DistributedLoad:
             function_of_one("vector of DistributedLoad", self.vector, "arc length")
             _check_along(self)
         else:
-            object.__setattr__(self, "vector", vector("vector of DistributedLoad", self.vector))
+            convert(self, squared(vector), "vector")
         _check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
@@ -113,7 +113,7 @@ class Pressure:
             function_of_one("value of Pressure", self.value, "arc length")
             _check_along(self)
         else:
-            object.__setattr__(self, "value", finite("value of Pressure", self.value))
+            convert(self, squared(finite), "value")
         _check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
@@ -136,7 +136,7 @@ class PointForce:
 
     def __post_init__(self) -> None:
         require_point("PointForce", self.point)
-        object.__setattr__(self, "vector", vector("vector of PointForce", self.vector))
+        convert(self, squared(vector), "vector")
         _check_common(self)
 
     @property
@@ -160,7 +160,7 @@ class PointMoment:
 
     def __post_init__(self) -> None:
         require_point("PointMoment", self.point)
-        finite("moment", self.moment)
+        convert(self, squared(finite), "moment")
         _check_common(self)
 
     @property

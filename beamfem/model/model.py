@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, get_args
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
 from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
+from beamfem.validation import convert, items, shown
 
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
 _ON_BEAM = DistributedLoad | Pressure | Foundation
@@ -50,12 +52,11 @@ class Model:
 
     def __post_init__(self) -> None:
         for name, kinds in (("beams", Beam), ("supports", Support), ("loads", Load), ("joints", Joint)):
-            if not isinstance(getattr(self, name), Sequence):
-                raise InputError(f"{name} of a Model must be a list, got {getattr(self, name)!r}")
+            convert(self, items, name)
             object.__setattr__(self, name, tuple(getattr(self, name)))
             for item in getattr(self, name):
                 if not isinstance(item, kinds):
-                    raise InputError(f"{name} of a Model cannot hold {item!r}")
+                    raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):
@@ -166,7 +167,7 @@ class Model:
     def number_of(self, beam: Beam) -> int:
         """Return the place of a beam among the beams. Raises InputError, UnknownPointError."""
         if not isinstance(beam, Beam):
-            raise InputError(f"a beam is asked for, one of the model's beams, got {beam!r}")
+            raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
         if id(beam) not in self._numbers:
             raise UnknownPointError(f"the beam {beam!r} is not in this model")
         return self._numbers[id(beam)]
@@ -174,7 +175,7 @@ class Model:
     def mesh_of(self, point: Point) -> BeamMesh:
         """Return the mesh that a point lies on. Raises InputError, UnknownPointError."""
         if not isinstance(point, Point):
-            raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {point!r}")
+            raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")
         if id(point.beam) not in self._numbers:
             raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
         return self.meshes[self._numbers[id(point.beam)]]
@@ -207,6 +208,12 @@ class Model:
         from beamfem.view.summary import model_table
 
         return model_table(self)
+
+
+def _named(kinds: Any) -> str:
+    """Return classes as a list in words."""
+    names = [kind.__name__ for kind in get_args(kinds) or (kinds,)]
+    return " or ".join(", ".join(names).rsplit(", ", 1))
 
 
 def _turns(support: PointSupport) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point
-from beamfem.validation import finite, function_of_one, vector
+from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 Value = float | Callable[[float], float]
 
@@ -47,7 +47,8 @@ class Roller:
 
     def __post_init__(self) -> None:
         require_point("Roller", self.point)
-        if not np.hypot(*vector("normal", self.normal)) > 0.0:
+        convert(self, squared(vector), "normal")
+        if not any(self.normal):
             raise InputError("the normal of a Roller must not be zero")
 
     def held(self) -> dict[str, Value]:
@@ -78,9 +79,9 @@ class Prescribed:
             raise InputError("Prescribed needs at least one of ux, uy and rotation")
         for name, value in self.held().items():
             if callable(value):
-                function_of_one(name, value, "time")
+                function_of_one(f"{name} of Prescribed", value, "time")
             else:
-                finite(name, value)
+                convert(self, squared(finite), name)
 
     def held(self) -> dict[str, Value]:
         given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
@@ -100,8 +101,9 @@ class Spring:
 
     def __post_init__(self) -> None:
         require_point("Spring", self.point)
-        object.__setattr__(self, "stiffness", vector("stiffness of Spring", self.stiffness))
-        values = (*self.stiffness, finite("rotational", self.rotational))
+        convert(self, squared(vector), "stiffness")
+        convert(self, squared(finite), "rotational")
+        values = (*self.stiffness, self.rotational)
         if min(values) < 0.0 or max(values) == 0.0:
             raise InputError(f"the stiffness of a Spring must not be negative, and somewhere positive, got {values}")
 
@@ -126,7 +128,7 @@ class Foundation:
 
     def __post_init__(self) -> None:
         require_beam("Foundation", self.beam)
-        object.__setattr__(self, "stiffness", vector("stiffness of Foundation", self.stiffness))
+        convert(self, squared(vector), "stiffness")
         if min(self.stiffness) < 0.0 or max(self.stiffness) == 0.0:
             raise InputError(f"the stiffness of a Foundation must not be negative, and somewhere positive: {self}")
 

@@ -33,6 +33,7 @@ from beamfem.model.model import Model
 from beamfem.model.pressures import pressures_have_potential
 from beamfem.model.round_off import residual_errors, stress_errors
 from beamfem.model.supports import Spring
+from beamfem.validation import shown
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
@@ -285,7 +286,7 @@ class System:
 def system_of(model: Model, static: bool) -> System:
     """Return the system of a model, the same one every time: a model does not change. Raises InputError."""
     if not isinstance(model, Model):
-        raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {model!r}")
+        raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {shown(model)}")
     known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
     if static not in known:
         known[static] = System(model, static)

@@ -10,7 +10,7 @@ from beamfem.material import Material
 from beamfem.section.moments import gauss_between
 from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
-from beamfem.validation import finite, positive
+from beamfem.validation import convert, finite, positive, shown
 
 _STRIPS = 6  # Gauss points over each layer
 
@@ -25,7 +25,7 @@ class Layer:
     def __post_init__(self) -> None:
         if not isinstance(self.material, Material):
             raise InputError(f"material of a Layer must be a Material, got {self.material!r}")
-        positive("thickness", self.thickness)
+        convert(self, positive, "thickness")
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,12 @@ class Layered:
     def __post_init__(self) -> None:
         layers = tuple(self.layers) if isinstance(self.layers, Sequence) else ()
         if not layers or not all(isinstance(layer, Layer) for layer in layers):
-            raise InputError(f"layers of a Layered section must be a list of Layer, got {self.layers!r}")
+            raise InputError(f"layers of a Layered section must be a list of Layer, got {shown(self.layers)}")
         object.__setattr__(self, "layers", layers)
-        positive("width", self.width)
-        positive("shear_factor", self.shear_factor)
+        convert(self, positive, "width", "shear_factor")
         if self.axis is None:
             object.__setattr__(self, "axis", 0.5 * self.height)
-        finite("axis", self.axis)
+        convert(self, finite, "axis")
 
     @property
     def height(self) -> float:

@@ -9,7 +9,7 @@ from beamfem.material import Material
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.stiffness import StiffnessSection
-from beamfem.validation import positive
+from beamfem.validation import convert, positive
 
 _ROUNDING = 1e-9  # of numbers from tables
 _STRIPS = 8  # Gauss points over the height, for a body whose reference is curved
@@ -33,15 +33,15 @@ class Section:
     centroid: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("area", "second_moment", "shear_factor"):
-            positive(name, getattr(self, name))
+        convert(self, positive, "area", "second_moment", "shear_factor")
+        least = self.second_moment / self.area * self.second_moment  # the rectangle's is 9/5 of it
         if self.fourth_moment is None:
-            object.__setattr__(self, "fourth_moment", self.area * self._equivalent_height**4 / 80.0)
-        fourth = positive("fourth_moment", self.fourth_moment)
-        if fourth * self.area < self.second_moment**2 * (1.0 - _ROUNDING):
+            object.__setattr__(self, "fourth_moment", 1.8 * least)
+        fourth = positive("fourth_moment of Section", self.fourth_moment)
+        object.__setattr__(self, "fourth_moment", fourth)
+        if fourth < least * (1.0 - _ROUNDING):
             raise InputError(
-                f"fourth_moment ({fourth:g}) must be at least second_moment^2 / area = "
-                f"{self.second_moment**2 / self.area:g}: no section has less"
+                f"fourth_moment ({fourth:g}) must be at least second_moment^2 / area = {least:g}: no section has less"
             )
         if self.height is not None:
             self._check_height()
@@ -49,10 +49,10 @@ class Section:
             raise InputError("the centroid of a Section is above its lower face: give its height as well")
 
     def _check_height(self) -> None:
-        height = positive("height", self.height)
-        if self.centroid is None:
-            object.__setattr__(self, "centroid", 0.5 * height)
-        centroid = positive("centroid", self.centroid)
+        height = positive("height of Section", self.height)
+        centroid = 0.5 * height if self.centroid is None else positive("centroid of Section", self.centroid)
+        object.__setattr__(self, "height", height)
+        object.__setattr__(self, "centroid", centroid)
         if centroid >= height:
             raise InputError(f"centroid ({centroid:g}) must lie below the upper face: less than height ({height:g})")
         # all of the area at the two faces

@@ -1,5 +1,6 @@
 """Sections of common shapes."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,10 +27,12 @@ class ShapedSection(Section):
 
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
     """Return the rectangular section width [m] (out of the plane) x height [m] (along y). Raises InputError."""
-    positive("width", width)
-    positive("height", height)
+    width, height = positive("width of Rectangle", width), positive("height of Rectangle", height)
+    positive("shear_factor of Rectangle", shear_factor)
     outline = RectangleOutline(width, -0.5 * height, 0.5 * height)
-    return ShapedSection(width * height, width * height**3 / 12.0, shear_factor, height=height, outline=outline)
+    area, second = width * height, width * _power(height, 3) / 12.0
+    _require_moments("Rectangle", area, second)
+    return ShapedSection(area, second, shear_factor, height=height, outline=outline)
 
 
 def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
@@ -37,7 +40,8 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
 
     shear_factor: 9/10 by the energy of Jourawski's stress. Raises InputError.
     """
-    positive("diameter", diameter)
+    diameter = positive("diameter of Circle", diameter)
+    positive("shear_factor of Circle", shear_factor)
     return Tube(diameter, 0.5 * diameter, shear_factor)
 
 
@@ -46,15 +50,25 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
 
     shear_factor: 1/2, right for a thin wall; a full circle has 9/10. Raises InputError.
     """
-    positive("diameter", diameter)
-    positive("thickness", thickness)
+    diameter, thickness = positive("diameter of Tube", diameter), positive("thickness of Tube", thickness)
+    positive("shear_factor of Tube", shear_factor)
     if thickness > 0.5 * diameter:
         raise InputError(f"the wall of a Tube ({thickness:g} m) is at most half its diameter ({diameter:g} m)")
     inner = diameter - 2.0 * thickness
-    area = np.pi * (diameter**2 - inner**2) / 4.0
-    second = np.pi * (diameter**4 - inner**4) / 64.0
-    fourth = np.pi * (diameter**6 - inner**6) / 512.0
+    powers = (_power(diameter, n) - _power(inner, n) for n in (2, 4, 6))
+    area, second, fourth = (np.pi * power / by for power, by in zip(powers, (4.0, 64.0, 512.0), strict=True))
+    _require_moments("Tube", area, second, fourth)
     outline = TubeOutline(0.5 * diameter, 0.5 * inner)
-    return ShapedSection(
-        float(area), float(second), shear_factor, float(fourth), height=float(diameter), outline=outline
-    )
+    return ShapedSection(area, second, shear_factor, fourth, height=diameter, outline=outline)
+
+
+def _power(length: float, order: int) -> float:
+    """Return a power, inf where it is too large; the operator would raise an exception."""
+    return math.prod([length] * order)
+
+
+def _require_moments(kind: str, *moments: float) -> None:
+    """Raise InputError where double precision has no moments [m^2, m^4, m^6] of a section so large or small."""
+    for name, value in zip(("area", "second moment", "fourth moment"), moments, strict=False):
+        if not 0.0 < value < math.inf:
+            raise InputError(f"the {name} of this {kind} is {value:g} in double precision; give lengths in other units")

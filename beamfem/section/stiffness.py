@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import Inertia, Rigidity
-from beamfem.validation import finite, positive
+from beamfem.validation import convert, finite, positive
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,11 @@ class StiffnessSection:
     coupling: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("axial", "shear", "bending", "mass", "rotary_inertia"):
-            positive(name, getattr(self, name))
-        coupling = finite("coupling", self.coupling)
-        if coupling**2 >= self.axial * self.bending:
+        convert(self, positive, "axial", "shear", "bending", "mass", "rotary_inertia")
+        convert(self, finite, "coupling")
+        if self.coupling * self.coupling >= self.axial * self.bending:
             raise InputError(
-                f"coupling ({coupling:g}) must be smaller than sqrt(axial * bending) = "
+                f"coupling ({self.coupling:g}) must be smaller than sqrt(axial * bending) = "
                 f"{np.sqrt(self.axial * self.bending):g}: the section would gain energy by deforming"
             )
 

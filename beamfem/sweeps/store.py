@@ -5,7 +5,9 @@ A row names the code that computed it by a digest; another line tells once what 
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
+from errno import ENOSPC
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
@@ -13,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.errors import FileError
 from beamfem.sweeps.workers import Outcome
 
 
@@ -29,9 +32,12 @@ class Store:
         self._sources: dict[str, Mapping[str, str]] = {}
 
     def __enter__(self) -> "Store":
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        # unbuffered: each line reaches the system in one write and survives this process
-        self._file = self.path.open("ab+", buffering=0)
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            # unbuffered: each line reaches the system in one write and survives this process
+            self._file = self.path.open("ab+", buffering=0)
+        except OSError as error:
+            raise FileError(f"the store {self.path} cannot be written: {error.strerror}") from error
         self._file.seek(0)
         data = self._file.readall()
         if data and not data.endswith(b"\n"):
@@ -71,7 +77,10 @@ class Store:
         self._write({"key": key, "code": code, **about, "value": _encode(outcome.value), "seconds": outcome.seconds})
 
     def _write(self, record: Mapping[str, Any]) -> None:
-        self._file.write(json.dumps(record).encode() + b"\n")
+        line = json.dumps(record).encode() + b"\n"
+        written = self._file.write(line)
+        if written != len(line):
+            raise OSError(ENOSPC, os.strerror(ENOSPC))
 
     def _keep(self, key: str, code: str, value: Any, seconds: float) -> None:
         rows = self._known.setdefault(key, {})

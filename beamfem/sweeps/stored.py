@@ -7,7 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from beamfem.errors import ChangedCodeWarning
+from beamfem.errors import ChangedCodeWarning, NotStoredWarning
 from beamfem.sweeps.keys import function_form, point_key
 from beamfem.sweeps.sources import SCRIPT, Sources
 from beamfem.sweeps.store import Store
@@ -30,6 +30,7 @@ class StoredCalls:
         self._code = [sources.behind(function, point) for point in points]
         self._about = {"function": getattr(function, "__qualname__", str(function))}
         self._store = Store(path)
+        self._writable = True
 
     def __enter__(self) -> "StoredCalls":
         self._store.__enter__()
@@ -54,8 +55,20 @@ class StoredCalls:
 
     def add(self, number: int, parameters: str, outcome: Outcome) -> None:
         """Keep the outcome of a point; parameters: as text, for people who read the file."""
+        if not self._writable:
+            return
         about = self._about | {"parameters": parameters}
-        self._store.add(self._keys[number], self._code[number], about, outcome)
+        try:
+            self._store.add(self._keys[number], self._code[number], about, outcome)
+        except OSError as error:
+            # no more lines: one that was written in part would spoil the next one
+            self._writable = False
+            warnings.warn(
+                f"the store {self._store.path} cannot be written any more ({error.strerror}): the sweep goes on, and "
+                "what it computes from here on is in its result only",
+                NotStoredWarning,
+                stacklevel=3,
+            )
 
 
 def _said(stale: int, points: int, changed: set[str], keep: bool) -> str:

@@ -17,6 +17,7 @@ from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 
 _ROWS_PRINTED = 40
+_NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +118,10 @@ def sweep(
     the same function with the same parameters. Where one of the user's own files that the function runs has changed
     since (its constants, helpers, what they import), a `ChangedCodeWarning` says so and the points are computed again;
     keep_stale: take the old results then.
-    A call that fails or kills its worker is kept in `failures`, the others go on; the next run tries it again.
-    Raises InputError; BeamfemError where no worker starts.
+    A call that fails or kills its worker is kept in `failures`, the others go on; the next run tries it again. Where
+    the work is interrupted, KeyboardInterrupt has what was found as its `sweep`, and workers end at once; where the
+    store cannot be written any more, a `NotStoredWarning` says so and the sweep goes on.
+    Raises InputError; FileError for a store that cannot be opened; BeamfemError where no worker starts.
     """
     varied, fixed = split(parameters)
     points = combinations(varied, fixed)
@@ -132,22 +135,29 @@ def sweep(
         todo = [i for i, outcome in enumerate(outcomes) if outcome is None]
         runner = stack.enter_context(TaskRunner(function, executor))
         report = stack.enter_context(progress("points", len(todo)))
-        for done, (number, outcome) in enumerate(runner.run([points[i] for i in todo]), 1):
-            i = todo[number]
-            outcomes[i] = outcome
-            if kept is not None and outcome.error is None:
-                kept.add(i, assignments(texts[i]), outcome)
-            report(done)
-    return _result(points, texts, [outcome for outcome in outcomes if outcome is not None], varied, len(todo))
+        try:
+            for done, (number, outcome) in enumerate(runner.run([points[i] for i in todo]), 1):
+                i = todo[number]
+                outcomes[i] = outcome
+                if kept is not None and outcome.error is None:
+                    kept.add(i, assignments(texts[i]), outcome)
+                report(done)
+        except BaseException as error:
+            if computed := sum(outcomes[i] is not None for i in todo):
+                error.sweep = _result(points, texts, outcomes, varied, computed)  # type: ignore[attr-defined]
+                error.add_note(f"The {computed} points computed before are in the `sweep` of this exception.")
+            raise
+    return _result(points, texts, outcomes, varied, len(todo))
 
 
 def _result(
     points: list[dict[str, Any]],
     texts: list[dict[str, Any]],
-    outcomes: list[Outcome],
+    found: list[Outcome | None],
     varied: Mapping[str, Sequence[Any]],
     computed: int,
 ) -> Sweep:
+    outcomes = [outcome or Outcome(error=_NOT_REACHED) for outcome in found]
     failures = tuple(
         Failure(point, assignments(text), outcome.error, outcome.traceback)
         for point, text, outcome in zip(points, texts, outcomes, strict=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
-from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, open_executor, workers
+from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, end_workers, open_executor, workers
 
 _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
@@ -40,6 +40,8 @@ class TaskRunner:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+        if kind is not None and self._executor is not None:
+            end_workers(self._executor)  # nobody waits for what they compute any more
         self._close()
 
     def run(self, points: Sequence[Point]) -> Iterator[tuple[int, Outcome]]:

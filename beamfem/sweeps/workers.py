@@ -3,6 +3,8 @@
 import multiprocessing
 import os
 import pickle
+import signal
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -51,6 +53,7 @@ def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, a
     home: number of the process that asks. attempt: makes a repetition a new task where equal tasks are merged (dask).
     """
     if os.getpid() != home:
+        end_with_parent()
         _one_thread()
     with no_progress():
         return [call(function, point) for point in points]
@@ -61,9 +64,7 @@ def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks:
 
     Raises InputError where the function cannot reach a process, BeamfemError where workers do not start.
     """
-    executor = _spawning(factory)()
-    if not isinstance(executor, Executor):
-        raise InputError(f"executor must make a concurrent.futures.Executor, got {type(executor).__name__}")
+    executor = _made(factory)
     name = getattr(function, "__qualname__", repr(function))
     if not isinstance(executor, ProcessPoolExecutor):
         executor.submit(call_all, function, (), os.getpid(), 0).result()
@@ -89,18 +90,57 @@ def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks:
     return executor
 
 
+def _made(factory: Any) -> Executor:
+    """Return the executor that a factory makes. Raises InputError for one that makes none."""
+    right = "such as ProcessPoolExecutor or functools.partial(ProcessPoolExecutor, 4)"
+    if isinstance(factory, Executor) or not callable(factory):
+        raise InputError(f"executor must be a class or a function that makes an Executor, {right}, got {factory!r}")
+    try:
+        executor = _spawning(factory)()
+    except (TypeError, ValueError) as error:
+        raise InputError(f"executor must make an Executor without arguments, {right}; it raised: {error}") from error
+    if not isinstance(executor, Executor):
+        raise InputError(f"executor must make a concurrent.futures.Executor, got {type(executor).__name__}")
+    return executor
+
+
 def workers(executor: Executor) -> int:
     """How many workers an executor has; 500 where it does not tell, so that a cluster is kept busy."""
     return int(getattr(executor, "_max_workers", 500))
 
 
+def end_workers(executor: Executor) -> None:
+    """End a process pool at once, in the middle of its calls; whatever else works for an executor is left to itself."""
+    processes = dict(getattr(executor, "_processes", None) or {})
+    executor.shutdown(wait=False, cancel_futures=True)
+    for process in processes.values():
+        process.terminate()
+
+
 def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
-    """Let a process pool spawn: a fork copies locks that other threads hold."""
+    """Let a process pool spawn, for a fork copies locks of other threads, and its workers end with this process."""
     bare = factory.func if isinstance(factory, partial) else factory
     given = factory.keywords if isinstance(factory, partial) else {}
-    if isinstance(bare, type) and issubclass(bare, ProcessPoolExecutor) and "mp_context" not in given:
-        return partial(factory, mp_context=multiprocessing.get_context("spawn"))
-    return factory
+    if not (isinstance(bare, type) and issubclass(bare, ProcessPoolExecutor)):
+        return factory
+    ours = {"mp_context": multiprocessing.get_context("spawn"), "initializer": end_with_parent}
+    return partial(factory, **{name: value for name, value in ours.items() if name not in given})
+
+
+@cache
+def end_with_parent() -> None:
+    """Let this worker end when the process that started it has ended, killed or not, and leave Ctrl-C to that one."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def follow() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=follow, name="end with parent", daemon=True).start()
 
 
 @contextmanager

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
-from beamfem.files import whole
+from beamfem.files import path_of, whole
 from beamfem.solution import Solution
-from beamfem.validation import count, positive
+from beamfem.validation import count, flag, positive
 from beamfem.view.acting import FORCE, draw_loads
 from beamfem.view.drawing import bar, equal_axes
 from beamfem.view.frames import moment_of, spread_rows
@@ -18,6 +18,7 @@ from beamfem.view.held import PRESCRIBED, draw_joints, draw_supports
 from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more
+_FINEST = 1000  # pixels an inch: pictures of some inches have a hundred million
 _LONGEST_FRAME = 0.5  # [s], for a solution of few rows
 
 
@@ -39,18 +40,23 @@ def animate(
     an inch of a picture 4 to 8 inches wide.
     Raises InputError for another suffix; BeamfemError without matplotlib, for .mp4 without imageio-ffmpeg.
     """
-    target = Path(path)
+    target = path_of(path)
     if target.suffix not in (".gif", ".mp4"):
         right = target.with_suffix(".gif") if target.name else target / "motion.gif"
         raise InputError(f'an animation is a .gif or a .mp4 file, got "{target}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to animate")
-    most = max(2, round(positive("fps", fps) * positive("seconds", seconds)))
+    for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
+        flag(name, value)
+    if count("dpi", dpi) > _FINEST:
+        raise InputError(f"dpi must be at most {_FINEST}, got {dpi}")
+    fps, seconds = positive("fps", fps), positive("seconds", seconds)
+    most = max(2, round(min(fps * seconds, len(solution))))
     rows = spread_rows(solution, most)
     duration = min(seconds / len(rows), _LONGEST_FRAME)
     write = _write_gif if target.suffix == ".gif" else _mp4_writer()
     shapes = Shapes(solution, rows, colour, _POINTS)
-    frames = _frames(shapes, undeformed, supports, loads, count("dpi", dpi))
+    frames = _frames(shapes, undeformed, supports, loads, dpi)
     with whole(target) as partial:
         write(partial, frames, duration)
     return target

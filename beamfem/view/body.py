@@ -11,8 +11,10 @@ import numpy as np
 
 from beamfem.along import AxisPoints
 from beamfem.errors import InputError
+from beamfem.files import path_of, whole
 from beamfem.model.reference import sections_at
 from beamfem.solution import Solution
+from beamfem.validation import count, items, number_below, shown
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
 from beamfem.view.rendering import ADVICE, can_render, has_display
@@ -20,6 +22,7 @@ from beamfem.view.shapes import FIELD_COLOURS, Shapes
 
 _POINTS = 6000  # of all beams
 _ROWS = 400  # that the slider knows
+_LARGEST_SIDE = 16384  # [pixels], of what graphics cards render
 _PLAIN = "#6699BB"
 _STRONG, _PALE = (0x66, 0x99, 0xBB), (0xC4, 0xD6, 0xE3)  # of layers in turn
 
@@ -36,12 +39,12 @@ def picture(
     colour: a field as in `plot`; size: width and height in pixels. Where VTK cannot render, which is tried in a child
     process first, matplotlib draws the same row flat, with a warning. Raises InputError.
     """
-    target = Path(path)
+    target = path_of(path)
     if target.suffix != ".png":
         right = target.with_suffix(".png") if target.name else target / "body.png"
         raise InputError(f'a picture of the body is a .png file, got "{target}"; "{right}" would be right')
-    number = _row(solution, row)
-    target.parent.mkdir(parents=True, exist_ok=True)
+    number = number_below("row", row, len(solution), -len(solution)) % len(solution)
+    _require_size(size)
     if not can_render():
         warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=3)
         plot_shapes(one_row(solution, number), target, colour)
@@ -49,7 +52,8 @@ def picture(
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
     scene.show_row(0)
     scene.look()
-    scene.plotter.screenshot(str(target))
+    with whole(target) as partial:
+        scene.plotter.screenshot(str(partial))
     scene.plotter.close()
     return target
 
@@ -60,7 +64,9 @@ def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = 
     colour: a field as in `plot`. Where there is no display, or VTK cannot render, a warning says so and a figure of
     matplotlib is returned instead. Raises InputError.
     """
-    _row(solution, -1)
+    if len(solution) == 0:
+        raise InputError("the solution has no rows, so there is nothing to show")
+    _require_size(size)
     reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
     if reason:
         message = f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider"
@@ -196,7 +202,8 @@ def _faces(shapes: Shapes) -> np.ndarray:
     return np.column_stack([np.full(len(table), 4), table]).ravel()
 
 
-def _row(solution: Solution, row: int) -> int:
-    if not -len(solution) <= row < len(solution):
-        raise InputError(f"the solution has {len(solution)} rows, so there is no row {row}")
-    return row % len(solution)
+def _require_size(size: Any) -> None:
+    """Raise InputError where the size of a picture is not a width and a height that can be rendered."""
+    sides = [count("size", side) for side in items("size", size)]
+    if len(sides) != 2 or max(sides) > _LARGEST_SIDE:
+        raise InputError(f"size is a width and a height of at most {_LARGEST_SIDE} pixels, got {shown(size)}")

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.solution import Solution
-from beamfem.validation import count
+from beamfem.validation import count, flag
 from beamfem.view.acting import draw_loads
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.held import draw_joints, draw_supports
@@ -40,6 +40,8 @@ def plot_shapes(
     """
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to draw")
+    for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
+        flag(name, value)
     rows = spread_rows(solution, count("shapes", shapes))
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others

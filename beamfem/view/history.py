@@ -10,6 +10,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.path import Path, PathState
 from beamfem.solution import Solution
+from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
@@ -45,15 +46,15 @@ def plot_history(
     and "reaction_moment" [N m]; or, without a point, "energy" [J].
     Raises InputError; BeamfemError without matplotlib.
     """
-    if quantity == "energy":
+    if isinstance(quantity, str) and quantity == "energy":
         found = solution.energy()
         curves = {name: getattr(found, name) for name in ("kinetic", "strain", "potential", "total")}
         label, unit, parts = "energy", "J", [curves]
     else:
         label, unit, values = _quantity(quantity)
-        points = [point] if isinstance(point, Point) else list(point or ())
+        points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)
         if not points or not all(isinstance(own, Point) for own in points):
-            raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {point!r}")
+            raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {shown(point)}")
         parts = [values(solution, own) for own in points]
         if len(parts) > 1:
             parts = [
@@ -87,8 +88,7 @@ def plot_load_displacement(
     On a `Path` its limit points (circles) and bifurcations (diamonds) are marked, each with its load factor.
     quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; BeamfemError without matplotlib.
     """
-    if quantity not in ("ux", "uy", "rotation"):
-        raise InputError(f'the load is drawn over "ux", "uy" or "rotation", got {quantity!r}')
+    one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
     load = solution.load_factor
     label, unit, values = _quantity(quantity)
     (curve,) = values(solution, point).values()
@@ -121,9 +121,7 @@ def plot_load_displacement(
 
 
 def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]:
-    if name not in _OF_POINT:
-        known = ", ".join([*_OF_POINT, "energy"])
-        raise InputError(f"there is no history of {name!r}; those that are: {known}")
+    require_known(f"there is no history of {shown(name)}", name, [*_OF_POINT, "energy"])
     return _OF_POINT[name]
 
 

@@ -7,7 +7,7 @@ from html import escape
 from os import PathLike
 from pathlib import Path
 
-from beamfem.files import whole
+from beamfem.files import path_of, whole
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
@@ -54,7 +54,7 @@ class Part:
 
 def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> Path:
     """Write one self-contained HTML file with the SVG figures inside; return its path."""
-    target = Path(path)
+    target = path_of(path)
     body = "".join(_part(part) for part in parts)
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"

@@ -12,9 +12,9 @@ import numpy as np
 
 from beamfem.along import QUANTITIES, section_forces
 from beamfem.errors import InputError
-from beamfem.files import whole
+from beamfem.files import path_of, whole
 from beamfem.solution import Solution
-from beamfem.validation import count
+from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.held import joints_of, supports_of
 from beamfem.view.shapes import Shapes, limits
@@ -32,13 +32,13 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
     [m/s] on demand; beside it a curve of the largest displacement and the statistics. Under 1 MB: of a large model the
     axes are drawn without bodies, and fewer steps. Raises InputError for another suffix than .html.
     """
-    target = Path(path)
+    target = path_of(path)
     if target.suffix != ".html":
         right = target.with_suffix(".html") if target.name else target / "steps.html"
         raise InputError(f'a page is a .html file, got "{target}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
-    heading = title or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
+    heading = optional(text)("title", title) or (target.stem.replace("_", " ").replace("-", " ") or "Solution")
     statistics = [*solution_rows(solution), *model_rows(solution.model)]
     table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in statistics)
     template = files("beamfem.view").joinpath("player.html").read_text(encoding="utf-8")

@@ -1,11 +1,10 @@
 """Figures of matplotlib without a window."""
 
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from beamfem.errors import BeamfemError, InputError
-from beamfem.files import whole
+from beamfem.files import path_of, whole
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
 COLOURS = ("#4477AA", "#EE6677", "#228833", "#CCBB44", "#66CCEE", "#AA3377", "#BBBBBB")
@@ -43,7 +42,7 @@ def quiet(axes: Any) -> None:
 def save_figure(figure: Any, path: str | PathLike[str]) -> None:
     """Write a figure to PNG, SVG or PDF by the suffix of `path`; folders are made."""
     kinds = figure.canvas.get_supported_filetypes()
-    kind = Path(path).suffix.lower().removeprefix(".")
+    kind = path_of(path).suffix.lower().removeprefix(".")
     if kind not in kinds:
         raise InputError(f'a picture is a .png, .svg or .pdf file, or one of {", ".join(sorted(kinds))}; got "{path}"')
     with whole(path) as partial:

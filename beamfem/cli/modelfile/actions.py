@@ -7,7 +7,7 @@ from typing import Any
 from beamfem.cli.modelfile import parts
 from beamfem.cli.modelfile.functions import Components
 from beamfem.cli.modelfile.parts import Kinds
-from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, nearest, shown
+from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, shown
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.joints import Hinge, Rigid
@@ -15,6 +15,7 @@ from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMomen
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring, Support
 from beamfem.model.system import System
+from beamfem.validation import nearest
 
 SUPPORTS: Kinds = {
     "clamp": Clamp,

@@ -8,13 +8,13 @@ import numpy as np
 
 from beamfem.cli.modelfile.actions import Places
 from beamfem.cli.modelfile.analyses import Analysis
-from beamfem.cli.modelfile.table import Table, build, nearest
+from beamfem.cli.modelfile.table import Table, build
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.path import Path, PathState
 from beamfem.solution import Solution
-from beamfem.validation import finite
+from beamfem.validation import finite, nearest
 
 # quantity: method of a Solution and component of what it returns
 _POINT = {

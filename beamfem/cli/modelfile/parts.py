@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from beamfem.cli.modelfile.functions import FUNCTIONS
-from beamfem.cli.modelfile.table import Table, build, build_kind, nearest, shown
+from beamfem.cli.modelfile.table import Table, build, build_kind, shown
 from beamfem.curves import Arc, BSpline, Chain, Line, Polyline
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.material import Material
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
+from beamfem.validation import nearest
 
 Kinds = Mapping[str, Callable[..., Any]]
 

@@ -1,6 +1,5 @@
 """Tables of a model file: their keys checked one by one and handed to what is made of them."""
 
-import difflib
 import inspect
 import re
 import typing
@@ -12,6 +11,7 @@ from typing import Any
 from beamfem.cli.modelfile.errors import ModelFileError
 from beamfem.cli.modelfile.lines import Path as KeyPath
 from beamfem.errors import InputError
+from beamfem.validation import nearest
 
 Reader = Callable[["Table", str], Any]  # takes a table and one of its keys
 
@@ -125,15 +125,6 @@ def build_kind(
     if kind not in kinds:
         raise table.error(f"there is no kind {kind!r}; {nearest(kind, kinds)}", "kind")
     return build(table, kinds[kind], readers)
-
-
-def nearest(word: str, known: Iterable[str]) -> str:
-    """Return what a word could have meant."""
-    known = list(known)
-    close = difflib.get_close_matches(word.lower(), [name.lower() for name in known], 1, 0.6)
-    meant = [name for name in known if close and name.lower() == close[0]]
-    listed = ", ".join(known) if known else "none"
-    return f"did you mean {meant[0]}? Known are {listed}" if meant else f"known are {listed}"
 
 
 def shown(value: Any) -> str:

@@ -126,9 +126,8 @@ def _curve(rng: Random, start, end) -> bf.Curve:
         half = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.1, 2.5))
         center = 0.5 * (start + end) - 0.5 / np.tan(half) * left
         radius = 0.5 * np.hypot(*along) / abs(np.sin(half))
-        first, last = (float(np.arctan2(*(point - center)[::-1])) for point in (start, end))
-        turn = -2.0 * half
-        return bf.Arc(_pair(center), float(radius), first, first + turn if half > 0 else first + turn)
+        first = float(np.arctan2(*(start - center)[::-1]))
+        return bf.Arc(_pair(center), float(radius), first, first - 2.0 * half)
     shares = np.sort(rng.uniform(0.2, 0.8, 2))
     inner = [start + share * along + rng.uniform(-0.3, 0.3) * left for share in shares]
     if kind == "polyline":

@@ -12,7 +12,9 @@ from beamfem.model.system import system_of
 from beamfem.postprocess import axis, nodal_vectors
 
 TOLERANCE = 1e-7  # of the largest force that acts; solvers are content with 1e-9
-LAST_DIGITS = 30.0  # times what a change of the last digit of the coordinates leaves in a row
+# times what a change of the last digit of the coordinates leaves in a row: it sums up 5 points of 2 elements, whose
+# strains have about 12 terms, each of which is rounded by half a digit
+LAST_DIGITS = 60.0
 NEAR = 64.0 * np.finfo(float).eps  # of the model: an equilibrium so near to a static state cannot be told from it
 STEPPED = 1e-8  # of the model: the same for a step of a motion, which is iterated to 1e-9
 _SAMPLES = 3

@@ -82,7 +82,8 @@ class View:
 class Axis:
     """Axis of a bar: "line" start, end; "arc" center, (radius, 0), (angle, angle); "wave" start, end, (rise, waves).
 
-    Also "polyline" and "spline", a cubic one, by three and four points, which have no halves. A wave is the line with a sine of so many half waves and a rise, as a share of its length, to the left.
+    Also "polyline" and "spline", a cubic one, by three and four points, which have no halves. A wave is the line with a
+    sine of so many half waves and a rise, as a share of its length, to the left.
     """
 
     kind: str
@@ -144,7 +145,7 @@ class Support:
 
 @dataclass(frozen=True)
 class Load:
-    """ "force" (fx, fy) and "moment" (m, 0) at a place, "line" (qx, qy) or "pressure" (p, 0) on a bar, "gravity" (gx, gy)."""
+    """ "force" (fx, fy), "moment" (m, 0) at a place, "line" (qx, qy), "pressure" (p, 0) on a bar; "gravity"."""
 
     kind: str
     place: Place

@@ -1,4 +1,4 @@
-"""The independent balance that the fuzz judges by notices what is wrong: a wrong state, force, reaction, acceleration."""
+"""The independent balance that the fuzz judges by notices what is wrong: a state, a load factor, rates."""
 
 from dataclasses import replace
 

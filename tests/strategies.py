@@ -12,12 +12,15 @@ SHARING = ("bilinear ANCF", "bilinear CRBF", "CRBF(1)", "CRBF(2)", "CRBF(3)", "C
 NAMED = (*SHARING, "ANCF", "ANCF line", "ANCF structural", "ANCF-CRBF", "ANCF-CRBF structural", "shear-rigid")
 CONSERVATIVE = ("force", "moment", "line", "gravity")
 
-angles = st.floats(-np.pi, np.pi)
 signs = st.sampled_from((-1.0, 1.0))
 
 
 def between(low: float, high: float) -> st.SearchStrategy[float]:
-    return st.floats(low, high, allow_nan=False)
+    """Numbers of nine decimals: what is below 1e-154 is refused, and not zero."""
+    return st.floats(low, high).map(lambda value: round(value, 9))
+
+
+angles = between(-np.pi, np.pi)
 
 
 def _pair(values) -> tuple[float, float]:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from recipes import View
-from strategies import CONSERVATIVE, SHARING, recipes, views
+from strategies import CONSERVATIVE, SHARING, between, recipes, views
 
 import beamfem as bf
 from beamfem.analysis.equations import STATICS, linearise
@@ -233,7 +233,7 @@ def test_a_load_between_nodes_is_one_on_a_node_there(recipe, fraction):
     assert found[0] == pytest.approx(found[1], abs=1e-12)
 
 
-@given(recipes(axis_kinds=LINES, most=1, led=False), st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3))
+@given(recipes(axis_kinds=LINES, most=1, led=False), st.lists(between(-1.0, 1.0), min_size=3, max_size=3))
 def test_a_table_is_the_function_that_it_samples(recipe, values):
     """Exactly where it is linear between its points, over the length and over time."""
     built = recipe.build()

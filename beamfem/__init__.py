@@ -4,8 +4,8 @@ from beamfem.analysis.buckling import Buckling, solve_buckling
 from beamfem.analysis.dynamics import simulate
 from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.modes import Modes, solve_modes
-from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static
 from beamfem.analysis.trace import trace_equilibrium
 from beamfem.convergence.study import converge

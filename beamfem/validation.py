@@ -29,6 +29,8 @@ def shown(value: Any) -> str:
 
 def _number(value: Any) -> float:
     """Return a float of what is one number; float() would read text and truth values as well, and cut complex ones."""
+    if type(value) is float:  # as nearly all are: models of 100,000 beams are checked in a second
+        return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
     if isinstance(value, str | bytes | bool | np.bool_ | np.complexfloating | np.ndarray):
@@ -86,6 +88,8 @@ def convert(item: object, check: Callable[[str, Any], Any], *names: str) -> None
 
 def items(name: str, values: Any) -> list[Any]:
     """Return what a list, tuple or array holds, or raise InputError naming it: text, sets and mappings are none."""
+    if type(values) is list or type(values) is tuple:
+        return list(values)
     if not isinstance(values, str | bytes | bytearray | Set | Mapping):
         with suppress(TypeError):
             return list(values)
@@ -172,6 +176,8 @@ def _nearest(word: Any, known: Sequence[str]) -> str | None:
 
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
     """Return `value` as two finite floats, or raise InputError naming it."""
+    if type(value) is tuple and [type(number) for number in value] == [float, float] and all(map(math.isfinite, value)):
+        return value[0], value[1]
     try:
         numbers = tuple(map(_number, items(name, value)))
     except (TypeError, ValueError, OverflowError):

@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.analysis import cut_chain, newton
-from beamfem.analysis.newton import Ended, Newton
+from beamfem.analysis.iteration import Ended, Newton
 from beamfem.model.system import system_of
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)

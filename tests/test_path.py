@@ -8,7 +8,7 @@ import beamfem as bf
 from beamfem.analysis.bifurcations import bifurcations
 from beamfem.analysis.continuation import begin
 from beamfem.analysis.critical_points import Segment
-from beamfem.analysis.newton import Newton
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.trace import trace_equilibrium
 from beamfem.model.system import System
 

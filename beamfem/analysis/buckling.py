@@ -13,9 +13,10 @@ from beamfem.analysis.eigenpairs import digits_for
 from beamfem.analysis.equations import STATICS, linearise, load_slope
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.initial import resting_state
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.linearised import linearised_loads
 from beamfem.analysis.loading_path import LoadingPath, PathLostError
-from beamfem.analysis.newton import Newton, solve_equilibrium
+from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.model.model import Model

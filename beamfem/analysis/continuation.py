@@ -7,7 +7,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, load_slope, predicted_stresses, residual
-from beamfem.analysis.newton import Ended, Newton, verdict
+from beamfem.analysis.iteration import Ended, Newton
+from beamfem.analysis.newton import verdict
 from beamfem.analysis.round_off import loses_digits
 from beamfem.analysis.tangent import Factorised
 from beamfem.errors import ConvergenceError

@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.continuation import Continuation, PathPoint, begin
 from beamfem.analysis.critical_points import Segment, SegmentLostError
-from beamfem.analysis.newton import Newton
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small
 from beamfem.errors import BeamfemError
 from beamfem.model.system import System

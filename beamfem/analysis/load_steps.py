@@ -7,8 +7,9 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses
+from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
-from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
+from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.snap import rest_state
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError, LimitPointError

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.continuation import PathPoint, begin
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.lowest import lowest_pairs
-from beamfem.analysis.newton import Newton
 from beamfem.analysis.pencil import Pencil
 from beamfem.analysis.steps import longest_step, too_small
 from beamfem.errors import BeamfemError, ConvergenceError

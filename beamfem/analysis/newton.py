@@ -3,7 +3,6 @@
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from enum import Enum
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -11,6 +10,7 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
 from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
+from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.round_off import (
     ENOUGH,
     MOST_DIGITS,
@@ -21,84 +21,14 @@ from beamfem.analysis.round_off import (
     row_floors,
 )
 from beamfem.analysis.tangent import SMALLEST_PIVOT
-from beamfem.errors import InputError
 from beamfem.kernels.balance import smallest_jacobian
 from beamfem.kernels.equilibrate import equilibrate
 from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
-from beamfem.validation import convert, count, flag, positive, shown
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 _SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
 _LARGEST = 1e3  # of the model; larger corrections lead nowhere
-
-
-class Ended(Enum):
-    """Why an iteration ended; the values are the sentences that users read."""
-
-    CONVERGED = "the correction and the residual are within the tolerance"
-    ROUND_OFF = "the residual has reached the round-off floor of the model"
-    DIVERGED = "the corrections grew beyond the size of the model"
-    EXHAUSTED = "the iterations ran out before the corrections became small"
-    SINGULAR = "the tangent is singular"
-    NO_DIGITS = "round-off leaves no digit of the forces: stiffnesses and loads of this model are too far apart"
-    LOST = "the count of negative pivots changed on the way, so the equilibrium may be one of another path"
-    INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
-
-    @property
-    def good(self) -> bool:
-        return self in (Ended.CONVERGED, Ended.ROUND_OFF)
-
-
-@dataclass(frozen=True)
-class NewtonResult:
-    """The last state (n,) of an iteration, how many iterations it took and why it ended.
-
-    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
-    digits: how many of the forces are sure at least; first: size of the first correction [-].
-    """
-
-    state: np.ndarray
-    iterations: int
-    ended: Ended
-    negative_pivots: int = 0
-    digits: float = np.nan
-    first: float = np.nan
-
-
-@dataclass(frozen=True)
-class Newton:
-    """How to iterate.
-
-    tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
-    relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
-    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
-    Raises InputError.
-    """
-
-    tolerance: float = 1e-10
-    residual_tolerance: float = 1e-9
-    iterations: int = 15
-    independent_stresses: bool = True
-
-    def __post_init__(self) -> None:
-        convert(self, positive, "tolerance", "residual_tolerance")
-        convert(self, count, "iterations")
-        convert(self, flag, "independent_stresses")
-        if max(self.tolerance, self.residual_tolerance) >= 1.0:
-            raise InputError(
-                "tolerance and residual_tolerance of Newton are shares of the model and of its loads, below 1, got "
-                f"{self.tolerance:g} and {self.residual_tolerance:g}"
-            )
-
-
-def require_newton(newton: Newton | None, default: Newton) -> Newton:
-    """Return what a user gives, or the default for None. Raises InputError for anything else."""
-    if newton is None:
-        return default
-    if not isinstance(newton, Newton):
-        raise InputError(f"newton must be a Newton(tolerance=..., iterations=...), got {shown(newton)}")
-    return newton
 
 
 def solve_equilibrium(

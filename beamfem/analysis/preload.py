@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from beamfem.analysis.equations import residual
+from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.load_steps import reach
-from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
+from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.round_off import row_floors
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import INERTIA, linearise, residual
-from beamfem.analysis.newton import Ended, Newton, NewtonResult, solve_equilibrium
+from beamfem.analysis.iteration import Ended, Newton, NewtonResult
+from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.pencil import UNTURNED
 from beamfem.model.system import System
 

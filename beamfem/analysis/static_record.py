@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from beamfem.analysis.newton import Ended
+from beamfem.analysis.iteration import Ended
 from beamfem.analysis.round_off import FEW_DIGITS
 from beamfem.errors import RoundOffWarning, UnstableWarning
 from beamfem.model.model import Model

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.interrupted import kept
+from beamfem.analysis.iteration import Newton, require_newton
 from beamfem.analysis.load_steps import Snap, reach
-from beamfem.analysis.newton import Newton, require_newton
 from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.compiled import tell_of_compilation

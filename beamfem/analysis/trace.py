@@ -12,7 +12,7 @@ from beamfem.analysis.continuation import Continuation, PathPoint, begin
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.free_motion import require_support
 from beamfem.analysis.interrupted import kept
-from beamfem.analysis.newton import Newton, require_newton
+from beamfem.analysis.iteration import Newton, require_newton
 from beamfem.analysis.path_record import PathRecord
 from beamfem.analysis.preload import first_equilibrium
 from beamfem.analysis.steps import Step, longest_step, take_step, too_small

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.validation import convert, vector
+from beamfem.validation import vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,8 @@ class Line:
     end: tuple[float, float]
 
     def __post_init__(self) -> None:
-        convert(self, vector, "start", "end")
+        object.__setattr__(self, "start", vector("start of Line", self.start))
+        object.__setattr__(self, "end", vector("end of Line", self.end))
         if self.start == self.end:
             raise InputError(f"a Line needs two different points, start and end are both {self.start}")
 

@@ -1,16 +1,20 @@
 """Whether double precision holds what the solvers form of a beam."""
 
-from collections.abc import Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.curves import Line
 from beamfem.errors import InputError
+from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import LARGEST, SMALLEST
 
 if TYPE_CHECKING:
     from beamfem.model.beam import Beam
+
+_SAMPLES = 5  # points of a curve at which its coordinates are looked at
 
 
 def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
@@ -19,9 +23,10 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     They are its coordinates and the length h of its shortest element [m], E A, k_s G A, E A / h, k_s G A h, E I / h and
     E I / h^3, the mass of an element and its rotary inertia over h^2, and of a body the moments of its section times E.
     """
-    with np.errstate(over="ignore", under="ignore", divide="ignore", invalid="ignore"):
-        formed = tuple(_formed(beam, section))
-    for name, value, unit in formed:
+    found = _formed(beam, section)
+    if min(found) >= SMALLEST and max(found) <= LARGEST:
+        return
+    for (name, unit), value in zip(_names(beam, section), found, strict=True):
         if not SMALLEST <= value <= LARGEST:
             raise InputError(
                 f"{name} of {beam!r} is {value:g} {unit}, beyond what double precision can square ({SMALLEST:.1g} to "
@@ -29,24 +34,52 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
             )
 
 
-def _formed(beam: "Beam", section: CrossSection) -> Iterator[tuple[str, float, str]]:
+def _formed(beam: "Beam", section: CrossSection) -> list[float]:
+    """Return the quantities as plain numbers, of which products and quotients overflow without an error."""
     curve = beam.curve
-    yield "the length", float(curve.length), "m"
-    reach = max(1.0, float(np.abs(curve.position(np.linspace(0.0, curve.length, 5))).max()))
-    yield "the largest coordinate", reach, "m"
-    h = curve.length * beam.shortest
-    yield "the length h of the shortest element", h, "m"
-    rigidity, inertia = section.rigidity(beam.material), section.inertia(beam.material)
-    for name, value in (("E A", rigidity.axial), ("k_s G A", rigidity.shear)):
-        yield name, value, "N"
-        yield f"{name} / h", value / h, "N/m"
-        yield f"{name} h", value * h, "N m"
-    yield "E I / h", rigidity.bending / h, "N m"
-    yield "E I / h^3", rigidity.bending / h / h / h, "N/m"
-    yield "the mass of an element", inertia.mass * h, "kg"
-    yield "the rotary inertia of an element over h^2", inertia.rotary / h, "kg"
+    length = float(curve.length)
+    if isinstance(curve, Line):
+        reach = max(*map(abs, curve.start), *map(abs, curve.end), 1.0)
+    else:
+        reach = max(float(np.abs(curve.position(np.linspace(0.0, length, _SAMPLES))).max()), 1.0)
+    h = length * beam.shortest
+    if not h > 0.0:
+        return [length, reach, h]
+    try:
+        axial, shear, bending, mass, rotary = _known_resistance(section, beam.material)  # type: ignore[arg-type]
+    except TypeError:  # a section of the user's that has no hash
+        axial, shear, bending, mass, rotary = _resistance(section, beam.material)
+    found = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
+    found += (bending / h, bending / h / h / h, mass * h, rotary / h)
     if beam.element.forces.fills_body:
-        for material, moments in section.moments(beam.material):
-            for order in (0, 2, 4):
-                value = material.youngs_modulus * float(moments[order]) / h ** (order + 1)
-                yield f"E times the moment of order {order} over h^{order + 1}", value, "N/m"
+        with np.errstate(over="ignore", under="ignore"):
+            parts = section.moments(beam.material)
+        for material, moments in parts:
+            area, second, fourth = (material.youngs_modulus * moments[order].item() / h for order in (0, 2, 4))
+            found += [area, second / h / h, fourth / h / h / h / h]
+    return found
+
+
+def _resistance(section: CrossSection, material: Material | None) -> tuple[float, ...]:
+    """Return E A, k_s G A [N], E I [N m^2], mass [kg/m] and rotary inertia [kg m]."""
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        rigidity, inertia = section.rigidity(material), section.inertia(material)
+    return tuple(map(float, (rigidity.axial, rigidity.shear, rigidity.bending, inertia.mass, inertia.rotary)))
+
+
+# the beams of a frame share few sections
+_known_resistance = lru_cache(maxsize=64)(_resistance)
+
+
+def _names(beam: "Beam", section: CrossSection) -> list[tuple[str, str]]:
+    names = [("the length", "m"), ("the largest coordinate", "m"), ("the length h of the shortest element", "m")]
+    if not beam.curve.length * beam.shortest > 0.0:
+        return names
+    for stiffness in ("E A", "k_s G A"):
+        names += [(stiffness, "N"), (f"{stiffness} / h", "N/m"), (f"{stiffness} h", "N m")]
+    names += [("E I / h", "N m"), ("E I / h^3", "N/m"), ("the mass of an element", "kg")]
+    names.append(("the rotary inertia of an element over h^2", "kg"))
+    if beam.element.forces.fills_body:
+        for _ in section.moments(beam.material):
+            names += [(f"E times the moment of order {order} over h^{order + 1}", "N/m") for order in (0, 2, 4)]
+    return names

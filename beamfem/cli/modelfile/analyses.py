@@ -10,8 +10,8 @@ from beamfem.analysis.buckling import solve_buckling
 from beamfem.analysis.dynamics import simulate
 from beamfem.analysis.initial import RigidVelocity
 from beamfem.analysis.integrators import GeneralizedAlpha
+from beamfem.analysis.iteration import Newton
 from beamfem.analysis.modes import solve_modes
-from beamfem.analysis.newton import Newton
 from beamfem.analysis.statics import solve_static, solve_through
 from beamfem.analysis.trace import trace_equilibrium
 from beamfem.cli.modelfile.actions import Places

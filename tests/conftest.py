@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
@@ -13,6 +14,16 @@ from beamfem.kernels.form import ANY, known_form
 FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
 COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
 FORCES = (bf.ContinuumMechanics(), bf.ContinuumMechanics(True), bf.SplitContinuum(), bf.ElasticLine(), bf.Structural())
+
+
+# the same examples every time: few of them, many in the slow verification
+_ALWAYS = {"derandomize": True, "deadline": None, "database": None, "suppress_health_check": tuple(HealthCheck)}
+settings.register_profile("few", max_examples=8, **_ALWAYS)
+settings.register_profile("many", max_examples=300, **_ALWAYS)
+
+
+def pytest_configure(config):
+    settings.load_profile("few" if config.option.markexpr == "not slow" else "many")
 
 
 def combinations():

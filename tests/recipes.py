@@ -82,7 +82,8 @@ class View:
 class Axis:
     """Axis of a bar: "line" start, end; "arc" center, (radius, 0), (angle, angle); "wave" start, end, (rise, waves).
 
-    A wave is the line with a sine of so many half waves and a rise, as a share of its length, to the left.
+    Also "polyline" and "spline", a cubic one, by three and four points, which have no halves. A wave is the line with a
+    sine of so many half waves and a rise, as a share of its length, to the left.
     """
 
     kind: str
@@ -98,6 +99,9 @@ class Axis:
             first, last = (angles[0] + share * (angles[1] - angles[0]) for share in part)
             first, last = (view.angle + view.sense * angle for angle in (first, last))
             return bf.Arc(view.point(center), view.length * radius, first, last)
+        if self.kind in ("polyline", "spline"):
+            points = tuple(view.point(value) for value in (self.data if part[0] < part[1] else self.data[::-1]))
+            return bf.Polyline(points) if self.kind == "polyline" else bf.BSpline(3, (0.0,) * 4 + (1.0,) * 4, points)
         (start, end, (rise, waves)), matrix = np.array(self.data), view.matrix
         span = end - start
         left = rise * np.array([-span[1], span[0]])
@@ -128,7 +132,10 @@ class Bar:
 
 @dataclass(frozen=True)
 class Support:
-    """ "clamp", "pin"; "roller" (normal); "lead" (ux, uy) and, if given, turn [rad]; "turn" alone; "spring" (k, kr)."""
+    """ "clamp", "pin"; "roller" (normal); "lead" (ux, uy) and, if given, turn [rad]; "turn" alone; "spring" (k, kr).
+
+    "foundation" (k, 0) along the whole bar.
+    """
 
     kind: str
     place: Place
@@ -138,7 +145,7 @@ class Support:
 
 @dataclass(frozen=True)
 class Load:
-    """ "force" (fx, fy) and "moment" (m, 0) at a place, "line" (qx, qy) on a bar, "gravity" (gx, gy)."""
+    """ "force" (fx, fy), "moment" (m, 0) at a place, "line" (qx, qy), "pressure" (p, 0) on a bar; "gravity"."""
 
     kind: str
     place: Place
@@ -243,7 +250,13 @@ def _build(recipe: Recipe, view: View) -> Built:
             for number, (_, last) in enumerate(parts)
         ]
     beams = [beam for pieces in parts for beam in pieces]
-    supports = [_support(support, view, point(support.place)) for support in recipe.supports]
+    supports = []
+    for support in recipe.supports:
+        if support.kind == "foundation":
+            stiffness = support.values[0] * view.force / view.length**2
+            supports += [bf.Foundation(beam, (stiffness, stiffness)) for beam in parts[support.place[0]]]
+        else:
+            supports.append(_support(support, view, point(support.place)))
     loads = [made for load in recipe.loads for made in _loads(load, view, point(load.place), parts)]
     model = bf.Model(beams[::-1] if view.reordered else beams, supports, loads, joints)
     return Built(recipe, view, model, tuple(parts))
@@ -283,6 +296,9 @@ def _loads(load: Load, view: View, at: bf.Point, parts) -> list[bf.model.loads.L
         return [bf.Gravity(view.vector(load.values, view.length), **how)]
     if load.kind == "moment":
         return [bf.PointMoment(at, view.sense * view.force * view.length * load.values[0], **how)]
+    if load.kind == "pressure":
+        size = (-1.0 if view.backwards else 1.0) * view.sense * load.values[0] * view.force / view.length
+        return [bf.Pressure(beam, size, **how) for beam in parts[load.place[0]]]
     how["follower"] = load.follower
     if load.kind == "force":
         return [bf.PointForce(at, view.vector(load.values, view.force), **how)]

@@ -1,0 +1,34 @@
+"""Random models, from everyday to absurd: each ends right, by balances of its own, or in a named error."""
+
+import pytest
+from fuzz import FEW, judged, run, summary
+from fuzz_judged import Outcome
+
+QUICK, MANY = 60, 10_000
+
+
+def unexplained(outcomes):
+    return "\n".join(f"seed {found.seed}: {found.verdict}: {found.said}" for found in outcomes if found.unexplained)
+
+
+def test_60_random_models_end_right_or_in_a_named_error():
+    outcomes = [judged(seed, FEW) for seed in range(QUICK)]
+    assert not unexplained(outcomes), unexplained(outcomes)
+    verdicts = [found.verdict for found in outcomes]
+    assert verdicts.count("right") > QUICK // 2
+    assert len({found.analysis for found in outcomes if found.verdict == "right"}) == 5
+
+
+@pytest.mark.slow
+def test_10_000_random_models_end_right_or_in_a_named_error(capsys):
+    outcomes = run(range(MANY))
+    with capsys.disabled():
+        print("\n" + summary(outcomes))
+    assert len(outcomes) == MANY
+    assert not unexplained(outcomes), unexplained(outcomes)
+
+
+def test_the_summary_counts_each_analysis_and_names_the_seeds_of_what_is_wrong():
+    found = summary([Outcome(3, "static", "right"), Outcome(4, "modes", "wrong", "too soft")])
+    assert found.splitlines()[0] == "2 random models"
+    assert found.splitlines()[-1] == "seed 4: wrong: too soft"

@@ -104,16 +104,16 @@ def text(name: str, value: Any) -> str:
 
 
 def squared(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
-    """Return a check that refuses numbers, other than zero, whose square double precision does not hold as well."""
+    """Return a check that refuses numbers and vectors, other than zero, whose square double precision does not hold."""
 
     def checked(name: str, value: Any) -> Any:
         found = check(name, value)
-        for number in found if isinstance(found, tuple) else (found,):
-            if number != 0.0 and not SMALLEST <= abs(number) <= LARGEST:
-                raise InputError(
-                    f"{name} is {number:g}, which double precision cannot square ({SMALLEST:.1g} to {LARGEST:.1g}); "
-                    "take zero, or units in which it is closer to 1"
-                )
+        size = max(map(abs, found)) if isinstance(found, tuple) else abs(found)
+        if size != 0.0 and not SMALLEST <= size <= LARGEST:
+            raise InputError(
+                f"{name} is {size:g}, which double precision cannot square ({SMALLEST:.1g} to {LARGEST:.1g}); "
+                "take zero, or units in which it is closer to 1"
+            )
         return found
 
     return checked

@@ -91,7 +91,7 @@ def test_an_inclined_column_buckles_at_the_same_load():
 
 def test_every_element_finds_load_and_shape(element):
     """Elements that lock or whose bending stiffness is not EI agree with their own vibration: no frequency is left."""
-    model = column(SUPPORTS["cantilever"], 10, 8, element)
+    model = column(SUPPORTS["cantilever"], 10, max(8 // element.field.degree, 3), element)
     found = bf.solve_buckling(model)
     shape = found.solution(amplitude=0.1)
     beam = model.beams[0]

@@ -24,7 +24,7 @@ VIEWS = {
     "all": View(2.0, True, (1.0, 5.0), 1e3, 1.0, True, True, True),
 }
 LED = ("lead", "turn")
-QUICK = (0, 2, 6, 12, 14, 19, 24, 33)
+QUICK = (0, 6, 12, 19, 33)
 QUICK_VIEWS = ("turned", "split", "mm", "all")
 MANY = range(500, 700)
 

@@ -79,7 +79,10 @@ def test_a_renderer_that_kills_its_process_is_found_out(monkeypatch):
     rendering.can_render.cache_clear()
 
 
-@pytest.mark.parametrize(("options", "message"), [({"row": 7}, "no row 7"), ({"colour": "torsion"}, "no quantity")])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [({"row": 7}, "row must be between"), ({"colour": "torsion"}, "no quantity")],
+)
 def test_what_cannot_be_shown_is_named(bent, tmp_path, monkeypatch, options, message):
     monkeypatch.setattr(body, "can_render", lambda: True)
     with pytest.raises(bf.InputError, match=message):

@@ -103,13 +103,13 @@ def test_bad_input_ends_with_2_and_names_the_line(tmp_path):
     file.write_text(CANTILEVER.read_text().replace("height = 0.01", "height = -0.01"))
     done = invoke("run", file)
     assert (done.exit_code, done.stdout) == (2, "")
-    message = f"{file}:13: sections.square.height: height must be greater than zero, got -0.01"
+    message = f"{file}:13: sections.square.height: height of Rectangle must be greater than zero, got -0.01"
     assert done.stderr.strip() == f"error: {message}"
     found = json.loads(invoke("run", file, "--json").stdout)
     assert found["exit_code"] == 2
     assert found["error"] == {
         "type": "ModelFileError",
-        "message": "height must be greater than zero, got -0.01",
+        "message": "height of Rectangle must be greater than zero, got -0.01",
         "file": str(file),
         "line": 13,
         "key": "sections.square.height",

@@ -294,7 +294,7 @@ def test_modes_carry_their_frequencies(tmp_path):
 @pytest.mark.parametrize(
     ("draw", "message"),
     [
-        (lambda s: s.plot(colour="torsion"), "no quantity 'torsion' along a beam; those that are: moment"),
+        (lambda s: s.plot(colour="torsion"), "no quantity 'torsion' along a beam; known are moment"),
         (lambda s: s.plot(shapes=0), "shapes must be at least 1"),
         (lambda s: s.plot_history(s.model.beams[0].end, "torsion"), "no history of 'torsion'"),
         (lambda s: s.plot_history(), "needs a point such as beam.end"),

@@ -108,11 +108,23 @@ def test_a_tangent_that_is_said_to_be_symmetric_is(recipe):
 
 @given(recipes(load_kinds=("force", "moment"), followers=False, most=2))
 def test_the_work_of_slow_loads_is_stored_in_beams_and_springs(recipe):
-    """Gauss' rule over the load factor integrates the work, of forces, moments and what leads the supports."""
+    """Gauss' rule over the load factor integrates the work, of forces, moments and what leads the supports.
+
+    Where the tangent is soft on the way the work bends sharply there, and takes more panels.
+    """
     assume(all(load.scale for load in recipe.loads))
     assume(all(support.kind != "foundation" for support in recipe.supports))
+    stored, work = stored_and_done(recipe, panels=1)
+    if stored != pytest.approx(work, rel=1e-6, abs=1e-12 * recipe.reach):
+        stored, work = stored_and_done(recipe, panels=8)
+    assert stored == pytest.approx(work, rel=1e-6, abs=1e-12 * recipe.reach)
+
+
+def stored_and_done(recipe, panels):
+    """Energy of beams and springs, and the work done, by Gauss' rule with 10 points a panel of the load factor."""
     built, (nodes, weights) = recipe.build(), np.polynomial.legendre.leggauss(10)
-    nodes, weights = 0.5 * (1.0 + nodes), 0.5 * weights
+    nodes = ((0.5 + 0.5 * nodes + np.arange(panels)[:, None]) / panels).ravel()
+    weights = np.tile(0.5 * weights / panels, panels)
     try:
         path = solve_through(built.model, nodes.tolist(), 3)
     except bf.LimitPointError:
@@ -136,7 +148,7 @@ def test_the_work_of_slow_loads_is_stored_in_beams_and_springs(recipe):
         if isinstance(support, bf.Spring):
             stored += 0.5 * path.displacement(support.point)[-1] ** 2 @ np.array(support.stiffness)
             stored += 0.5 * path.rotation(support.point)[-1] ** 2 * support.rotational
-    assert stored == pytest.approx(work, rel=1e-6, abs=1e-12 * recipe.reach)
+    return stored, work
 
 
 @given(recipes(load_kinds=CONSERVATIVE, followers=False, led=False, most=2, largest=SUDDEN, alike=True))

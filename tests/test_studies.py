@@ -229,7 +229,7 @@ def test_two_circles_in_one_step():
     assert (run.steps, run.iterations <= 6) == (1, True)
 
 
-@pytest.mark.parametrize("turns", [1, 2])
+@pytest.mark.parametrize("turns", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_continuum_forces_turn_as_uniform_bending_does(turns):
     """Energy of a uniformly bent section, no elements."""
     forces = bf.ContinuumMechanics()

@@ -173,7 +173,7 @@ def test_other_suffixes_are_refused(solution, tmp_path):
     with pytest.raises(bf.InputError, match=r'swing\.pvd" would be right'):
         solution.to_vtk(tmp_path / "swing.vtu")
     assert not list(tmp_path.iterdir())
-    with pytest.raises(bf.InputError, match=r"\.pvd"):
+    with pytest.raises(bf.InputError, match="a path is a text"):
         solution.to_vtk("")
 
 

@@ -68,7 +68,7 @@ def loads_of(path):
     return [found.load_factor for found in path.bifurcations]
 
 
-@pytest.mark.parametrize("gap", [1e-2, 1e-3, 1e-4, -1e-2])
+@pytest.mark.parametrize("gap", [pytest.param(1e-2, marks=pytest.mark.slow), 1e-3, 1e-4, -1e-2])
 def test_two_close_buckling_loads_are_told_apart_and_each_branch_leads_to_its_own_mode(gap):
     beam, model = hinged(gap)
     path = trace_equilibrium(model, 60.0)

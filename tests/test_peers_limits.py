@@ -45,6 +45,7 @@ def test_bytes_of_the_band():
     assert traffic[roofline_cases.SOLVE] == 8 * unknown * (width + 4)
 
 
+@pytest.mark.slow
 def test_the_roofline_has_a_line_for_each_kernel():
     top = roofline.Ceilings(memory=40.0, cache=200.0, peak=100.0, scalar=16.0, chain=2.0)
     counts = dict.fromkeys(roofline_cases.KERNELS, (100.0, 2.0))

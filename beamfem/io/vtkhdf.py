@@ -3,6 +3,7 @@
 Source: Kitware, VTKHDF File Format 2.6 (temporal UnstructuredGrid), docs.vtk.org.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,11 +25,11 @@ def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> 
 
     Cells are stored once, points and point data for every step. Raises BeamfemError without h5py.
     """
-    with written_hdf5(path) as (file, _):
-        _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk)
+    with written_hdf5(path) as (file, require_written):
+        _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk, require_written)
 
 
-def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
+def _write(root: Any, solution: "Solution", cells: Cells, chunk: int, require_written: Callable[[], None]) -> None:
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands
     root.attrs.create("Type", np.bytes_("UnstructuredGrid"))
@@ -66,6 +67,8 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int) -> None:
                 )
             flat = values.reshape(-1, *values.shape[2:])
             place[key][first * cells.points : first * cells.points + len(flat)] = flat
+        root.file.flush()
+        require_written()
     _write_steps(root.create_group("Steps"), solution, cells, list(point_data), list(cell_data), name)
 
 

@@ -48,6 +48,26 @@ def test_a_section_of_unknown_height_has_no_face():
     assert np.isfinite(bf.solve_static(model).p).all()
 
 
+def test_continuum_forces_integrate_over_the_equivalent_rectangle_whatever_is_known():
+    """0.1 m high by its moments, on an arc of 0.04 m: the energy of what lies behind the centre would be negative."""
+    section = bf.Section(1e-3, 1e-3 * 0.1**2 / 12.0)
+    for element, refused in ((bf.ANCF(), True), (bf.CRBF(1), False)):
+        beam = bf.Beam(bf.Arc((0.0, 0.0), 0.04, 0.0, 1.0), 8, element, section, STEEL)
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1.0))])
+        if refused:
+            with pytest.raises(bf.InputError, match=r"reaches 0\.05 m"):
+                bf.solve_static(model)
+        else:
+            assert np.isfinite(bf.solve_static(model).p).all()
+
+
+def test_the_size_of_a_beam_of_knot_spans_is_that_of_its_spans():
+    spline = bf.BSpline(3, (0, 0, 0, 0, 0.25, 0.5, 1, 1, 1, 1), ((0, 0), (1, 0), (2, 1), (3, 0), (4, 0), (5, 1)))
+    beam = bf.Beam(spline, "knots", bf.ANCF(), bf.Rectangle(0.1, 0.1), STEEL)
+    assert beam.element_count == 3
+    assert bf.Beam(spline, [0.0, 0.1, 1.0], bf.ANCF(), bf.Rectangle(0.1, 0.1), STEEL).element_count == 2
+
+
 def test_noise_is_refused_at_once():
     random = np.random.default_rng(0)
 

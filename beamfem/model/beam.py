@@ -93,17 +93,22 @@ class Beam:
         return find_jumps(self.section, self._measured, self.curve.length, self.samples)
 
     @property
-    def shortest(self) -> float:
-        """Share of the shortest element in the length, before supports and loads divide it."""
+    def element_count(self) -> int:
+        """Number of elements, before supports and loads divide them."""
         if isinstance(self.elements, str):
-            return 1.0 / (len(cast(BSpline, self.curve).breaks) - 1)
-        return 1.0 / self.elements if isinstance(self.elements, int) else float(np.diff(self.elements).min())
+            return len(cast(BSpline, self.curve).breaks) - 1
+        return self.elements if isinstance(self.elements, int) else len(self.elements) - 1
+
+    @property
+    def shortest(self) -> float:
+        """Share of the shortest element in the length, before supports and loads divide it; of knot spans the mean."""
+        whole = isinstance(self.elements, int | str)
+        return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 
     @property
     def samples(self) -> int:
         """Number of equal parts among which jumps of functions of its arc length are looked for."""
-        parts = 1 if isinstance(self.elements, str) else self.elements
-        return max(parts if isinstance(parts, int) else len(parts) - 1, _SAMPLES)
+        return max(self.element_count, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
         """Return what elastic forces, inertia and drawing take of the section at an arc length, as numbers."""

@@ -32,10 +32,10 @@ def require_body(grid: Grid) -> None:
 
 
 def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:
-    """Return lower and upper y [m] of a section, the axis where its height is not known."""
-    if not isinstance(section, HasParts):
-        return 0.0, 0.0
-    parts = section.parts(grid.beam.material)
-    if not all(part.outline.known for part in parts):
+    """Return lower and upper y [m] of a section, the axis where its height is neither known nor integrated over."""
+    if grid.beam.element.forces.fills_body:
+        return section.bounds
+    parts = section.parts(grid.beam.material) if isinstance(section, HasParts) else ()
+    if not parts or not all(part.outline.known for part in parts):
         return 0.0, 0.0
     return parts[0].outline.low, parts[-1].outline.high

@@ -24,7 +24,7 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     E I / h^3, the mass of an element and its rotary inertia over h^2, and of a body the moments of its section times E.
     """
     found = _formed(beam, section)
-    if min(found) >= SMALLEST and max(found) <= LARGEST:
+    if all(SMALLEST <= value <= LARGEST for value in found):
         return
     for (name, unit), value in zip(_names(beam, section), found, strict=True):
         if not SMALLEST <= value <= LARGEST:

@@ -16,20 +16,14 @@ def require_room(beams: Sequence[Beam]) -> None:
     needed = _COORDINATE * sum(map(_coordinates, beams))
     if memory is None or needed <= SHARE * memory:
         return
-    most = max(beams, key=_coordinates)
+    most, elements = max(beams, key=_coordinates), sum(beam.element_count for beam in beams)
     raise InputError(
-        f"the {sum(map(_elements, beams)):.4g} elements of this model need {in_gib(needed)} at the least, and this "
+        f"the {elements:.4g} elements of this model need {in_gib(needed)} at the least, and this "
         f"computer has {in_gib(memory)}; the most are in {most!r}, take fewer"
     )
-
-
-def _elements(beam: Beam) -> int:
-    if isinstance(beam.elements, int):
-        return beam.elements
-    return len(beam.elements)
 
 
 def _coordinates(beam: Beam) -> int:
     element = beam.element
     names = labels(element.coordinates.code, element.field.vectors)
-    return _elements(beam) * (len(element.field.nodes) - 1) * len(names)
+    return beam.element_count * (len(element.field.nodes) - 1) * len(names)

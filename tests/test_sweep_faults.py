@@ -34,6 +34,22 @@ def test_what_an_interrupted_sweep_computed_is_kept():
     assert "in the `sweep` of this exception" in caught.value.__notes__[0]
 
 
+class Plain(ThreadPoolExecutor):
+    """An executor as dask's is: its shutdown takes nothing but `wait`."""
+
+    def __init__(self):
+        super().__init__(2)
+
+    def shutdown(self, wait=True):
+        super().shutdown(wait)
+
+
+def test_an_interruption_reaches_through_any_executor():
+    with pytest.raises(KeyboardInterrupt) as caught:
+        bf.sweep(interrupts, x=[1, 2, 3, 4], executor=Plain)
+    assert caught.value.sweep.values[:2] == (1, 2)
+
+
 SCRIPT = """
 import os, sys, time
 from concurrent.futures import ProcessPoolExecutor

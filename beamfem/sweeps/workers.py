@@ -112,7 +112,7 @@ def workers(executor: Executor) -> int:
 def end_workers(executor: Executor) -> None:
     """End a process pool at once, in the middle of its calls; whatever else works for an executor is left to itself."""
     processes = dict(getattr(executor, "_processes", None) or {})
-    executor.shutdown(wait=False, cancel_futures=True)
+    executor.shutdown(wait=False)
     for process in processes.values():
         process.terminate()
 

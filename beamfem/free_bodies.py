@@ -10,10 +10,9 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from beamfem.acting import Acting, Rows, acting_on, at_more_points
+from beamfem.assembly.points import elastic_forces
 from beamfem.element.axis import cross, dot
-from beamfem.kernels.band import ANY_WIDTH
 from beamfem.kernels.block import Block
-from beamfem.kernels.resist import resist
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import interpolate
 from beamfem.postprocess import direction
@@ -93,14 +92,9 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     """Return elements (ne,), which rise, of a beam cut free in rows; p (steps, n): coordinates to take there."""
     block = rows.system.blocks[mesh.block]
     number = mesh.first_element + elements
-    nodes = block.node.shape[1]
-    shape = len(p), len(elements) * nodes, 2 * block.scale.shape[1] // nodes
-    e, acceleration, force = np.empty(shape), np.empty(shape), np.empty(shape)
     states = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
-    # compiled as for the solver, so that both round alike
-    form = rows.system.forms[mesh.block]._replace(window=ANY_WIDTH)
-    resist(form, _parted(block, number), *states, np.zeros((rows.body.shape[1], 4)), e, acceleration, force)
-    e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in (e, acceleration, force))
+    found = elastic_forces(_parted(block, number), *states)
+    e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in found)
     acting = acting_on(rows, mesh, elements, e, acceleration)
     force -= acting.nodal(len(elements))
     per_node = len(mesh.vectors)

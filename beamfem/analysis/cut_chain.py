@@ -2,18 +2,16 @@
 
 import os
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from beamfem.analysis.equations import point_rows
-from beamfem.kernels.balance import balance
+from beamfem.analysis.equations import STATICS
+from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.sheet import make_sheet
 from beamfem.kernels.block import Block, PointLoads, Springs
-from beamfem.model.blocks import workspace
 from beamfem.model.system import System
 
 _LONG = 20_000  # elements; below, two threads gain little
-_STATICS = np.array([1.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,15 +19,14 @@ class Half:
     """The elements on one side of the cut: what they are made of, their state and space for a step.
 
     place: its coordinates among those of the chain; free: the unknown ones of its own in the order of elimination, from
-    the far end to the node at the cut, whose own stand last, from `inner` on; model, actions: what `balance` takes
-    before and behind the state; rows (unknown, width): its band.
+    the far end to the node at the cut, whose own stand last, from `inner` on; equations: its own, under its loads; rows
+    (unknown, width): its band.
     """
 
     place: slice
     free: np.ndarray
     inner: int
-    model: tuple[Any, ...]
-    actions: tuple[Any, ...]
+    equations: Assembler
     scale: np.ndarray
     p: np.ndarray
     rest: np.ndarray
@@ -39,9 +36,8 @@ class Half:
     rows: np.ndarray
 
     def balance(self, predicted: bool, matrix: np.ndarray) -> None:
-        """Fill the residual and, unless it is empty, the matrix; predicted: see `kernels.balance`."""
-        rest = self.rest
-        balance(*self.model, self.p, rest, rest, *self.actions, 0, _STATICS, predicted, self.residual, matrix)
+        """Fill the residual and, unless it is empty, the matrix; predicted: see `Assembler.balance`."""
+        self.equations.balance(self.p, self.rest, self.rest, self.residual, matrix, predicted)
 
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
@@ -89,7 +85,7 @@ def _half(
         system.blocks,
         system.point_loads,
         system.layouts,
-        point_rows(system, load_factor),
+        system.point_values(load_factor),
     )
     block, size, half_width = _part(whole, elements, place.start), place.stop - place.start, layout.half_width
     order = np.flatnonzero(layout.free[place] >= 0)
@@ -104,13 +100,14 @@ def _half(
     number = free[dof - place.start]
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
     springs = Springs(dof - place.start, stiffness, rest, diagonal)
-    work = workspace(block, np.empty((len(block.node), *block.reference.shape[1:])))
+    equations = Assembler((make_sheet(block, layout._replace(free=free), points),), springs, size)
+    equations.load(system.body(load_factor), (values[loaded],))
+    equations.weigh(STATICS)
     return Half(
         place=place,
         free=order,
         inner=len(order) - shared,
-        model=(system.forms, (block,), (work,), (points,), springs, (layout._replace(free=free),)),
-        actions=(system.body(load_factor), (np.ascontiguousarray(values[:, loaded]),)),
+        equations=equations,
         scale=system.scale[place],
         p=start[place].copy(),
         rest=np.zeros(size),

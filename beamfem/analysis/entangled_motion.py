@@ -1,4 +1,4 @@
-"""Time steps of models whose tangent is no narrow band: those of `kernels.advance` with a sparse factorisation.
+"""Time steps of models whose tangent is no narrow band: those of `kernels.march` with a sparse factorisation.
 
 A step is solved to the same tolerances. Only a factorisation is kept longer, for it costs as much as ten iterations.
 """
@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.band_motion import Saving
 from beamfem.analysis.equations import linearise, residual
 from beamfem.analysis.tangent import Factorised
-from beamfem.kernels.advance import complete, correct, count_turns, judge, predict
+from beamfem.kernels.motion_steps import complete, correct, count_turns, judge, predict
 from beamfem.model.system import System
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
@@ -21,7 +21,7 @@ class EntangledMotion:
     """Marches through time steps; keeps the factors of its tangent from one call to the next.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
-    coordinate, largest number of iterations; statistics (8,): see `kernels.advance.advance`.
+    coordinate, largest number of iterations; statistics (8,): see `kernels.march.march`.
     """
 
     def __init__(self, system: System, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray) -> None:
@@ -32,14 +32,14 @@ class EntangledMotion:
         self._weights = np.array(self.coefficients)
         self._inverse_scale = np.zeros(system.model.size)
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
-        self._differences = np.zeros((3, system.model.size))
+        self._differences, self._size, self._number = np.zeros((3, system.model.size)), system.model.size, np.zeros(1)
         self._factors: Factorised | None = None
 
     def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
         held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: see
-        `kernels.advance.advance`.
+        `BandMotion.advance`.
         """
         saved, first, every, counted, turned, saved_turns = saving
         dofs, statistics = self.system.held_dofs, self.statistics
@@ -48,9 +48,10 @@ class EntangledMotion:
             if not self._solve(state, before, held[step], float(time)):
                 state[:] = before
                 return step
-            ends = complete(state, before, self._differences, self._inverse_scale, dofs, self.rule)
-            statistics[6], statistics[7] = ends[0], ends[1] / self.coefficients[2]
-            count_turns(counted, before[0], state[0], turned)
+            differences, scale = self._differences, self._inverse_scale
+            change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, self._number)
+            statistics[6], statistics[7] = self._number[0], change / self.coefficients[2]
+            count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:
                 saved[(first + step) // every] = state[:3]
                 saved_turns[(first + step) // every] = turned
@@ -74,20 +75,24 @@ class EntangledMotion:
         size, first_size, done, iteration = 0.0, 0.0, False, 0
         state[:] = before
         order = 0.0 if full else statistics[6]
-        predict(state, before, self._differences, order, self.system.held_dofs, held, self.rule)
+        dofs = self.system.held_dofs
+        predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
         while iteration < most and not done:
             try:
                 right = self._correction(state, time, fresh or full)
             except LinAlgError:
                 break
-            last, size = size, correct(state, right, free, self._inverse_scale, self._weights)
+            scale = self._inverse_scale
+            last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
             fresh = False
             iteration += 1
             statistics[0] += 1
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[7])
-            done, rate = judge(iteration, size, last, rate, first_size, self.tolerance, full)
+            self._number[0] = rate
+            done = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number) != 0
+            rate = float(self._number[0])
             if not np.isfinite(size) or (not full and iteration > 1 and rate >= 0.5):
                 break
         statistics[1] = max(statistics[1], iteration)

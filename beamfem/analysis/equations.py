@@ -5,9 +5,7 @@ from scipy.sparse import csc_array
 
 from beamfem.analysis.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.analysis.tangent import BandTangent, SparseTangent, Tangent
-from beamfem.kernels.balance import balance
 from beamfem.kernels.block import Block
-from beamfem.kernels.stress import predict_stress
 from beamfem.model.system import System
 
 STATICS = (1.0, 0.0, 0.0)
@@ -19,15 +17,15 @@ _EMPTY = np.empty(0)
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
-    result, model = np.empty(len(p)), (system.forms, system.blocks, system.workspaces(), system.point_loads)
-    actions = system.body(time), point_rows(system, time), 0
-    balance(*model, system.springs, system.layouts, p, v, a, *actions, np.ones(3), False, result, _EMPTY)
+    result, assembler = np.empty(len(p)), system.assembler()
+    assembler.load(system.body(time), system.point_values(time))
+    assembler.weigh((1.0, 1.0, 1.0))
+    assembler.balance(*_plain(p, v, a), result, _EMPTY, False)
     return result
 
 
-def point_rows(system: System, time: float) -> tuple[np.ndarray, ...]:
-    """Return the forces and moments (1, nl, 3) of each block at a time, as the kernels take them."""
-    return tuple(values[None] for values in system.point_values(time))
+def _plain(*states: np.ndarray) -> tuple[np.ndarray, ...]:
+    return tuple(np.ascontiguousarray(state, dtype=float) for state in states)
 
 
 def linearise(
@@ -49,10 +47,10 @@ def linearise(
     unknown, pattern = len(unknowns.dofs), unknowns.pattern
     width = 2 * system.layouts[0].half_width + 1
     matrix = np.empty(unknown * width if pattern is None else len(pattern.data))
-    result, loads = np.empty(len(p)), system.point_loads
-    model = system.forms, blocks or system.blocks, system.workspaces(stresses), loads, system.springs, system.layouts
-    actions = system.body(time), point_rows(system, time), 0
-    balance(*model, p, v, a, *actions, np.array(coefficients), stresses is not None, result, matrix)
+    result, assembler = np.empty(len(p)), system.assembler(stresses, blocks)
+    assembler.load(system.body(time), system.point_values(time))
+    assembler.weigh(coefficients)
+    assembler.balance(*_plain(p, v, a), result, matrix, stresses is not None)
     tangent: Tangent
     if pattern is None:
         tangent = BandTangent(matrix.reshape(unknown, width))
@@ -104,11 +102,9 @@ def predicted_stresses(
 
     blocks: to take instead of those of the system.
     """
-    own = blocks or system.blocks
-    stresses = tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in own)
-    for form, block, work, stress in zip(system.forms, own, system.workspaces(), stresses, strict=True):
-        predict_stress(form, block, work, p, step, stress)
-    return stresses
+    assembler = system.assembler(blocks=blocks)
+    assembler.predict(*_plain(p, step))
+    return assembler.stresses
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:

@@ -12,10 +12,8 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.cut_chain import Half
 from beamfem.analysis.tangent import SMALLEST_PIVOT
-from beamfem.kernels.balance import smallest_jacobian
-from beamfem.kernels.band import factor, solve_upper
-from beamfem.kernels.equilibrate import take
-from beamfem.kernels.stress import predict_stress
+from beamfem.kernels.band import band
+from beamfem.kernels.newton import take_step
 
 _NOTHING = np.empty(0)
 T = TypeVar("T")
@@ -68,7 +66,8 @@ def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray,
     if change is not None:
         right[:inner] -= change[1][half.place][half.free[:inner]]
     diagonal = np.abs(rows[inner:, middle])
-    if not factor(rows, right, half.step[:inner], half.model[0][0].window) > SMALLEST_PIVOT:
+    own = band(middle)
+    if not own.factor(len(rows), inner, middle, 1, rows, right, half.step) > SMALLEST_PIVOT:
         raise LinAlgError("a pivot is tiny")
     i, j = np.ogrid[: len(diagonal), : len(diagonal)]
     return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal
@@ -76,13 +75,13 @@ def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray,
 
 def _advance(half: Half, predicts: bool, change: Change) -> float:
     """Take the step, whose shared unknowns are known; return its relative size."""
-    (form,), (block,), (work,) = half.model[:3]
-    solve_upper(half.rows[: half.inner], half.right, form.window)
+    middle = half.rows.shape[1] // 2
+    band(middle).solve_upper(half.inner, len(half.right), middle, half.rows, half.right)
     half.step[:] = 0.0 if change is None else change[0][half.place]
     half.step[half.free] = half.right
     if predicts:
-        predict_stress(form, block, work, half.p, half.step, work.stress)
-    return float(take(half.step, half.p, half.scale))
+        half.equations.predict(half.p, half.step)
+    return float(take_step(len(half.p), half.step, half.p, half.scale))
 
 
 def joined(halves: tuple[Half, Half], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:
@@ -97,4 +96,4 @@ def joined(halves: tuple[Half, Half], pool: Executor) -> tuple[np.ndarray, np.nd
 
 def _balanced(half: Half) -> float:
     half.balance(False, _NOTHING)
-    return float(smallest_jacobian(*half.model[:3]))
+    return half.equations.smallest_jacobian(half.p)

@@ -15,10 +15,8 @@ from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from beamfem.analysis.tangent import Stresses, Tangent, Turned, turning
+from beamfem.assembly.points import free_sheet, resultants
 from beamfem.kernels.block import Block
-from beamfem.kernels.form import Form
-from beamfem.kernels.stress import predict_stress
-from beamfem.model.blocks import workspace
 from beamfem.model.system import System
 
 _REFINEMENTS = 2  # each equation then holds to the digits of its own terms, however large others are (Skeel 1980)
@@ -163,7 +161,7 @@ def mixed(
     everything.
     """
     none = np.empty(0, dtype=np.int64), np.empty((0, 2))
-    parts = [_elastic(system, *own, p) for own in zip(system.forms, system.blocks, strict=True)]
+    parts = [_elastic(system, block, p) for block in system.blocks]
     slopes, flexibility, weight, strain = zip(*parts, strict=True)
     sizes = [len(own) for own in weight]
     placed = block_array([[own if i == j else None for j in range(len(sizes))] for i, own in enumerate(flexibility)])
@@ -179,7 +177,7 @@ def resisting(block: Block) -> np.ndarray:
 
 
 def _elastic(
-    system: System, form: Form, block: Block, p: np.ndarray
+    system: System, block: Block, p: np.ndarray
 ) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
     """Return strains by coordinates (m, n), weights times inverse stiffness (m, m), weights and strains (m,)."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
@@ -195,12 +193,11 @@ def _elastic(
         frame=block.frame[own],
         stiffness=np.ascontiguousarray(np.broadcast_to(np.eye(strains), block.stiffness.shape)),
     )
-    work, at = workspace(part), np.where(dof >= 0, p[dof], 0.0).ravel()
+    at = np.where(dof >= 0, p[dof], 0.0).ravel()
+    sheet = free_sheet(part, len(at))
 
     def measured(step: np.ndarray) -> np.ndarray:
-        result = np.empty((elements, points, strains))
-        predict_stress(form, part, work, at, step, result)
-        return result
+        return resultants(sheet, at, step)
 
     loose = np.abs(block.stiffness).max(axis=3) == 0.0
     resists = resisting(block)

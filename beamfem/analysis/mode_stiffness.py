@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses
 from beamfem.analysis.pencil import UNTURNED
-from beamfem.kernels.stress import predict_stress
+from beamfem.assembly.points import free_sheet, resultants
 from beamfem.model.system import System
 
 
@@ -25,16 +25,12 @@ def stiffness_of_modes(
     """
     rest, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
-    for form, block, work in zip(system.forms, system.blocks, system.workspaces(), strict=True):
+    for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
         unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
-        plain = block._replace(stiffness=unit)
-        before, after = np.empty((2, len(block.kind), points, measures))
-        predict_stress(form, plain, work, p, rest, before)
-        strains = np.empty((count, *before.shape))
-        for mode, strain in zip(modes, strains, strict=True):
-            predict_stress(form, plain, work, p, np.ascontiguousarray(mode), after)
-            np.subtract(after, before, out=strain)
+        plain = free_sheet(block._replace(stiffness=unit), len(p))
+        before = resultants(plain, p, rest)
+        strains = np.array([resultants(plain, p, mode) - before for mode in modes]).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
     stresses = stresses_of(system, p, rest if correction is None else correction)
@@ -46,7 +42,7 @@ def stiffness_of_modes(
 def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the stress resultants of a state, of each block (ne, nq, ns): none at all in the reference."""
     if np.array_equal(p, system.reference):
-        return tuple(np.zeros_like(stresses) for stresses in system.stress_tables())
+        return tuple(np.zeros_like(stresses) for stresses in system.assembler().stresses)
     return predicted_stresses(system, p, correction)
 
 

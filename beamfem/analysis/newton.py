@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.analysis.cut_chain import halves_of, worth_cutting
-from beamfem.analysis.equations import MIXED, STATICS, linearise, point_rows, predicted_stresses, residual
+from beamfem.analysis.equations import MIXED, STATICS, linearise, predicted_stresses, residual
 from beamfem.analysis.halves import correct, joined, negative_pivots
 from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.round_off import (
@@ -21,9 +21,9 @@ from beamfem.analysis.round_off import (
     row_floors,
 )
 from beamfem.analysis.tangent import SMALLEST_PIVOT
-from beamfem.kernels.balance import smallest_jacobian
-from beamfem.kernels.equilibrate import equilibrate
-from beamfem.kernels.reduce import place_nodes
+from beamfem.assembly.solver_table import SolverTable
+from beamfem.kernels import record
+from beamfem.kernels.newton import iterate
 from beamfem.model.system import System
 
 _STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
@@ -110,28 +110,34 @@ def _solve_band(
     p, held_force = start.copy(), np.zeros(len(start))
     if held_step.any():
         held_force = _held_force(system, start, held_step, load_factor)
-    rows, unbalanced = np.empty((len(system.free_dofs), 2 * system.layouts[0].half_width + 1)), np.empty(len(p))
-    values = point_rows(system, load_factor)
-    model = (
-        system.forms,
-        system.blocks,
-        system.workspaces(system.stress_tables()),
-        system.point_loads,
-        system.springs,
-        system.layouts,
-        system.free_dofs,
-        system.turned,
-    )
-    body = system.body(load_factor)
+    n, half = len(p), system.layouts[0].half_width
+    rows, unbalanced = np.empty((len(system.free_dofs), 2 * half + 1)), np.empty(n)
+    values = system.point_values(load_factor)
     found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0])
     bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
     limits = np.array(
         (*bounds, newton.iterations, newton.independent_stresses, -1 if keep is None else keep), dtype=float
     )
-    change = held_step, held_force
+    step = np.zeros(n)
+    assembler, solver = system.assembler(), SolverTable(system.free_dofs, half, system.turned)
+    assembler.load(system.body(load_factor), values)
+    assembler.weigh(STATICS)
+    assembler.place(p, step, step, unbalanced, rows)
+    parts = {
+        record.ROWS: rows,
+        record.RIGHT: np.empty(len(rows)),
+        record.STEP: step,
+        record.SCALE: system.scale,
+        record.LIMITS: limits,
+        record.FOUND: found,
+        record.HELD_STEP: held_step,
+        record.HELD_FORCE: held_force,
+    }
+    for field, array in parts.items():
+        solver.set(field, array)
     load = load_size(system, values)
     while found[0] < newton.iterations:
-        if not equilibrate(*model, p, body, values, change, system.scale, limits, rows, found, unbalanced):
+        if not iterate(assembler.table, solver.table, solver.routines):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
         negative = int(found[6])
@@ -144,7 +150,8 @@ def _solve_band(
             ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
                 return NewtonResult(p, iterations, ended, negative, left.digits, found[7])
-        change = np.zeros(len(p)), np.zeros(len(p))
+        solver.set(record.HELD_STEP, np.zeros(n))
+        solver.set(record.HELD_FORCE, np.zeros(n))
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 
@@ -266,10 +273,7 @@ def _settled(system: System, p: np.ndarray, sizes: tuple[float, float, int]) -> 
 
 def inverted(system: System, p: np.ndarray) -> bool:
     """Tell whether r0' x d is negative at some Gauss point; elastic forces that are polynomials do not prevent it."""
-    work, rest = system.workspaces(), np.zeros(len(p))
-    for block, own in zip(system.blocks, work, strict=True):
-        place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
-    return bool(smallest_jacobian(system.forms, system.blocks, work) <= 0.0)
+    return system.assembler().smallest_jacobian(p) <= 0.0
 
 
 def _held_force(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:

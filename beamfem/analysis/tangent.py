@@ -8,8 +8,9 @@ from scipy.linalg import LinAlgError, solve_banded
 from scipy.sparse import csc_array, csr_array, dia_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.kernels.band import ANY_WIDTH, factor, solve
-from beamfem.kernels.turned import hold_normals, turn_back, turn_in
+from beamfem.kernels.band import band
+from beamfem.kernels.compiling import Routine
+from beamfem.kernels.rollers import hold_normals, turn_back, turn_in
 
 SMALLEST_PIVOT = 1e-13
 _NOTHING = np.empty(0)
@@ -76,15 +77,18 @@ class BandFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
-        turn_in(x, *self.turned)
+        _turn(turn_in, x, self.turned)
         if self.plain:
             balanced = x.copy()
-            solve(self.lu, x, ANY_WIDTH)
+            n, half = len(x), self.lu.shape[1] // 2
+            own = band(half)
+            own.solve_lower(n, n, half, self.lu, x)
+            own.solve_upper(n, n, half, self.lu, x)
             if not np.isfinite(x).all():
                 x = _solve_pivoted(self.rows, balanced)
         else:
             x = _solve_pivoted(self.rows, x)
-        turn_back(x, *self.turned)
+        _turn(turn_back, x, self.turned)
         return x
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
@@ -103,10 +107,11 @@ class BandTangent:
 
     def factorised(self, turned: Turned) -> BandFactors:
         """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
-        rows = self.rows.copy()
-        hold_normals(rows, *turned)
+        rows = _held(self.rows, turned)
         lu = rows.copy()
-        return BandFactors(rows, lu, factor(lu, _NOTHING, np.empty(len(lu)), ANY_WIDTH) > SMALLEST_PIVOT, turned)
+        n, half = len(lu), lu.shape[1] // 2
+        ratio = band(half).factor(n, n, half, 0, lu, _NOTHING, np.empty(n))
+        return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, turned)
 
     def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
@@ -114,8 +119,7 @@ class BandTangent:
 
     def sparse(self, turned: Turned) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        rows = self.rows.copy()
-        hold_normals(rows, *turned)
+        rows = _held(self.rows, turned)
         half = rows.shape[1] // 2
         return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
 
@@ -135,11 +139,11 @@ class SparseFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
-        turn_in(x, *self.turned)
+        _turn(turn_in, x, self.turned)
         x = self.lu.solve(x)
         if not np.isfinite(x).all():
             raise LinAlgError("the tangent is singular")
-        turn_back(x, *self.turned)
+        _turn(turn_back, x, self.turned)
         return np.asarray(x)
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
@@ -183,6 +187,21 @@ class SparseTangent:
         keep = dia_array((kept[None], [0]), shape=rotated.shape)
         held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
         return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
+
+
+def _turn(routine: Routine, x: np.ndarray, turned: Turned) -> None:
+    """Turn pairs of a right-hand side, or of a solution, in place."""
+    first, normal = turned
+    if len(first):
+        routine(len(first), first, normal, x)
+
+
+def _held(rows: np.ndarray, turned: Turned) -> np.ndarray:
+    """Return a band with the normals of inclined rollers held."""
+    result, (first, normal) = rows.copy(), turned
+    if len(first):
+        hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
+    return result
 
 
 def turning(size: int, turned: Turned) -> csr_array:

@@ -46,15 +46,6 @@ class Block(NamedTuple):
     home: np.ndarray  # (N, 2) an element of the node, and its place there
 
 
-class Work(NamedTuple):
-    """Space that kernels of a block write to, so that they allocate nothing."""
-
-    nodes: np.ndarray  # (4, N, per_node) nodal vectors, their accelerations and forces
-    matrix: np.ndarray  # (2 nv, 2 nv) of an element
-    rows: np.ndarray  # (nn npn,) where it goes
-    stress: np.ndarray  # (ne, nq, ns) stress resultants for the geometric part of the tangent, or none (0, 0, 0)
-
-
 class PointLoads(NamedTuple):
     """Forces, moments and springs to the ground at points of elements; forces come with each call."""
 

@@ -3,13 +3,19 @@
 import hashlib
 import shutil
 import tempfile
-from collections.abc import Iterator
-from functools import cache
+from collections.abc import Callable, Iterator
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
+from functools import cache, cached_property
 from pathlib import Path
+from typing import Any
 
-from numba import config, njit
+from numba import config, njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.ccallback import CFunc
 from numba.misc.appdirs import AppDirs
+from numpy import ndarray
+
+from beamfem.kernels.pointers import KINDS
 
 _HERE = Path(__file__).parent
 
@@ -30,6 +36,45 @@ def kernel(**options):
     return decorate
 
 
+class Routine:
+    """A compiled function of plain memory, called by its address; compiled, or loaded, when the address is first asked for.
+
+    kinds: one letter an argument, see `pointers.KINDS`.
+    """
+
+    def __init__(self, function: Callable[..., Any], kinds: str, returns: types.Type, options: dict[str, Any]) -> None:
+        self.function, self.kinds, self.returns, self.options = function, kinds, returns, options
+        self.__doc__, self.__module__ = function.__doc__, function.__module__
+
+    @cached_property
+    def compiled(self) -> Any:
+        arguments = [KINDS[kind] for kind in self.kinds]
+        pointer = CFunc(self.function, (arguments, self.returns), {}, {"error_model": "numpy", **self.options})
+        if cache_folder() is not None:
+            pointer._cache = _KernelCache(self.function)
+        pointer.compile()
+        return pointer
+
+    @property
+    def address(self) -> int:
+        return self.compiled.address
+
+    @cached_property
+    def _callable(self) -> Callable[..., Any]:
+        plain = {"i": c_int64, "d": c_double}
+        returns = {types.void: None, types.int64: c_int64, types.float64: c_double}[self.returns]
+        return CFUNCTYPE(returns, *(plain.get(kind, c_void_p) for kind in self.kinds))(self.address)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it from Python, with arrays of the right type or addresses for pointers; other threads run meanwhile."""
+        return self._callable(*(each.ctypes.data if isinstance(each, ndarray) else each for each in arguments))
+
+
+def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:
+    """Return a decorator that makes a `Routine` of a function; `options` are those of `numba.cfunc`."""
+    return lambda function: Routine(function, kinds, returns, {"_nrt": False, **options})
+
+
 @cache
 def cache_folder() -> Path | None:
     """Return the folder of machine code of exactly these kernels, None where none can be written.
@@ -37,7 +82,7 @@ def cache_folder() -> Path | None:
     One kernel inlines others, so that the code of all of them is in the name: machine code of other sources is never
     found, whatever their times and whoever else writes.
     """
-    sources = sorted(_HERE.glob("*.py"))
+    sources = sorted(_HERE.rglob("*.py"))
     if not sources:  # imported from an archive
         return None
     digest = hashlib.sha256(b"".join(source.name.encode() + source.read_bytes() for source in sources))

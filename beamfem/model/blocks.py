@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import ELASTIC_LINE, Block, Work
+from beamfem.kernels.block import ELASTIC_LINE, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.mesh import BeamMesh
 
@@ -78,14 +78,3 @@ def _widened(dof: np.ndarray, width: int) -> np.ndarray:
     if dof.shape[1] == width:
         return dof
     return np.pad(dof, ((0, 0), (0, width - dof.shape[1])), constant_values=-1)
-
-
-def workspace(block: Block, stress: np.ndarray | None = None) -> Work:
-    """Return space for the kernels of a block; stress (ne, nq, ns): resultants for the geometric tangent."""
-    vectors, nodes = block.scale.shape[1], block.node.shape[1]
-    return Work(
-        np.empty((4, max(len(block.dof), nodes), 2 * vectors // nodes)),
-        np.empty((2 * vectors, 2 * vectors)),
-        np.empty(nodes * block.dof.shape[1], dtype=np.int64),
-        np.empty((0, 0, 0)) if stress is None else stress,
-    )

@@ -6,25 +6,23 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.sheet import Sheet, make_sheet
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
-from beamfem.kernels.band import ANY_WIDTH, known_width
 from beamfem.kernels.block import (
     GRADIENTS,
     ROTATION,
     SHEAR_RIGID,
     STRETCH,
-    STRUCTURAL,
     TURNED_GRADIENTS,
     Block,
     Layout,
     PointLoads,
     Springs,
-    Work,
 )
-from beamfem.kernels.form import ANY, Form, known_form
 from beamfem.model.actions import Actions, build_actions
-from beamfem.model.blocks import build_block, workspace
+from beamfem.model.blocks import build_block
 from beamfem.model.held import Held, held_coordinates, inclined_rollers
 from beamfem.model.layout import Unknowns, order_unknowns
 from beamfem.model.loads import factor
@@ -82,29 +80,22 @@ class System:
         )
 
     @cached_property
-    def forms(self) -> tuple[Form, ...]:
-        """What compiled code knows in advance of each block; so that few kinds are compiled, of one block only.
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The groups of elements as compiled code takes them."""
+        return self._sheets(self.blocks)
 
-        The band's width is known of beams that are not joined: it is that of their elements, that of frames may be any.
+    def _sheets(self, blocks: Sequence[Block]) -> tuple[Sheet, ...]:
+        return tuple(make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True))
+
+    def assembler(
+        self, stresses: Sequence[np.ndarray] | None = None, blocks: Sequence[Block] | None = None
+    ) -> Assembler:
+        """Return the equations with new work space.
+
+        stresses (ne, nq, ns): of each block, for the geometric tangent; blocks: to take instead of those of the system.
         """
-        if len(self.blocks) > 1:
-            return (ANY,) * len(self.blocks)
-        block = self.blocks[0]
-        nodes = block.node.shape[1]
-        if self.model.joints and block.measures != STRUCTURAL:
-            return (ANY,)
-        window = ANY_WIDTH if self.model.joints else known_width(self.layouts[0].half_width)
-        return (known_form(nodes, block.scale.shape[1] // nodes, block.measures, window),)
-
-    def workspaces(self, stresses: Sequence[np.ndarray] | None = None) -> tuple[Work, ...]:
-        """Return new space for the kernels, of each block; stresses (ne, nq, ns): for the geometric tangent."""
-        if stresses is None:
-            return tuple(workspace(block) for block in self.blocks)
-        return tuple(workspace(*both) for both in zip(self.blocks, stresses, strict=True))
-
-    def stress_tables(self) -> tuple[np.ndarray, ...]:
-        """Return new tables of stress resultants, of each block (ne, nq, ns)."""
-        return tuple(np.empty((len(block.node), *block.reference.shape[1:])) for block in self.blocks)
+        sheets = self.sheets if blocks is None else self._sheets(blocks)
+        return Assembler(sheets, self.springs, self.model.size, stresses)
 
     @cached_property
     def residual_errors(self) -> np.ndarray:

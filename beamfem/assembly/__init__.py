@@ -1,0 +1,1 @@
+"""From a model to numbers: the tables that compiled code works on."""

@@ -1,0 +1,40 @@
+"""Resultants at the quadrature points of a group of elements, apart from any solve."""
+
+import numpy as np
+
+from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.sheet import Sheet, make_sheet
+from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+
+_NO_SPRINGS = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
+
+
+def free_sheet(block: Block, size: int) -> Sheet:
+    """Return the sheet of a block of a model with so many coordinates on which nothing acts and nothing is solved for."""
+    none = np.empty((0, 0, 0), dtype=np.int32)
+    return make_sheet(block, Layout(np.arange(size), 0, none), no_loads(block))
+
+
+def no_loads(block: Block) -> PointLoads:
+    """Return no loads at all on a block."""
+    table, pair = np.empty((0, block.scale.shape[1])), np.empty((0, 2))
+    return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
+
+
+def resultants(sheet: Sheet, p: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,), dp = step (n,)."""
+    assembler = Assembler((sheet,), _NO_SPRINGS, len(p))
+    assembler.predict(p, np.ascontiguousarray(step))
+    return assembler.stresses[0]
+
+
+def elastic_forces(
+    block: Block, p: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n)."""
+    assembler = Assembler((free_sheet(block, p.shape[1]),), _NO_SPRINGS, p.shape[1])
+    size = 2 * block.scale.shape[1] // block.node.shape[1]
+    e, acceleration, force = np.empty((3, len(p), len(block.dof), size))
+    for step in range(len(p)):
+        e[step], acceleration[step], force[step] = assembler.elastic(p[step], v[step], a[step])
+    return e, acceleration, force

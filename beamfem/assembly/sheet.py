@@ -1,0 +1,165 @@
+"""The table that describes a group of like elements to compiled code, and the space that one solve works in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.routines import routines
+from beamfem.kernels import record
+from beamfem.kernels.batch import rows_of
+from beamfem.kernels.block import ELASTIC_LINE, GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS, Block, Layout, PointLoads
+from beamfem.kernels.record import LANES, ROW
+
+_CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
+_SMALLEST = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A group of like elements as compiled code takes it.
+
+    table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds.
+    """
+
+    table: np.ndarray
+    kept: tuple[np.ndarray, ...]
+    chunks: tuple[int, int, int]
+    space: int
+    constant: np.ndarray | None
+
+    @property
+    def points(self) -> tuple[int, int, int]:
+        """Elements, quadrature points and measures."""
+        t = self.table
+        return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
+
+
+class Work:
+    """A sheet with space of its own, so that solves do not disturb each other."""
+
+    def __init__(self, sheet: Sheet, stress: np.ndarray | None = None) -> None:
+        self.sheet = sheet
+        self.chunks = np.empty(sheet.chunks) if sheet.constant is None else sheet.constant.copy()
+        self.space = np.empty(sheet.space)
+        self.stress = np.empty(sheet.points) if stress is None else np.ascontiguousarray(stress)
+        self.table = sheet.table.copy()
+        self.table[record.CHUNKS] = self.chunks.ctypes.data
+        self.table[record.SPACE] = self.space.ctypes.data
+        self.table[record.STRESS] = self.stress.ctypes.data
+
+    def rows(self, first: int, count: int) -> np.ndarray:
+        """Return rows of all nodes (N, count)."""
+        nodes = int(self.table[record.NODES])
+        own = self.chunks[:, first : first + count, :LANES]
+        return np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
+
+
+def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
+    """Return the sheet of a block."""
+    elements, nodes = block.node.shape
+    count, coordinates = block.dof.shape
+    slots = block.scale.shape[1]
+    vectors = slots // nodes
+    size = 2 * vectors
+    classes, points, measures = block.reference.shape
+    bends = int(block.measures == ELASTIC_LINE)
+    kinds = np.unique(block.carrier) if len(block.carrier) else np.empty(0, dtype=int)
+    turned = 4 if np.isin(kinds, (STRETCH, SHEAR_RIGID)).any() else (0 if (kinds == GRADIENTS).all() else 2)
+    turning = coordinates - (size - turned) if turned else 0
+    upper = np.triu_indices(measures)
+    parts = {
+        record.SLOPE: block.slope.reshape(classes, -1),
+        record.SECOND: block.second.reshape(classes, -1) if bends else np.empty((classes, 0)),
+        record.STIFFNESS: block.stiffness[:, :, upper[0], upper[1]].reshape(classes, -1),
+        record.REFERENCE: block.reference.reshape(classes, -1),
+        record.WEIGHT: block.weight,
+        record.MASS: block.mass.reshape(classes, -1),
+        record.GRAVITY: block.gravity,
+        record.LENGTH: block.length,
+    }
+    table = np.zeros(record.BLOCK_FIELDS, dtype=np.int64)
+    first = 0
+    for number, part in parts.items():
+        table[number] = first
+        first += part.shape[1]
+    tables = np.concatenate(list(parts.values()), axis=1)
+    gathered = 2 * size + 2 * turned * turning
+    chunk_rows = gathered + turning * turning + 2 * size
+    table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
+    table[record.CONVECTIVE] = 2 * size + turned * turning
+    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
+    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
+    used = rows_of.py_func(nodes, vectors, points, gathered, tables.shape[1])[-1]
+    batch = LANES
+    while batch > _SMALLEST and used * batch > _CACHE * LANES:
+        batch //= 2
+    place = _places(block.node, chunk_rows)
+    number = np.where(block.dof >= 0, layout.free[block.dof], -1)[block.node].reshape(elements, -1)
+    held = {
+        record.TABLES: tables,
+        record.DIRECTOR: block.director,
+        record.CLASS: block.kind,
+        record.BEAM: block.beam,
+        record.PLACE: place.T,
+        record.DOF: block.dof.T,
+        record.FRAME: block.frame.T,
+        record.RUNS: _runs(block.carrier),
+        record.NUMBER: number.T,
+        record.SLOT: layout.slot,
+        record.FREE: layout.free,
+        record.HOME: block.home,
+        record.LOAD_ELEMENT: loads.element,
+        record.POSITION: loads.position.T,
+        record.DIRECTION: loads.direction.T,
+        record.FOLLOWS: loads.follows.T,
+        record.STRETCHES: loads.stretches.astype(float),
+        record.SPRING: loads.spring.T,
+        record.ANCHOR: loads.anchor.T,
+        record.LOAD_PLACE: place[loads.element].T,
+        record.LOAD_NUMBER: number[loads.element].T,
+        record.COUNTED: np.arange(elements) if layout.half_width < 0 else np.empty(0, dtype=np.int64),
+        record.ROUTINES: routines(block.measures),
+    }
+    kept = []
+    for field, values in held.items():
+        kind = np.int32 if field == record.SLOT else (np.float64 if values.dtype.kind == "f" else np.int64)
+        kept.append(np.ascontiguousarray(values, dtype=kind))
+        table[field] = kept[-1].ctypes.data
+    table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
+    table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
+    table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends
+    table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, tables.shape[1], coordinates
+    table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = len(held[record.RUNS]), layout.half_width, len(loads.element)
+    chunks = -(-count // LANES), chunk_rows, ROW
+    constant = _constant(block, chunks, size, turned, turning) if turned and len(kinds) > 1 or TURNED_GRADIENTS in kinds else None
+    return Sheet(table, tuple(kept), chunks, used * ROW, constant)
+
+
+def _places(node: np.ndarray, rows: int) -> np.ndarray:
+    """Return where the first entry of nodes stands among the chunks."""
+    return np.asarray(node // LANES * (rows * ROW) + node % LANES)
+
+
+def _runs(carrier: np.ndarray) -> np.ndarray:
+    """Return kind, first node and number of nodes (runs, 3) of neighbours of one kind."""
+    first = np.flatnonzero(np.diff(carrier, prepend=-1))
+    return np.column_stack([carrier[first], first, np.diff(first, append=len(carrier))])
+
+
+def _constant(block: Block, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
+    """Return chunks with what does not change in them: B of nodes whose coordinates are nodal vectors."""
+    chunks = np.zeros(shape)
+    whole = np.zeros((shape[0] * LANES, turned, turning))
+    carrier, linear = block.carrier, size - turned
+    own = np.arange(len(carrier))
+    for part in range(turned):
+        straight = carrier == GRADIENTS
+        straight |= np.isin(carrier, (ROTATION, TURNED_GRADIENTS)) & (linear + part < size - 2)
+        whole[own[straight], part, part if part < turning else 0] = 1.0
+    turns = own[carrier == TURNED_GRADIENTS]
+    c, s = block.frame[turns, 0], block.frame[turns, 1]
+    for part, column, value in ((2, 2, c), (2, 1, -s), (1, 2, s), (1, 1, c)):
+        whole[turns, turned - part, turning - column] = value
+    rows = whole.reshape(shape[0], LANES, turned * turning).transpose(0, 2, 1)
+    chunks[:, 2 * size : 2 * size + turned * turning, :LANES] = rows
+    return chunks

@@ -1,0 +1,1 @@
+"""Passes written by `beamfem.physics.generate`."""

@@ -1,0 +1,55 @@
+"""The linear section law s = C (eps - eps0) over rows of points; resultants and stiffness are times the point's weight.
+
+C comes as the rows of its upper triangle. Laws are passes over rows: strains in, resultants and their derivatives out.
+"""
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.point import RESULTANT, STIFFNESS, STRAIN
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import ROW
+
+FAST = {"contract", "reassoc", "nsz"}
+
+
+@routine("iirrrr", fastmath=FAST)
+def four_resultants(count, tangent, weight, c, reference, x):
+    """Fill resultants of four measures and, where tangent, their stiffness; x: rows of a point, see `point`."""
+    eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
+    for i in range(count):
+        w = weight[i]
+        a0, a1 = eps[i] - reference[i], eps[ROW + i] - reference[ROW + i]
+        a2, a3 = eps[2 * ROW + i] - reference[2 * ROW + i], eps[3 * ROW + i] - reference[3 * ROW + i]
+        c01, c02, c03 = c[ROW + i], c[2 * ROW + i], c[3 * ROW + i]
+        c12, c13, c23 = c[5 * ROW + i], c[6 * ROW + i], c[8 * ROW + i]
+        s[i] = w * (c[i] * a0 + c01 * a1 + c02 * a2 + c03 * a3)
+        s[ROW + i] = w * (c01 * a0 + c[4 * ROW + i] * a1 + c12 * a2 + c13 * a3)
+        s[2 * ROW + i] = w * (c02 * a0 + c12 * a1 + c[7 * ROW + i] * a2 + c23 * a3)
+        s[3 * ROW + i] = w * (c03 * a0 + c13 * a1 + c23 * a2 + c[9 * ROW + i] * a3)
+    if tangent != 0:
+        for k in range(10):
+            to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
+            for i in range(count):
+                to[i] = weight[i] * own[i]
+
+
+@routine("iirrrr", fastmath=FAST)
+def six_resultants(count, tangent, weight, c, reference, x):
+    """The same of six measures."""
+    for k in range(6):
+        eps, initial = at(x, (STRAIN + k) * ROW), at(reference, k * ROW)
+        for i in range(count):
+            eps[i] -= initial[i]
+    for j in range(6):
+        s = at(x, (RESULTANT + j) * ROW)
+        for i in range(count):
+            s[i] = 0.0
+        for k in range(6):
+            low, high = min(j, k), max(j, k)
+            own, eps = at(c, (6 * low - low * (low + 1) // 2 + high) * ROW), at(x, (STRAIN + k) * ROW)
+            for i in range(count):
+                s[i] += weight[i] * own[i] * eps[i]
+    if tangent != 0:
+        for k in range(21):
+            to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
+            for i in range(count):
+                to[i] = weight[i] * own[i]

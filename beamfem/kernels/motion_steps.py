@@ -1,0 +1,153 @@
+"""What a time step of the generalized-alpha method does to the state, apart from solving: predict, correct, complete."""
+
+import math
+
+from numba import types
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at, reals, wholes
+from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
+
+FAST = {"contract", "reassoc", "nsz"}
+# of the tolerance, of the estimated error where the tangent is not that of the last iterate
+_REMAINDER = 1e-5
+# Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
+# behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
+_NEGLECTED = 1e-8
+
+
+@routine("iidrrrnrr")
+def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
+    """Store the state (4, n) in `before` and start a step from it, prescribed coordinates at `values` (3, prescribed).
+
+    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on.
+    differences (3, n): its backward differences. rule: step, alpha_m, alpha_f, gamma, beta.
+    """
+    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
+    kept, mean, share = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
+    first, second, third = min(order, 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
+    for i in range(4 * n):
+        before[i] = state[i]
+    for i in range(n):
+        p, v, a, mean_a = before[i], before[n + i], before[2 * n + i], before[3 * n + i]
+        ahead = first * differences[i] + second * differences[n + i] + third * differences[2 * n + i]
+        new = kept * a - mean * mean_a + share * ahead
+        state[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
+        state[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
+        state[2 * n + i] = a + ahead
+    for i in range(prescribed):
+        for k in range(3):
+            state[k * n + dofs[i]] = values[k * prescribed + i]
+
+
+@routine("iirrnrr", types.float64, fastmath=FAST)
+def correct(n, unknown, state, right, free, inverse_scale, coefficients):
+    """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
+    largest = 0.0
+    to_velocity, to_acceleration = coefficients[1], coefficients[2]
+    for i in range(unknown):
+        dof, change = free[i], right[i]
+        state[dof] += change
+        state[n + dof] += to_velocity * change
+        state[2 * n + dof] += to_acceleration * change
+        size = abs(change) * inverse_scale[dof]
+        if not size <= largest:
+            largest = size
+    return largest
+
+
+@routine("iiddddr", types.int64)
+def judge(iteration, full, size, last, changed, tolerance, rate):
+    """Tell whether a step is done after a correction; rate (1,): that at which corrections shrink, updated.
+
+    size, last: this correction and the one before; changed: what a change of acceleration changes in the step; full:
+    each correction has its own tangent. Hairer and Wanner 1996, IV.8.
+    """
+    if iteration > 1:
+        if last <= tolerance and size <= tolerance and size > 0.5 * last:
+            # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
+            return 1
+        rate[0] = size / last if last > 0.0 else 0.0
+    if full != 0:
+        return 1 if size <= tolerance else 0
+    small = rate[0] * size <= (1.0 - rate[0]) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
+    return 1 if rate[0] < 1.0 and small else 0
+
+
+@routine("iirrrrnrr", types.float64, fastmath=FAST)
+def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, best):
+    """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
+
+    best (1,): the order of extrapolation that would have been best.
+    """
+    alpha_m, alpha_f = rule[1], rule[2]
+    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
+    e0, e1, e2, e3 = 0.0, 0.0, 0.0, 0.0
+    for i in range(n):
+        a, a0 = state[2 * n + i], before[2 * n + i]
+        state[3 * n + i] = new * a + old * a0 - mean * before[3 * n + i]
+        d0 = a - a0
+        d1 = d0 - differences[i]
+        d2 = d1 - differences[n + i]
+        d3 = d2 - differences[2 * n + i]
+        differences[i], differences[n + i], differences[2 * n + i] = d0, d1, d2
+        weight = inverse_scale[i]
+        e0, e1 = max(e0, abs(d0) * weight), max(e1, abs(d1) * weight)
+        e2, e3 = max(e2, abs(d2) * weight), max(e3, abs(d3) * weight)
+    for i in range(prescribed):
+        state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
+    order, least = 0.0, e0
+    if e1 < least:
+        order, least = 1.0, e1
+    if e2 < least:
+        order, least = 2.0, e2
+    if e3 < least:
+        order = 3.0
+    best[0] = order
+    return e0
+
+
+@routine("inrrr")
+def count_turns(pairs, table, before, now, turned):
+    """Add to `turned` (pairs,) [rad] by how much vectors at coordinates (pairs, 2) have turned between states (n,)."""
+    for i in range(pairs):
+        x, y = table[2 * i], table[2 * i + 1]
+        crossed = before[x] * now[y] - before[y] * now[x]
+        turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
+
+
+@routine("iirr")
+def keep_directions(group, first, kept, unused):
+    """Store the vectors d (N, 2) of the nodes of a group, which are numbered from `first` on."""
+    b = wholes(group)
+    chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
+    for node in range(b[NODES]):
+        d = at(chunks, (node // LANES * b[NODE_ROWS] + size - 2) * ROW + node % LANES)
+        kept[2 * (first + node)], kept[2 * (first + node) + 1] = d[0], d[ROW]
+
+
+@routine("iirr", fastmath=FAST)
+def turns_since(group, first, kept, turns):
+    """Fill cosine and sine (N, 2) of how far the nodes of a group have turned since their vectors d were kept."""
+    b = wholes(group)
+    chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
+    for node in range(b[NODES]):
+        d, own = at(chunks, (node // LANES * b[NODE_ROWS] + size - 2) * ROW + node % LANES), 2 * (first + node)
+        x, y, x0, y0 = d[0], d[ROW], kept[own], kept[own + 1]
+        c, s = x * x0 + y * y0, y * x0 - x * y0
+        inverse = 1.0 / math.sqrt(c * c + s * s)
+        turns[own], turns[own + 1] = c * inverse, s * inverse
+
+
+@routine("idnrr", fastmath=FAST)
+def turn_pairs(pairs, sense, table, turns, right):
+    """Turn vectors in a right-hand side (n,) with their nodes, sense -1: back; table (pairs, 3): numbers x, y, node.
+
+    A kept tangent turns with the sections: K(now) is near R K(kept) R^T, exact where a body has turned as a whole; then
+    a pendulum or a rotor needs no new tangent for its turning.
+    """
+    for i in range(pairs):
+        first, second, node = table[3 * i], table[3 * i + 1], table[3 * i + 2]
+        c, s = turns[2 * node], sense * turns[2 * node + 1]
+        x, y = right[first], right[second]
+        right[first], right[second] = c * x - s * y, s * x + c * y

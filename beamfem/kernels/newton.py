@@ -1,0 +1,101 @@
+"""Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
+
+from numba import types
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at, caller, reals, wholes
+from beamfem.kernels.record import (
+    BALANCE, FACTOR, FOUND, FREE_DOFS, GROUP_RECORDS, GROUPS, HALF, HELD_FORCE, HELD_STEP, HOLD_NORMALS, LIMITS, COORDINATES_P,
+    PREDICT_RESULTANTS, PREDICTED, RESIDUAL, RIGHT, ROLLER_FIRST, ROLLER_NORMAL, ROLLERS, ROWS, SCALE, SIZE, SMALLEST_JACOBIAN,
+    SOLVE_UPPER, STEP, TAKE_STEP, TANGENT, TURN_BACK, TURN_IN, UNKNOWN,
+)  # fmt: skip
+
+_balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", types.float64)
+_factor, _solve = caller("iiiirrr", types.float64), caller("iiirr")
+_hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", types.float64)
+
+
+@routine("irrr", types.float64, fastmath={"contract", "reassoc", "nsz"})
+def take_step(n, step, p, scale):
+    """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
+    size = 0.0
+    for i in range(n):
+        p[i] += step[i]
+        own = abs(step[i]) / scale[i]
+        if not own <= size:
+            size = own
+    return size
+
+
+@routine("iii", types.int64)
+def iterate(system, solver, calls):
+    """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
+
+    `HELD_STEP`, `HELD_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the residual (n,),
+    zero to go on. `LIMITS`: tolerance, correction below which it may be stagnant, one beyond which it diverges,
+    smallest pivot ratio, iterations, 1 to take predicted resultants for the geometric tangent, and the count of
+    negative pivots where it stops if the third tangent or a later one has another (the resultants of the second are
+    those of a linear step), or -1. `FOUND` (8,): iterations so far, last correction and the one before; then largest
+    residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
+    whose residual (n,) is filled; negative pivots of the last tangent; size of the first correction. Stops where
+    corrections are small or stagnant, or have grown.
+    """
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    n, unknown, half, rollers = s[SIZE], b[UNKNOWN], b[HALF], b[ROLLERS]
+    free, first_of, normal = wholes(b[FREE_DOFS]), wholes(b[ROLLER_FIRST]), reals(b[ROLLER_NORMAL])
+    rows, right, step, scale = reals(b[ROWS]), reals(b[RIGHT]), reals(b[STEP]), reals(b[SCALE])
+    limits, found, held_step, held_force = reals(b[LIMITS]), reals(b[FOUND]), reals(b[HELD_STEP]), reals(b[HELD_FORCE])
+    residual, p, groups = reals(s[RESIDUAL]), reals(s[COORDINATES_P]), wholes(s[GROUP_RECORDS])
+    first, done = True, False
+    while True:
+        s[TANGENT] = 0 if done else 1
+        s[PREDICTED] = 1 if not done and found[0] > 0.0 and limits[5] > 0.0 else 0
+        _balance(call[BALANCE], system)
+        if done:
+            break
+        for i in range(unknown):
+            right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
+        if rollers > 0:
+            _hold(call[HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
+            _turn(call[TURN_IN], rollers, first_of, normal, right)
+        if not _factor(call[FACTOR], unknown, unknown, half, 1, rows, right, step) > limits[3]:
+            return 0
+        negative = 0
+        for i in range(unknown):
+            negative += rows[i * (2 * half + 1) + half] < 0.0
+        found[6] = negative
+        if limits[6] >= 0.0 and found[6] != limits[6] and found[0] > 1.0:
+            found[0] += 1.0
+            return 1
+        _solve(call[SOLVE_UPPER], unknown, unknown, half, rows, right)
+        if rollers > 0:
+            _turn(call[TURN_BACK], rollers, first_of, normal, right)
+        for i in range(n):
+            step[i] = held_step[i] if first else 0.0
+        for i in range(unknown):
+            step[free[i]] = right[i]
+        first = False
+        if limits[5] > 0.0:
+            for group in range(s[GROUPS]):
+                _two(call[PREDICT_RESULTANTS], groups[group], system)
+        found[0] += 1.0
+        found[2], found[1] = found[1], _take(call[TAKE_STEP], n, step, p, scale)
+        if found[0] == 1.0:
+            found[7] = found[1]
+        if not found[1] <= limits[2]:
+            return 1
+        stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]
+        done = found[1] <= limits[0] or stagnant or not found[0] < limits[4]
+    found[3], found[4] = 0.0, 0.0
+    for i in range(n):
+        found[4] = max(found[4], abs(residual[i]) * scale[i])
+    for i in range(unknown):
+        right[i] = residual[free[i]]
+    if rollers > 0:
+        _turn(call[TURN_IN], rollers, first_of, normal, right)
+    for i in range(unknown):
+        found[3] = max(found[3], abs(right[i]) * scale[free[i]])
+    found[5] = 1.0
+    for group in range(s[GROUPS]):
+        found[5] = min(found[5], _jacobian(call[SMALLEST_JACOBIAN], groups[group]))
+    return 1

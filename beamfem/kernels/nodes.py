@@ -1,0 +1,83 @@
+"""The nodes of a chunk: coordinates in, nodal vectors out; see `record` for rows of a chunk, `generated` for what turns."""
+
+import numpy as np
+from numba import njit
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import ROW
+
+# half a turn's half in three parts, the first of few digits, so that products with whole numbers are exact
+_PART_1, _PART_2, _PART_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21
+
+
+@njit(forceinline=True, _nrt=False, error_model="numpy", fastmath={"contract"})
+def _cosine_sine(angle):
+    """Return cosine and sine without a branch, so that a loop of them becomes vectors; Cody and Waite 1980."""
+    quarters = np.floor(angle * 0.63661977236758134308 + 0.5)
+    x = (angle - quarters * _PART_1) - quarters * _PART_2
+    x = x - quarters * _PART_3
+    z = x * x
+    s = 1.58962301576546568060e-10
+    s = -2.50507477628578072866e-8 + z * s
+    s = 2.75573136213857245213e-6 + z * s
+    s = -1.98412698295895385996e-4 + z * s
+    s = 8.33333333332211858878e-3 + z * s
+    s = -1.66666666666666307295e-1 + z * s
+    sine = x + x * z * s
+    c = -1.13585365213876817300e-11
+    c = 2.08757008419747316778e-9 + z * c
+    c = -2.75573141792967388112e-7 + z * c
+    c = 2.48015872888517045348e-5 + z * c
+    c = -1.38888888888730564116e-3 + z * c
+    c = 4.16666666666665929218e-2 + z * c
+    cosine = 1.0 - 0.5 * z + z * z * c
+    place = quarters - 4.0 * np.floor(0.25 * quarters)
+    odd = (place == 1.0) | (place == 3.0)
+    a, b = (sine if odd else cosine), (cosine if odd else sine)
+    return -a if (place == 1.0) | (place == 2.0) else a, -b if place >= 2.0 else b
+
+
+@routine("iiiinrr")
+def take(first, count, coordinates, stride, dof, values, rows):
+    """Copy values (n,) of some coordinates of nodes to rows (coordinates, ROW); dof (coordinates, stride)."""
+    for row in range(coordinates):
+        own, to = at(dof, row * stride + first), at(rows, row * ROW)
+        for i in range(count):
+            to[i] = values[own[i]]
+
+
+@routine("irrrr", fastmath={"contract"})
+def turn(count, angle, c, s, rows):
+    """Fill rows of cosine and sine of angles from a reference whose cosines and sines are c and s."""
+    for i in range(count):
+        cosine, sine = _cosine_sine(angle[i])
+        rows[i] = cosine * c[i] - sine * s[i]
+        rows[ROW + i] = sine * c[i] + cosine * s[i]
+
+
+@routine("irrr", fastmath={"contract"})
+def rotate(count, c, s, vector):
+    """Turn the vectors in two rows by angles with cosines c and sines s."""
+    for i in range(count):
+        x, y = vector[i], vector[ROW + i]
+        vector[i] = c[i] * x - s[i] * y
+        vector[ROW + i] = s[i] * x + c[i] * y
+
+
+@routine("iirr")
+def copy(rows, count, source, to):
+    """Copy rows."""
+    for row in range(rows):
+        own, its = at(source, row * ROW), at(to, row * ROW)
+        for i in range(count):
+            its[i] = own[i]
+
+
+@routine("iir")
+def clear(rows, count, to):
+    """Set rows to zero."""
+    for row in range(rows):
+        own = at(to, row * ROW)
+        for i in range(count):
+            own[i] = 0.0

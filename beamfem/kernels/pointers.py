@@ -1,0 +1,67 @@
+"""Plain memory in compiled code: pointers made of addresses, and calls of compiled functions by their address.
+
+A function that calls another one by address is compiled on its own: neither waits for the other, and none is compiled
+twice. Addresses stand in tables of whole numbers that Python owns.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from inspect import Parameter, Signature
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core.typing import signature
+from numba.extending import intrinsic
+
+REALS = types.CPointer(types.float64)
+WHOLES = types.CPointer(types.int64)
+SLOTS = types.CPointer(types.int32)
+# one letter an argument: pointers to numbers, whole numbers and 32-bit whole numbers; a whole number, a number
+KINDS = {"r": REALS, "n": WHOLES, "s": SLOTS, "i": types.int64, "d": types.float64}
+
+
+@intrinsic
+def at(context, pointer, count):
+    """Return the pointer `count` entries further on."""
+
+    def generate(context, builder, outer, given):
+        return builder.gep(given[0], [given[1]], inbounds=True)
+
+    return signature(pointer, pointer, types.intp), generate
+
+
+def _pointer(kind: types.Type) -> Callable[..., Any]:
+    def pointer(context, address):
+        def generate(context, builder, outer, given):
+            return builder.inttoptr(given[0], context.get_value_type(kind))
+
+        return signature(kind, types.int64), generate
+
+    return intrinsic(pointer)
+
+
+reals = _pointer(REALS)
+wholes = _pointer(WHOLES)
+slots = _pointer(SLOTS)
+
+
+@cache
+def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
+    """Return call(address, *arguments) for compiled functions of these kinds of arguments."""
+    wanted = [KINDS[kind] for kind in kinds]
+
+    def call(context, address, *arguments):
+        def generate(context, builder, outer, given):
+            kept = [context.get_value_type(kind) for kind in wanted]
+            result = context.get_value_type(returns)
+            pointer = builder.inttoptr(given[0], ir.FunctionType(result, kept).as_pointer())
+            values = [context.cast(builder, *each) for each in zip(given[1:], outer.args[1:], wanted, strict=True)]
+            value = builder.call(pointer, values)
+            return context.get_dummy_value() if returns is types.void else value
+
+        return signature(returns, address, *wanted), generate
+
+    names = ("context", "address", *(f"argument_{number}" for number in range(len(wanted))))
+    call.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
+    return intrinsic(call)

@@ -1,0 +1,211 @@
+"""Tables of whole numbers and addresses that describe a group of like elements, or a whole model, to compiled code.
+
+Python owns all arrays that addresses point to, and checks them once, where a table is made (`assembly.sheet`).
+
+Elements are worked on in batches, nodes in chunks, of at most `LANES`. A quantity of a batch is a row of `ROW` numbers,
+one a lane, so that the compiler turns loops along rows into vectors. Nodes are kept in chunks of such rows.
+"""
+
+LANES = 64
+ROW = 72  # longer than a batch, so that rows do not all fall onto the same places of the cache
+
+# ------------------------------------------------------------------ a group of like elements
+ELEMENTS = 0
+NODES = 1
+NODES_PER_ELEMENT = 2
+VECTORS = 3  # nodal vectors a node
+POINTS = 4  # quadrature points
+MEASURES = 5  # strain measures
+TURNED = 6  # components of nodal vectors, the last ones, that coordinates of the node turn: 0, 2 or 4
+TURNING = 7  # coordinates, the last ones, that turn them
+BENDS = 8  # the third vector of strain measures is r0''
+BATCH = 9  # elements in a batch
+# rows of a class of elements: where each kind of table begins, and how many rows there are
+SLOPE = 10  # (points, slots)
+SECOND = 11  # (points, slots)
+STIFFNESS = 12  # (points, measures (measures + 1) / 2) upper triangle
+REFERENCE = 13  # (points, measures)
+WEIGHT = 14  # (points,)
+MASS = 15  # (slots, slots)
+GRAVITY = 16  # (slots,)
+LENGTH = 17  # (slots,)
+TABLE_ROWS = 18
+TABLES = 19  # address (classes, table rows)
+DIRECTOR = 20  # address (points, nodes of an element)
+CLASS = 21  # address (elements,)
+BEAM = 22  # address (elements,)
+PLACE = 23  # address (nodes of an element, elements): where a node's first entry stands among the chunks, in rows of 1
+DOF = 24  # address (coordinates of a node, nodes)
+FRAME = 25  # address (3, nodes)
+RUNS = 26  # address (runs, 3): kind of node, first node, number of nodes
+RUN_COUNT = 27
+NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): among the unknown, or -1
+SLOT = 29  # address (elements, coordinates, coordinates) in a sparse matrix
+HALF_WIDTH = 30  # of the band, -1 where the matrix is sparse
+FREE = 31  # address (n,): number of a coordinate among the unknown
+HOME = 32  # address (nodes, 2): an element of each node, and its place there
+COORDINATES = 33  # of a node
+# rows of a node: vectors first
+ACCELERATION = 34
+TRANSFORM = 35  # B (turned, turning)
+CONVECTIVE = 36  # change of e'' with p and p' (turned, turning)
+CURVATURE = 37  # derivative of B^T f (turning, turning)
+FORCE = 38
+PREDICTED_FORCE = 39  # the same with the stress resultants that the last step predicts
+NODE_ROWS = 40
+# work space
+CHUNKS = 41  # address (chunks, node rows, ROW)
+STRESS = 42  # address (elements, points, measures)
+SPACE = 43  # address: rows of a batch, in the order of `batch`
+# forces, moments and springs at points
+LOADS = 44
+LOAD_ELEMENT = 45
+POSITION = 46  # address (slots, loads)
+DIRECTION = 47
+FOLLOWS = 48  # (2, loads)
+STRETCHES = 49
+SPRING = 50  # (2, loads)
+ANCHOR = 51  # (2, loads)
+LOAD_PLACE = 52  # (nodes of an element, loads)
+LOAD_NUMBER = 53  # (nodes * coordinates, loads)
+LOADS_STIFFEN = 54
+ROUTINES = 55  # address of a table of compiled functions
+COUNTED = 56  # address (elements,): 0, 1, 2, ...
+BLOCK_FIELDS = 57
+
+# ------------------------------------------------------------------ a model in a state
+GROUPS = 0
+GROUP_RECORDS = 1  # address of a table of addresses
+COORDINATES_P = 2  # p, p', p'' (n,)
+COORDINATES_V = 3
+COORDINATES_A = 4
+BODY = 5  # (beams, 4)
+VALUES = 6  # address of a table of addresses (loads, 3), of each group
+RESIDUAL = 7
+SIZE = 8
+MATRIX = 9
+ENTRIES = 10
+FACTORS = 11  # ck, cv, ca
+TANGENT = 12
+PREDICTED = 13  # the geometric part of the tangent takes the resultants in `STRESS`
+MOVING = 14
+LOADED = 15
+SPRINGS = 16
+SPRING_DOF = 17
+SPRING_STIFFNESS = 18
+SPRING_REST = 19
+SPRING_PLACE = 20
+SYSTEM_FIELDS = 21
+
+# ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
+(
+    GATHER,
+    SCATTER,
+    FILL_TABLES,
+    FILL_BODY,
+    INTERPOLATE,
+    SPREAD,
+    COLUMNS,
+    PRODUCTS,
+    MIRROR,
+    ADD_INERTIA,
+    ADD_MASS,
+    REDUCE_COLUMNS,
+    REDUCE_ROWS,
+    ADD_TO_BAND,
+    ADD_TO_SPARSE,
+    ADD_NODE_FORCES,
+    ADD_CURVATURE,
+    TAKE,
+    TURN,
+    ROTATE,
+    COPY,
+    CLEAR,
+    STRAINS,
+    FORCES,
+    RATES,
+    HESSIAN,
+    LAW,
+    LOAD_FORCES,
+    LOAD_STIFFNESS,
+    PLACE_NODES,
+    ADD_ELEMENTS,
+    ADD_LOADS,
+    FINISH_NODES,
+    REDUCE,
+    CLEAR_FORCES,
+    NODE_RATES,
+    COMBINE,
+    STORE,
+    ADD_SCALED,
+    FORM_MATRICES,
+    ADD_MATRICES,
+) = range(41)
+PLACE_KIND = 41  # place, convect and curve of each kind of node that turns
+ROUTINE_COUNT = 50
+
+# ------------------------------------------------------------------ the unknown coordinates, and how they are solved for
+UNKNOWN = 0
+FREE_DOFS = 1  # address (unknown,)
+HALF = 2
+ROLLERS = 3
+ROLLER_FIRST = 4  # address (rollers,): number of the x of each among the unknown
+ROLLER_NORMAL = 5  # address (rollers, 2)
+ROWS = 6  # address (unknown, 2 half + 1)
+RIGHT = 7  # address (unknown,)
+STEP = 8  # address (n,)
+SCALE = 9  # address (n,)
+LIMITS = 10
+FOUND = 11
+HELD_STEP = 12
+HELD_FORCE = 13
+HELD = 14
+HELD_DOFS = 15
+STATE = 16  # address (4, n): p, p', p'' and the auxiliary acceleration
+BEFORE = 17
+DIFFERENCES = 18  # (3, n)
+INVERSE_SCALE = 19
+RULE = 20
+STATISTICS = 21
+PAIRS = 22  # vectors that turn with their section
+PAIR_TABLE = 23  # (pairs, 3): numbers of x and y, node
+KEPT = 24  # (N, 2)
+TURNS = 25  # (N, 2)
+STEPS = 26
+HELD_VALUES = 27  # (steps, 3, held)
+BODIES = 28  # (steps or 1, beams, 4)
+BODY_STRIDE = 29  # from step to step, 0 where nothing varies
+LOAD_VALUES = 30  # address of addresses, of each group (steps or 1, loads, 3)
+LOADS_VARY = 31
+SAVED = 32  # (rows, 3, n)
+FIRST_STEP = 33
+EVERY = 34
+TURN_COUNT = 35
+TURN_TABLE = 36  # (counted, 2)
+TURNED_BY = 37
+SAVED_TURNS = 38
+SOLVER_FIELDS = 39
+
+(
+    BALANCE,
+    FACTOR,
+    SOLVE_LOWER,
+    SOLVE_UPPER,
+    PREDICT_RESULTANTS,
+    SMALLEST_JACOBIAN,
+    HOLD_NORMALS,
+    TURN_IN,
+    TURN_BACK,
+    TAKE_STEP,
+    PREDICT,
+    CORRECT,
+    COMPLETE,
+    KEEP_DIRECTIONS,
+    TURNS_SINCE,
+    TURN_PAIRS,
+    COUNT_TURNS,
+    JUDGE,
+    TURN_ALL,
+    SOLVE_TURNED,
+) = range(20)
+SOLVER_ROUTINES = 20

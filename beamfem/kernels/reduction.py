@@ -1,0 +1,135 @@
+"""The reduction e' = B p' of batches and nodes: forces B^T f, matrices B^T k B, and their places in the model.
+
+Coordinates of a node are components of nodal vectors, then those that turn the last `turned` components: B = diag(1,
+b), b (turned, turning) a node. What a node has no coordinate for is numbered -1.
+"""
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import ROW
+
+FAST = {"contract", "reassoc", "nsz"}
+
+
+@routine("iiiiiirrr", fastmath=FAST)
+def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
+    """Replace k by k B: columns of each node of `size` components; b (nodes, stride, ROW); space (2, ROW)."""
+    rows, linear = nodes * size, size - turned
+    for n in range(nodes):
+        own = at(k, rows * (n * size + linear) * ROW)
+        table = at(b, n * stride * ROW)
+        for row in range(rows):
+            for column in range(turning):
+                to = at(space, column * ROW)
+                for part in range(turned):
+                    source, factor = at(own, (rows * part + row) * ROW), at(table, (part * turning + column) * ROW)
+                    if part == 0:
+                        for i in range(count):
+                            to[i] = source[i] * factor[i]
+                    else:
+                        for i in range(count):
+                            to[i] += source[i] * factor[i]
+            for column in range(turning):
+                source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
+                for i in range(count):
+                    to[i] = source[i]
+
+
+@routine("iiiiiirrr", fastmath=FAST)
+def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
+    """Replace k B by B^T k B, in the same way."""
+    rows, linear = nodes * size, size - turned
+    for m in range(nodes):
+        for its in range(linear + turning):
+            for n in range(nodes):
+                own = at(k, (rows * (m * size + its) + n * size + linear) * ROW)
+                table = at(b, n * stride * ROW)
+                for row in range(turning):
+                    to = at(space, row * ROW)
+                    for part in range(turned):
+                        source, factor = at(own, part * ROW), at(table, (part * turning + row) * ROW)
+                        if part == 0:
+                            for i in range(count):
+                                to[i] = source[i] * factor[i]
+                        else:
+                            for i in range(count):
+                                to[i] += source[i] * factor[i]
+                for row in range(turning):
+                    source, to = at(space, row * ROW), at(own, row * ROW)
+                    for i in range(count):
+                        to[i] = source[i]
+
+
+@routine("iiiiinirr")
+def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix):
+    """Add reduced matrices k of a batch to a band (n, 2 half + 1); number (nodes * coordinates, stride)."""
+    rows, width = nodes * size, 2 * half
+    for m in range(nodes):
+        for its in range(coordinates):
+            columns = at(number, (m * coordinates + its) * stride)
+            for n in range(nodes):
+                for own in range(coordinates):
+                    to = at(number, (n * coordinates + own) * stride)
+                    value = at(k, (rows * (m * size + its) + n * size + own) * ROW)
+                    for i in range(count):
+                        row, column = to[i], columns[i]
+                        if row >= 0 and column >= 0:
+                            matrix[width * row + half + column] += value[i]
+
+
+@routine("iiiinsrr")
+def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
+    """Add reduced matrices k of a batch to the data of a sparse matrix; slots (elements, coordinates, coordinates)."""
+    rows, per = nodes * size, nodes * coordinates
+    for i in range(count):
+        table = at(slots, elements[i] * per * per)
+        for n in range(nodes):
+            for own in range(coordinates):
+                for m in range(nodes):
+                    for its in range(coordinates):
+                        slot = table[(n * coordinates + own) * per + m * coordinates + its]
+                        if slot >= 0:
+                            matrix[slot] += k[(rows * (m * size + its) + n * size + own) * ROW + i]
+
+
+@routine("iiiiiiniirr")
+def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, residual):
+    """Add B^T f of nodes of a chunk to the residual (n,); dof (coordinates, stride); force: row where f begins."""
+    linear = size - turned
+    for row in range(linear):
+        own, source = at(dof, row * stride + first), at(chunk, (force + row) * ROW)
+        for i in range(count):
+            residual[own[i]] += source[i]
+    b = at(chunk, rows * ROW)
+    for column in range(turning):
+        own = at(dof, (linear + column) * stride + first)
+        for i in range(count):
+            if own[i] >= 0:
+                total = 0.0
+                for part in range(turned):
+                    total += b[(part * turning + column) * ROW + i] * chunk[(force + linear + part) * ROW + i]
+                residual[own[i]] += total
+
+
+@routine("iiiiiiiinnnisrrd")
+def add_curvature(
+    first, count, nodes, linear, turning, stride, row, coordinates, dof, free, home, half, slots, chunk, matrix, factor
+):
+    """Add the derivative of B^T f (turning, turning) of nodes of a chunk, times a factor, to the matrix.
+
+    chunk: from the first of these nodes on; linear: coordinates of a node before those that turn.
+    """
+    per = nodes * coordinates
+    for j in range(turning):
+        for k in range(turning):
+            value = at(chunk, (row + j * turning + k) * ROW)
+            own, its = at(dof, (linear + j) * stride + first), at(dof, (linear + k) * stride + first)
+            for i in range(count):
+                to, column = free[own[i]], free[its[i]]
+                if to < 0 or column < 0:
+                    continue
+                if half >= 0:
+                    matrix[2 * half * to + half + column] += factor * value[i]
+                else:
+                    element, begin = home[2 * (first + i)], home[2 * (first + i) + 1] * coordinates + linear
+                    matrix[slots[(element * per + begin + j) * per + begin + k]] += factor * value[i]

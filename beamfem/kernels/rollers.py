@@ -1,0 +1,49 @@
+"""Pairs of unknowns (x, y) of which only one direction is held: a roller on an inclined plane."""
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at
+
+
+@routine("iiirnr")
+def hold_normals(n, half, rollers, rows, first, normal):
+    """Turn each pair of unknowns to (normal, tangent) in a band matrix and hold the normal one at zero change.
+
+    rows (n, 2 half + 1) in place; first (rollers,) number of the pair's x; normal (rollers, 2) unit vectors.
+    """
+    width = 2 * half + 1
+    for k in range(rollers):
+        i, j = first[k], first[k] + 1
+        c, s = normal[2 * k], normal[2 * k + 1]
+        upper, lower = at(rows, i * width + half - i), at(rows, j * width + half - j)
+        for column in range(max(0, j - half), min(n, i + half + 1)):
+            x, y = upper[column], lower[column]
+            upper[column] = c * x + s * y
+            lower[column] = -s * x + c * y
+        for row in range(max(0, j - half), min(n, i + half + 1)):
+            own = at(rows, row * width + half - row)
+            x, y = own[i], own[j]
+            own[i] = c * x + s * y
+            own[j] = -s * x + c * y
+        size = abs(lower[j])
+        for other in range(max(0, i - half), min(n, i + half + 1)):
+            upper[other] = 0.0
+            rows[other * width + half + i - other] = 0.0
+        upper[i] = size if size > 0.0 else 1.0
+
+
+@routine("inrr")
+def turn_in(rollers, first, normal, right):
+    """Turn each pair of a right-hand side (n,) to (normal, tangent) in place, the normal one zero."""
+    for k in range(rollers):
+        i, j = first[k], first[k] + 1
+        right[j] = -normal[2 * k + 1] * right[i] + normal[2 * k] * right[j]
+        right[i] = 0.0
+
+
+@routine("inrr")
+def turn_back(rollers, first, normal, x):
+    """Turn the solution's pairs (normal, tangent) back to (x, y), in place."""
+    for k in range(rollers):
+        i, j = first[k], first[k] + 1
+        c, s = normal[2 * k], normal[2 * k + 1]
+        x[i], x[j] = c * x[i] - s * x[j], s * x[i] + c * x[j]

@@ -1,0 +1,176 @@
+"""Elastic matrices of a batch: B^T (T^T h T summed over quadrature points) B, T the tables of q = (r0', d, third).
+
+h has 21 rows a point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy each), dd (xx, xy, yy), dt (xx, xy, yx, yy) and
+tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
+"""
+
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.pointers import at
+from beamfem.kernels.record import ROW
+
+FAST = {"contract", "reassoc", "nsz"}
+
+
+@routine("iiidrrrrr", fastmath=FAST)
+def columns(vectors, bends, count, ck, slope, second, director, h, z):
+    """Fill z (2 vectors, 6, ROW): ck h times the tables of the vectors of a node, in rows r, d, t (x and y of each)."""
+    last = vectors - 1
+    for s in range(last):
+        w, u, own = at(slope, s * ROW), at(second, s * ROW), at(z, 12 * s * ROW)
+        for i in range(count):
+            a = ck * w[i]
+            own[i], own[ROW + i] = a * h[i], a * h[ROW + i]
+            own[2 * ROW + i], own[3 * ROW + i] = a * h[3 * ROW + i], a * h[4 * ROW + i]
+            own[4 * ROW + i], own[5 * ROW + i] = a * h[7 * ROW + i], a * h[8 * ROW + i]
+            own[6 * ROW + i], own[7 * ROW + i] = a * h[ROW + i], a * h[2 * ROW + i]
+            own[8 * ROW + i], own[9 * ROW + i] = a * h[5 * ROW + i], a * h[6 * ROW + i]
+            own[10 * ROW + i], own[11 * ROW + i] = a * h[9 * ROW + i], a * h[10 * ROW + i]
+        if bends != 0:
+            for i in range(count):
+                b = ck * u[i]
+                own[i] += b * h[7 * ROW + i]
+                own[ROW + i] += b * h[9 * ROW + i]
+                own[2 * ROW + i] += b * h[14 * ROW + i]
+                own[3 * ROW + i] += b * h[16 * ROW + i]
+                own[4 * ROW + i] += b * h[18 * ROW + i]
+                own[5 * ROW + i] += b * h[19 * ROW + i]
+                own[6 * ROW + i] += b * h[8 * ROW + i]
+                own[7 * ROW + i] += b * h[10 * ROW + i]
+                own[8 * ROW + i] += b * h[15 * ROW + i]
+                own[9 * ROW + i] += b * h[17 * ROW + i]
+                own[10 * ROW + i] += b * h[19 * ROW + i]
+                own[11 * ROW + i] += b * h[20 * ROW + i]
+    w, own, b = at(slope, last * ROW), at(z, 12 * last * ROW), ck * director[0]
+    if bends != 0:
+        for i in range(count):
+            own[i], own[ROW + i] = b * h[3 * ROW + i], b * h[5 * ROW + i]
+            own[2 * ROW + i], own[3 * ROW + i] = b * h[11 * ROW + i], b * h[12 * ROW + i]
+            own[4 * ROW + i], own[5 * ROW + i] = b * h[14 * ROW + i], b * h[15 * ROW + i]
+            own[6 * ROW + i], own[7 * ROW + i] = b * h[4 * ROW + i], b * h[6 * ROW + i]
+            own[8 * ROW + i], own[9 * ROW + i] = b * h[12 * ROW + i], b * h[13 * ROW + i]
+            own[10 * ROW + i], own[11 * ROW + i] = b * h[16 * ROW + i], b * h[17 * ROW + i]
+    else:
+        for i in range(count):
+            a = ck * w[i]
+            own[i] = b * h[3 * ROW + i] + a * h[7 * ROW + i]
+            own[ROW + i] = b * h[5 * ROW + i] + a * h[9 * ROW + i]
+            own[2 * ROW + i] = b * h[11 * ROW + i] + a * h[14 * ROW + i]
+            own[3 * ROW + i] = b * h[12 * ROW + i] + a * h[16 * ROW + i]
+            own[4 * ROW + i] = b * h[14 * ROW + i] + a * h[18 * ROW + i]
+            own[5 * ROW + i] = b * h[15 * ROW + i] + a * h[19 * ROW + i]
+            own[6 * ROW + i] = b * h[4 * ROW + i] + a * h[8 * ROW + i]
+            own[7 * ROW + i] = b * h[6 * ROW + i] + a * h[10 * ROW + i]
+            own[8 * ROW + i] = b * h[12 * ROW + i] + a * h[15 * ROW + i]
+            own[9 * ROW + i] = b * h[13 * ROW + i] + a * h[17 * ROW + i]
+            own[10 * ROW + i] = b * h[16 * ROW + i] + a * h[19 * ROW + i]
+            own[11 * ROW + i] = b * h[17 * ROW + i] + a * h[20 * ROW + i]
+
+
+@routine("iiiirrr", fastmath=FAST)
+def combine(rows, turned, turning, count, b, own, space):
+    """Replace vectors own (turned, rows, ROW) by their sums with b (turned, turning, ROW); space (turning, ROW)."""
+    for row in range(rows):
+        for column in range(turning):
+            to = at(space, column * ROW)
+            for part in range(0, turned, 2):
+                x, y = at(own, (rows * part + row) * ROW), at(own, (rows * (part + 1) + row) * ROW)
+                c, s = at(b, (part * turning + column) * ROW), at(b, ((part + 1) * turning + column) * ROW)
+                if part == 0:
+                    for i in range(count):
+                        to[i] = x[i] * c[i] + y[i] * s[i]
+                else:
+                    for i in range(count):
+                        to[i] += x[i] * c[i] + y[i] * s[i]
+        for column in range(turning):
+            source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
+            for i in range(count):
+                to[i] = source[i]
+
+
+@routine("iiiiiiirrrrr", fastmath=FAST)
+def products(vectors, bends, count, points, coordinates, slots, z_stride, slope, second, director, z, k):
+    """Fill rows of a node in the columns of another: tables times z, summed over points.
+
+    z (points, z_stride, ROW) with 6 rows a coordinate; tables of the node: slope, second (points, slots, ROW), director
+    (points, nodes); k (coordinates, 2 vectors, ROW).
+    """
+    last, size, nodes = vectors - 1, 2 * vectors, slots // vectors
+    for c in range(coordinates):
+        for s in range(vectors):
+            x, y = at(k, (c * size + 2 * s) * ROW), at(k, (c * size + 2 * s + 1) * ROW)
+            for point in range(points):
+                own = at(z, (point * z_stride + 6 * c) * ROW)
+                w = at(slope, (point * slots + s) * ROW)
+                if s < last:
+                    if point == 0:
+                        for i in range(count):
+                            x[i] = w[i] * own[i]
+                            y[i] = w[i] * own[ROW + i]
+                    else:
+                        for i in range(count):
+                            x[i] += w[i] * own[i]
+                            y[i] += w[i] * own[ROW + i]
+                    if bends != 0:
+                        w = at(second, (point * slots + s) * ROW)
+                        for i in range(count):
+                            x[i] += w[i] * own[4 * ROW + i]
+                            y[i] += w[i] * own[5 * ROW + i]
+                elif bends != 0:
+                    b = director[point * nodes]
+                    if point == 0:
+                        for i in range(count):
+                            x[i] = b * own[2 * ROW + i]
+                            y[i] = b * own[3 * ROW + i]
+                    else:
+                        for i in range(count):
+                            x[i] += b * own[2 * ROW + i]
+                            y[i] += b * own[3 * ROW + i]
+                else:
+                    b = director[point * nodes]
+                    if point == 0:
+                        for i in range(count):
+                            x[i] = b * own[2 * ROW + i] + w[i] * own[4 * ROW + i]
+                            y[i] = b * own[3 * ROW + i] + w[i] * own[5 * ROW + i]
+                    else:
+                        for i in range(count):
+                            x[i] += b * own[2 * ROW + i] + w[i] * own[4 * ROW + i]
+                            y[i] += b * own[3 * ROW + i] + w[i] * own[5 * ROW + i]
+
+
+@routine("iiiiiirrr", fastmath=FAST)
+def store(size, turned, turning, coordinates, count, rows, b, own, k):
+    """Put rows of a node (coordinates, size, ROW), their last ones summed with its b, into columns and rows of k.
+
+    k: entry (row, column) of the first coordinates of both nodes, `rows` in all; the transposed entry is filled as well.
+    """
+    linear = size - turned
+    own_count = linear + turning
+    for c in range(coordinates):
+        for r in range(own_count):
+            source = at(own, (c * size + r) * ROW)
+            to = at(k, (c * rows + r) * ROW)
+            if r < linear:
+                for i in range(count):
+                    to[i] = source[i]
+            else:
+                source = at(own, (c * size + linear) * ROW)
+                for part in range(0, turned, 2):
+                    x, y = at(source, part * ROW), at(source, (part + 1) * ROW)
+                    cosine = at(b, (part * turning + r - linear) * ROW)
+                    sine = at(b, ((part + 1) * turning + r - linear) * ROW)
+                    if part == 0:
+                        for i in range(count):
+                            to[i] = x[i] * cosine[i] + y[i] * sine[i]
+                    else:
+                        for i in range(count):
+                            to[i] += x[i] * cosine[i] + y[i] * sine[i]
+
+
+@routine("iir")
+def mirror(size, count, k):
+    """Copy the upper triangle of k (size, size, ROW), columns first, to the lower one."""
+    for column in range(size):
+        for row in range(column):
+            own, to = at(k, (column * size + row) * ROW), at(k, (row * size + column) * ROW)
+            for i in range(count):
+                to[i] = own[i]

@@ -1,0 +1,1 @@
+"""The physics of a beam, each equation written once."""

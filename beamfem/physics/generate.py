@@ -1,0 +1,175 @@
+"""Write the compiled passes of strain measures and node kinematics from their definitions: python -m beamfem.physics.generate.
+
+sympy differentiates; what it finds goes to `beamfem/kernels/generated`, is committed, and a test writes it again.
+"""
+
+from collections.abc import Iterable, Sequence
+from itertools import combinations_with_replacement
+from pathlib import Path
+from typing import Any
+
+import sympy
+from sympy.printing.pycode import PythonCodePrinter
+
+from beamfem.kernels import point
+from beamfem.physics.kinematics import KINDS, Kinematics
+from beamfem.physics.measures import MEASURES, Measure
+
+FOLDER = Path(__file__).parents[1] / "kernels" / "generated"
+_AXIS = ("rx", "ry", "dx", "dy", "ex", "ey")
+# blocks rr, rd, re, dd, de, ee of the second derivative by q, the symmetric ones by their upper triangle
+_ORDER = [(i, j) for a in (0, 2, 4) for b in range(a, 6, 2) for i in (a, a + 1) for j in (b, b + 1) if i <= j or a != b]
+
+
+class _Printer(PythonCodePrinter):
+    """Powers as products and square roots, so that the compiler makes vectors of them."""
+
+    def _print_Pow(self, power: Any, **unused: Any) -> str:
+        base, exponent = power.as_base_exp()
+        halves = 2 * exponent
+        if not halves.is_Integer or abs(halves) > 8:
+            raise ValueError(f"no rule for {power}")
+        whole, own = abs(int(halves)) // 2, self.parenthesize(base, 60)
+        factors = [own] * whole + ([f"math.sqrt({self._print(base)})"] if halves % 2 else [])
+        product = " * ".join(factors)
+        if exponent < 0:
+            return f"(1.0 / ({product}))" if len(factors) > 1 else f"(1.0 / {product})"
+        return f"({product})" if len(factors) > 1 else product
+
+    def _print_Rational(self, number: Any) -> str:
+        return repr(float(number))
+
+    def _print_Integer(self, number: Any) -> str:
+        return f"{int(number)}.0"
+
+    _print_Half = _print_Rational
+
+
+def measure_source(measure: Measure) -> str:
+    """Return the module of a strain measure: strains, forces, rates and the second derivative of the energy."""
+    q = sympy.symbols(_AXIS, real=True)
+    eps = [sympy.sympify(value) for value in measure(*q, sympy.sqrt)]
+    count = len(eps)
+    s, dq = sympy.symbols(f"s:{count}", real=True), sympy.symbols([f"{name}_" for name in _AXIS], real=True)
+    slopes = sympy.Matrix(eps).jacobian(q)
+    rows = _rows(_AXIS, point.AXIS)
+    resultants = _rows([str(symbol) for symbol in s], point.RESULTANT)
+    functions = [
+        _function("strains", "strains", rows, [], eps, point.STRAIN),
+        _function("forces", "forces on q of stress resultants", {**rows, **resultants}, [], slopes.T * sympy.Matrix(s), point.FORCE),
+        _function(
+            "rates", "the change of strains with a change of q, in its place",
+            {**rows, **_rows([str(symbol) for symbol in dq], point.RATE)}, [], slopes * sympy.Matrix(dq), point.RATE,
+        ),  # fmt: skip
+        _second(q, eps, s, slopes, {**rows, **resultants}),
+    ]  # fmt: skip
+    return _module(f"Passes of the strain measure `beamfem.physics.measures.{measure.__name__}`.", functions)
+
+
+def _second(q: Sequence[Any], eps: Sequence[Any], s: Sequence[Any], slopes: Any, rows: dict[str, int]) -> str:
+    """Write grad^T C grad + sum s d2 eps by way of the slopes and C grad, so that sparse products stay sparse."""
+    count = len(eps)
+    pairs = list(combinations_with_replacement(range(count), 2))
+    stiffness = {pair: sympy.Symbol(f"c{pair[0]}{pair[1]}") for pair in pairs}
+    law = sympy.Matrix(count, count, lambda i, j: stiffness[min(i, j), max(i, j)])
+    slope = {(i, k): sympy.Symbol(f"j{i}{k}") for i in range(count) for k in range(6) if slopes[i, k] != 0}
+    named = sympy.Matrix(count, 6, lambda i, k: slope.get((i, k), 0))
+    stressed = {(i, k): sympy.Symbol(f"u{i}{k}") for i in range(count) for k in range(6)}
+    product = named.T * sympy.Matrix(count, 6, lambda i, k: stressed[i, k])
+    geometric = sum((s[i] * sympy.hessian(eps[i], q) for i in range(count)), sympy.zeros(6, 6))
+    results = [product[i, j] for i, j in _ORDER]
+    needed = set().union(*(result.free_symbols for result in results))
+    wanted = {symbol: (law * named)[key] for key, symbol in stressed.items() if symbol in needed}
+    steps = [(slope[key], slopes[key]) for key in slope]
+    common, reduced = sympy.cse([value for _, value in steps] + [geometric[i, j] for i, j in _ORDER], optimizations="basic")
+    lines = [(name, value) for name, value in common]
+    lines += [(name, value) for (name, _), value in zip(steps, reduced, strict=False)]
+    lines += list(wanted.items())
+    finals = [result + extra for result, extra in zip(results, reduced[len(steps) :], strict=True)]
+    known = {**rows, **{str(symbol): point.STIFFNESS + number for number, symbol in enumerate(stiffness.values())}}
+    return _function("hessian", "the second derivative of the energy by q", known, lines, finals, point.HESSIAN, cse=False)
+
+
+def kinematics_source(kind: Kinematics) -> str:
+    """Return the module of a kind of node.
+
+    place: w, w'' and B from u, u', u''; convect: what changes w'' with u and u' beyond B, times ck and cv; curve: the
+    derivative of B^T f by u.
+    """
+    size = len(kind.coordinates)
+    u, v, a = (sympy.symbols([f"{letter}_{name}" for name in kind.coordinates], real=True) for letter in "uva")
+    c, s, length = sympy.symbols("c s length", real=True)
+    turned = sympy.Matrix(kind.vectors(tuple(u), sympy.cos(u[-1]), sympy.sin(u[-1]), length))
+    speed = turned.jacobian(u)
+    second = speed * sympy.Matrix(a) + sum((speed.diff(u[k]) * v[k] * sympy.Matrix(v) for k in range(size)), sympy.zeros(len(turned), 1))
+    ck, cv = sympy.symbols("ck cv", real=True)
+    extra = ck * second.jacobian(u) + cv * second.jacobian(v)
+    f = sympy.symbols(f"f:{len(turned)}", real=True)
+    curved = (speed.T * sympy.Matrix(f)).jacobian(u)
+    plain = {sympy.cos(u[-1]): c, sympy.sin(u[-1]): s}
+    rows = _rows([*map(str, (*u, *v, *a)), "c", "s", "length"], 0)
+    first = len(rows)
+    functions = [
+        _function("place", "w, w'' and B", rows, [], [*turned.subs(plain), *second.subs(plain), *speed.subs(plain)], first),
+        _function("convect", "ck dw''/du + cv dw''/du'", rows, [], list(extra.subs(plain)), first, scalars=("ck", "cv")),
+        _function("curve", "the derivative of B^T f", {**rows, **_rows([str(x) for x in f], first)}, [], list(curved.subs(plain)), first + len(f)),
+    ]  # fmt: skip
+    title = f"Passes of nodes of the kind `beamfem.physics.kinematics.{kind.name.upper()}`."
+    title += f"\n\nRows: {', '.join(rows)}; then results."
+    return _module(title, functions)
+
+
+def _rows(names: Iterable[str], first: int) -> dict[str, int]:
+    return {name: first + number for number, name in enumerate(names)}
+
+
+def _function(
+    name: str,
+    purpose: str,
+    rows: dict[str, int],
+    lines: list[tuple[Any, Any]],
+    results: Iterable[Any],
+    to: int,
+    scalars: tuple[str, ...] = (),
+    cse: bool = True,
+) -> str:
+    results = [sympy.sympify(result) for result in results]
+    if cse:
+        common, results = sympy.cse(results, optimizations="basic")
+        lines = [*lines, *common]
+    printer = _Printer({"fully_qualified_modules": True, "strict": False})
+    used = set().union(*(value.free_symbols for value in [*results, *(value for _, value in lines)]))
+    loads = [(symbol, row) for symbol, row in rows.items() if symbol in {str(each) for each in used}]
+    arguments = ", ".join(("count", *scalars, "x"))
+    text = [
+        f'@routine("i{"d" * len(scalars)}r", fastmath=FAST)',
+        f"def {name}({arguments}):",
+        f'    """Fill {purpose}."""',
+        "    for i in range(count):",
+    ]
+    text += [f"        {symbol} = x[{row} * ROW + i]" for symbol, row in loads]
+    text += [f"        {symbol} = {printer.doprint(value)}" for symbol, value in lines]
+    text += [f"        x[{to + number} * ROW + i] = {printer.doprint(value)}" for number, value in enumerate(results)]
+    return "\n".join(text) + "\n"
+
+
+def _module(title: str, functions: Sequence[str]) -> str:
+    body = "\n\n".join(functions)
+    needs = "import math\n\n" if "math." in body else ""
+    return (
+        f'"""{title}\n\nWritten by beamfem.physics.generate: do not edit.\n"""\n\n{needs}'
+        "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.record import ROW\n\n"
+        f'FAST = {{"contract", "reassoc", "nsz"}}\n\n\n{body}'
+    )
+
+
+def sources() -> dict[str, str]:
+    """Return all generated modules by their file name."""
+    measures = {f"{measure.__name__}.py": measure_source(measure) for measure in MEASURES}
+    return measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    for name, source in sources().items():
+        (FOLDER / name).write_text(source)

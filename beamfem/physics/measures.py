@@ -1,0 +1,46 @@
+"""Strain measures of a beam, each written once: whatever else the package needs of one is derived from here.
+
+A measure is a function of r = r0' (derivative of the axis by the reference arc length), d (director) and a third
+vector: e = d', or b = r0'' where the curvature comes from the axis. It takes components and a square root, so that it
+serves symbols (`generate`), arrays of real or complex numbers, and readable forms alike.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+Number = Any  # a float, an array or a symbol
+Measure = Callable[..., tuple[Number, ...]]
+
+
+def green_lagrange(rx: Number, ry: Number, dx: Number, dy: Number, ex: Number, ey: Number, sqrt: Any) -> tuple:
+    """Return a, b, c, eyy, g0, g1 of E = (F^T F - 1) / 2 for r = r0 + y d: exx = a + b y + c y^2, 2 exy = g0 + g1 y.
+
+    Paper, section 3.3.
+    """
+    return (
+        (rx * rx + ry * ry - 1) / 2,
+        rx * ex + ry * ey,
+        (ex * ex + ey * ey) / 2,
+        (dx * dx + dy * dy - 1) / 2,
+        rx * dx + ry * dy,
+        dx * ex + dy * ey,
+    )
+
+
+def structural(rx: Number, ry: Number, dx: Number, dy: Number, ex: Number, ey: Number, sqrt: Any) -> tuple:
+    """Return stretch, shear, curvature and thickness stretch of a section along t = d / |d|.
+
+    (r'.n - 1, r'.t, (d x d') / |d|^2, |d| - 1) with n = (t_y, -t_x); Reissner 1972, Simo and Vu-Quoc 1986.
+    """
+    size = sqrt(dx * dx + dy * dy)
+    tx, ty = dx / size, dy / size
+    return rx * ty - ry * tx - 1, rx * tx + ry * ty, (tx * ey - ty * ex) / size, size - 1
+
+
+def elastic_line(rx: Number, ry: Number, dx: Number, dy: Number, bx: Number, by: Number, sqrt: Any) -> tuple:
+    """Return (|r'| - 1, (r' x r'') / |r'|^2, r'.d, (d.d - 1) / 2), the curvature by r''; paper, section 3.4."""
+    square = rx * rx + ry * ry
+    return sqrt(square) - 1, (rx * by - ry * bx) / square, rx * dx + ry * dy, (dx * dx + dy * dy - 1) / 2
+
+
+MEASURES: tuple[Measure, ...] = (green_lagrange, structural, elastic_line)

@@ -9,7 +9,6 @@ from hypothesis import HealthCheck, settings
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
-from beamfem.kernels.form import ANY, known_form
 
 FIELDS = (Cubic(), *(Lagrange(order) for order in (1, 2, 3, 5)))
 COORDINATES = (Gradients(), Rotation(), ShearFree(True), ShearFree(False))
@@ -38,9 +37,6 @@ def combinations():
 ELEMENTS = tuple(combinations())
 # the same kernels with other tables: every integration is tested where strains and forces are, one where models are
 USUAL = tuple(e for e in ELEMENTS if e.integration == bf.Element(e.field, e.coordinates, e.forces).integration)
-# kinds that are most used: nodes, vectors a node, strain measures, half width of the band of a chain or 1 for any
-NAMED = {(2, 2, 1, 5), (3, 2, 1, 8), (5, 2, 1, 14), (2, 3, 0, 11), (2, 3, 0, 9), (2, 3, 2, 9), (2, 2, 1, 1)}
-
 
 def identify(element):
     flag = "-plane-stress" if getattr(element.forces, "plane_stress", False) else ""
@@ -50,34 +46,6 @@ def identify(element):
 @pytest.fixture(params=USUAL, ids=identify)
 def element(request):
     return request.param
-
-
-@pytest.fixture(scope="session", autouse=True)
-def few_forms_are_compiled(request):
-    """Let kernels know the sizes of the most used kinds in advance; of others, only in the slow verification.
-
-    Each takes the compiler half a minute, and is the same source.
-    """
-    if request.config.option.markexpr != "not slow":
-        yield
-        return
-
-    def named_form(nodes, vectors, measures, window):
-        sizes = (nodes, vectors, measures, len(window))
-        return known_form(nodes, vectors, measures, window) if sizes in NAMED else ANY
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("beamfem.model.system.known_form", named_form)
-        yield
-
-
-def pytest_collection_modifyitems(items):
-    """Give all tests of a field and its forces to one worker, so that no two compile the same kernels."""
-    for item in items:
-        parameters = getattr(item, "callspec", None)
-        element = parameters.params.get("element") if parameters else None
-        if isinstance(element, bf.Element):
-            item.add_marker(pytest.mark.xdist_group(f"{element.field.name}-{element.forces.name}"))
 
 
 @pytest.fixture

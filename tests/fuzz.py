@@ -17,14 +17,12 @@ from pathlib import Path
 from types import FrameType
 
 from absurd_models import ANALYSES, draw
-from conftest import ELEMENTS, NAMED
+from conftest import ELEMENTS
 from fuzz_judged import Outcome, judge
 from threadpoolctl import threadpool_limits
 
 import beamfem as bf
 from beamfem.element.element import Element
-from beamfem.kernels.form import ANY, known_form
-from beamfem.model import system
 
 CPU_SECONDS = 120.0  # a first compilation included
 WALL_SECONDS = 1500.0  # where the interpreter itself hangs in compiled code
@@ -99,7 +97,7 @@ def run(seeds: Iterable[int], elements: Sequence[Element] = ELEMENTS, workers: i
 def _run(seeds: Sequence[int], elements: Sequence[Element], workers: int, folder: str) -> dict[int, Outcome]:
     """Return what comes of the seeds until a worker dies."""
     done = {}
-    with ProcessPoolExecutor(workers, get_context("spawn"), initializer=few_forms) as pool:
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
         try:
             for future in as_completed([pool.submit(within_limits, seed, elements, folder) for seed in seeds]):
                 found = future.result()
@@ -109,16 +107,6 @@ def _run(seeds: Sequence[int], elements: Sequence[Element], workers: int, folder
         except BrokenProcessPool:
             pass
     return done
-
-
-def few_forms() -> None:
-    """Let kernels know the sizes of named kinds in advance only: each other one takes half a minute to compile."""
-
-    def named_form(nodes: int, vectors: int, measures: int, window: tuple[float, ...]) -> object:
-        known = (nodes, vectors, measures, len(window)) in NAMED
-        return known_form(nodes, vectors, measures, window) if known else ANY
-
-    system.known_form = named_form
 
 
 def summary(outcomes: Sequence[Outcome]) -> str:

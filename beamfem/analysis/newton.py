@@ -119,9 +119,10 @@ def _solve_band(
         (*bounds, newton.iterations, newton.independent_stresses, -1 if keep is None else keep), dtype=float
     )
     step = np.zeros(n)
-    assembler, solver = system.assembler(), SolverTable(system.free_dofs, half, system.turned)
+    assembler, solver = system.assembler(), SolverTable(system.free_dofs, half, system.turned, moving=False)
     assembler.load(system.body(load_factor), values)
     assembler.weigh(STATICS)
+    assembler.require("tangent", "prediction")
     assembler.place(p, step, step, unbalanced, rows)
     parts = {
         record.ROWS: rows,

@@ -57,6 +57,12 @@ class Assembler:
         self._factors[:] = coefficients
         self.table[record.MOVING] = int(coefficients[2] != 0.0)
 
+    def require(self, *tasks: str) -> None:
+        """Have everything compiled that compiled drivers will call: forces always, "tangent", "prediction"."""
+        moving = self.table[record.MOVING] != 0 and "tangent" in tasks
+        for work in self.works:
+            work.sheet.require("forces", *tasks, *(("mass",) if moving else ()))
+
     def place(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> None:
         """Take the arrays (n,) of a state and where results go; who calls keeps them alive."""
         for number, values in enumerate((p, v, a)):
@@ -71,6 +77,7 @@ class Assembler:
 
         predicted: take the geometric part of the tangent from `stresses`.
         """
+        self.require(*(("tangent",) if matrix.size else ()))
         self.place(p, v, a, residual, matrix)
         self.table[record.TANGENT] = int(matrix.size > 0)
         self.table[record.PREDICTED] = int(predicted and matrix.size > 0)
@@ -78,6 +85,7 @@ class Assembler:
 
     def predict(self, p: np.ndarray, step: np.ndarray) -> None:
         """Fill `stresses` with those after a linearised step (n,) from p (n,)."""
+        self.require("prediction")
         self.table[record.COORDINATES_P], self.table[record.COORDINATES_V] = _address(p, self.size), _address(step, self.size)
         for work in self.works:
             model_passes.predict_resultants(work.table, self.table)
@@ -88,6 +96,7 @@ class Assembler:
         self.place(p, v, a, nothing, np.empty(0))
         self.weigh((1.0, 0.0, 0.0))
         table[[record.TANGENT, record.PREDICTED, record.LOADED]] = 0
+        self.require()
         node_passes.place_nodes(work.table, table, 1)
         model_passes.clear_forces(work.table)
         element_passes.add_elements(work.table, table)
@@ -96,6 +105,7 @@ class Assembler:
 
     def smallest_jacobian(self, p: np.ndarray) -> float:
         """Return the smallest r0' x d of all quadrature points in a state (n,); negative inside out."""
+        self.require()
         self.table[record.COORDINATES_P] = _address(p, self.size)
         smallest = 1.0
         for work in self.works:

@@ -1,5 +1,6 @@
-"""The compiled functions that a group of elements needs, by their numbers; compiled, or loaded, when first asked for."""
+"""The compiled functions that a group of elements needs, by their numbers; compiled, or loaded, when first needed."""
 
+from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
@@ -19,62 +20,100 @@ from beamfem.kernels import (
     reduction,
     stiffness,
 )
-from beamfem.kernels.generated import elastic_line, green_lagrange, rotation_node, shear_rigid_node, stretch_node, structural
+from beamfem.kernels.compiling import Routine
+from beamfem.kernels.generated import (
+    elastic_line,
+    green_lagrange,
+    rotation_node,
+    shear_rigid_node,
+    stretch_node,
+    structural,
+)
 
 _MEASURES = green_lagrange, structural, elastic_line
 _KINDS = rotation_node, stretch_node, shear_rigid_node
 
-
-@cache
-def routines(measures: int) -> np.ndarray:
-    """Return the table of addresses for a strain measure, given by its number in `physics.measures.MEASURES`."""
-    own = _MEASURES[measures]
-    found = {
+# what a task needs, whatever the strain measure
+_TASKS: dict[str, dict[int, Routine]] = {
+    "forces": {
         record.GATHER: gathering.gather,
         record.SCATTER: gathering.scatter,
         record.FILL_TABLES: gathering.fill_tables,
         record.FILL_BODY: gathering.fill_body,
         record.INTERPOLATE: field.interpolate,
         record.SPREAD: field.spread,
-        record.COLUMNS: stiffness.columns,
-        record.PRODUCTS: stiffness.products,
-        record.MIRROR: stiffness.mirror,
         record.ADD_INERTIA: inertia.add_inertia,
-        record.ADD_MASS: inertia.add_mass,
-        record.ADD_SCALED: inertia.add_scaled,
-        record.COMBINE: stiffness.combine,
-        record.STORE: stiffness.store,
-        record.FORM_MATRICES: element_matrices.form_matrices,
-        record.ADD_MATRICES: element_matrices.add_matrices,
-        record.REDUCE_COLUMNS: reduction.reduce_columns,
-        record.REDUCE_ROWS: reduction.reduce_rows,
-        record.ADD_TO_BAND: reduction.add_to_band,
-        record.ADD_TO_SPARSE: reduction.add_to_sparse,
         record.ADD_NODE_FORCES: reduction.add_node_forces,
-        record.ADD_CURVATURE: reduction.add_curvature,
         record.TAKE: nodes.take,
-        record.TURN: nodes.turn,
-        record.ROTATE: nodes.rotate,
         record.COPY: nodes.copy,
         record.CLEAR: nodes.clear,
-        record.STRAINS: own.strains,
-        record.FORCES: own.forces,
-        record.RATES: own.rates,
-        record.HESSIAN: own.hessian,
-        record.LAW: linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants,
-        record.LOAD_FORCES: point_loads.load_forces,
         record.PLACE_NODES: node_passes.place_nodes,
         record.ADD_ELEMENTS: element_passes.add_elements,
-        record.ADD_LOADS: point_loads.add_loads,
         record.FINISH_NODES: node_passes.finish_nodes,
-        record.REDUCE: element_matrices.reduce_and_add,
         record.CLEAR_FORCES: model_passes.clear_forces,
-        record.NODE_RATES: model_passes.add_node_rates,
-    }
-    for number, kind in enumerate(_KINDS):
-        for step, name in enumerate(("place", "convect", "curve")):
-            found[record.PLACE_KIND + 3 * number + step] = getattr(kind, name)
-    table = np.zeros(record.ROUTINE_COUNT, dtype=np.int64)
-    for number, each in found.items():
-        table[number] = each.address
-    return table
+    },
+    "tangent": {
+        record.COLUMNS: stiffness.columns,
+        record.PRODUCTS: stiffness.products,
+        record.STORE: stiffness.store,
+        record.MIRROR: stiffness.mirror,
+        record.FORM_MATRICES: element_matrices.form_matrices,
+        record.ADD_MATRICES: element_matrices.add_matrices,
+    },
+    "mass": {record.ADD_SCALED: inertia.add_scaled, record.ADD_MASS: inertia.add_mass},
+    "prediction": {record.NODE_RATES: model_passes.add_node_rates},
+    "band": {record.ADD_TO_BAND: reduction.add_to_band},
+    "sparse": {record.ADD_TO_SPARSE: reduction.add_to_sparse},
+    "angles": {record.TURN: nodes.turn},
+    "rotated": {record.ROTATE: nodes.rotate},
+    "turning tangent": {record.COMBINE: stiffness.combine, record.ADD_CURVATURE: reduction.add_curvature},
+    "loads": {record.ADD_LOADS: point_loads.add_loads, record.LOAD_FORCES: point_loads.load_forces},
+    "load tangent": {record.REDUCE: element_matrices.reduce_and_add},
+    "turning load tangent": {
+        record.REDUCE_COLUMNS: reduction.reduce_columns,
+        record.REDUCE_ROWS: reduction.reduce_rows,
+    },
+}
+# and what depends on it
+_PASSES: dict[str, dict[int, str]] = {
+    "forces": {record.STRAINS: "strains", record.FORCES: "forces"},
+    "tangent": {record.HESSIAN: "hessian"},
+    "prediction": {record.RATES: "rates"},
+}
+# what kinds of nodes add to a task: the number of their pass
+_OF_KINDS = {"forces": ("place", 0), "mass": ("convect", 1), "tangent": ("curve", 2)}
+
+
+class Routines:
+    """A table of addresses for a strain measure; entries are filled when a task first needs them."""
+
+    def __init__(self, measures: int) -> None:
+        self.addresses = np.zeros(record.ROUTINE_COUNT, dtype=np.int64)
+        self._measures, self._ready = measures, set[tuple[str, int]]()
+
+    def require(self, tasks: Iterable[str], kinds: Iterable[int]) -> None:
+        """Compile, or load, what tasks need, for kinds of nodes that turn (numbers of `physics.kinematics.KINDS`)."""
+        for task in tasks:
+            for kind in (-1, *kinds):
+                if (task, kind) not in self._ready:
+                    self._fill(task, kind)
+                    self._ready.add((task, kind))
+
+    def _fill(self, task: str, kind: int) -> None:
+        own = _MEASURES[self._measures]
+        found = dict(_TASKS[task]) if kind < 0 else {}
+        if kind < 0:
+            found |= {number: getattr(own, name) for number, name in _PASSES.get(task, {}).items()}
+            if task == "forces":
+                found[record.LAW] = linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants
+        elif task in _OF_KINDS:
+            name, step = _OF_KINDS[task]
+            found[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
+        for number, routine in found.items():
+            self.addresses[number] = routine.address
+
+
+@cache
+def routines(measures: int) -> Routines:
+    """Return the table for a strain measure, given by its number in `physics.measures.MEASURES`."""
+    return Routines(measures)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.routines import routines
+from beamfem.assembly.routines import Routines, routines
 from beamfem.kernels import record
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import ELASTIC_LINE, GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS, Block, Layout, PointLoads
@@ -26,6 +26,13 @@ class Sheet:
     chunks: tuple[int, int, int]
     space: int
     constant: np.ndarray | None
+    routines: Routines
+    needs: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
+
+    def require(self, *tasks: str) -> None:
+        """Have everything compiled that these tasks need: forces, tangent, mass, prediction."""
+        for task in tasks:
+            self.routines.require(*self.needs[task])
 
     @property
     def points(self) -> tuple[int, int, int]:
@@ -77,7 +84,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.GRAVITY: block.gravity,
         record.LENGTH: block.length,
     }
-    table = np.zeros(record.BLOCK_FIELDS, dtype=np.int64)
+    table, own = np.zeros(record.BLOCK_FIELDS, dtype=np.int64), routines(block.measures)
     first = 0
     for number, part in parts.items():
         table[number] = first
@@ -118,7 +125,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.LOAD_PLACE: place[loads.element].T,
         record.LOAD_NUMBER: number[loads.element].T,
         record.COUNTED: np.arange(elements) if layout.half_width < 0 else np.empty(0, dtype=np.int64),
-        record.ROUTINES: routines(block.measures),
+        record.ROUTINES: own.addresses,
     }
     kept = []
     for field, values in held.items():
@@ -132,7 +139,22 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = len(held[record.RUNS]), layout.half_width, len(loads.element)
     chunks = -(-count // LANES), chunk_rows, ROW
     constant = _constant(block, chunks, size, turned, turning) if turned and len(kinds) > 1 or TURNED_GRADIENTS in kinds else None
-    return Sheet(table, tuple(kept), chunks, used * ROW, constant)
+    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)))
+    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs)
+
+
+def _needs(kinds: np.ndarray, band: bool, loads: bool) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
+    """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
+    angles = tuple(int(kind) - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
+    rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
+    turns = bool(angles or rotated)
+    forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
+    tangent = ["tangent", "band" if band else "sparse"]
+    tangent += ["turning tangent"] if turns else []
+    tangent += ["load tangent"] if loads else []
+    tangent += ["turning load tangent"] if loads and turns else []
+    parts = {"forces": forces, "tangent": tuple(tangent), "mass": ("mass",), "prediction": ("prediction",)}
+    return {task: (names, angles) for task, names in parts.items()}
 
 
 def _places(node: np.ndarray, rows: int) -> np.ndarray:

@@ -144,11 +144,9 @@ def number_table(name: str, values: Any, columns: int) -> np.ndarray:
 
 def flag(name: str, value: Any) -> bool:
     """Return `value` as True or False, or raise InputError naming it: text and numbers count as neither."""
-    if isinstance(value, bool | np.bool_) or (
-        isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype == bool
-    ):
-        return bool(value)
-    raise InputError(f"{name} must be True or False, got {shown(value)}")
+    if not isinstance(value, bool | np.bool_):
+        raise InputError(f"{name} must be True or False, got {shown(value)}")
+    return bool(value)
 
 
 def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:

@@ -119,9 +119,13 @@ SECTIONS = {
     "a coupling of 1e300": (lambda: bf.Section.from_stiffness(1, 1, 1, 1, 1, 1e300), BAD, "gain energy"),
     "layer of a number": (lambda: bf.Layer(2e11, 0.1), BAD, "material of a Layer"),
     "layer without thickness": (lambda: bf.Layer(STEEL, 0.0), BAD, "thickness of Layer must be greater"),
-    "no layers": (lambda: bf.Layered([], 0.1), BAD, "layers of a Layered section must be a list"),
+    "no layers": (lambda: bf.Layered([], 0.1), BAD, "list of Layer"),
     "layers of numbers": (lambda: bf.Layered([0.1, 0.2], 0.1), BAD, "list of Layer"),
-    "one layer for a list": (lambda: bf.Layered(bf.Layer(STEEL, 0.1), 0.1), BAD, "list of Layer"),
+    "one layer for a list": (
+        lambda: bf.Layered(bf.Layer(STEEL, 0.1), 0.1),
+        BAD,
+        "layers of a Layered section must be a list",
+    ),
     "layers of width nan": (lambda: bf.Layered([bf.Layer(STEEL, 0.1)], NAN), BAD, "width of Layered must be finite"),
     "axis of text": (
         lambda: bf.Layered([bf.Layer(STEEL, 0.1)], 0.1, "middle"),
@@ -274,4 +278,3 @@ def test_lists_may_be_generators_and_counts_arrays_without_dimensions():
     assert a_beam(elements=np.array(3)).elements == 3
     assert len(bf.Chain(bf.Line((x, 0), (x + 1, 0)) for x in range(2)).curves) == 2
     assert bf.Layered((bf.Layer(STEEL, 0.1) for _ in range(2)), 0.1).height == 0.2
-    assert bf.PointForce(END, (0, 1), follower=np.array(True)).follower is True

@@ -116,11 +116,11 @@ MESHES = {
     "ragged nodes": (lambda: bf.LineMesh([[0, 0], [1]], [[0, 1, -1]], {}, {}), BAD, "nodes of LineMesh"),
     "cells of two": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1]], {}, {}), BAD, "cells of LineMesh must be"),
     "cells of no node": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 2, -1]], {}, {}), BAD, "between 0 and 1, got 2"),
-    "cells from the last node": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[-1, 0, -1]], {}, {}), BAD, "0 and 1, got -1"),
+    "cells of node -1": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[-1, 0, -1]], {}, {}), BAD, "0 and 1, got -1"),
     "set of a number": (
         lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {3: [0]}, {}),
         BAD,
-        "must be a text, got 3",
+        "a text, got 3",
     ),
     "set of rows": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {"a": [[0]]}, {}), BAD, "a list of whole"),
     "cells of halves": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 0.5, -1]], {}, {}), BAD, "whole numbers"),

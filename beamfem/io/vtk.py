@@ -96,9 +96,13 @@ class _Series:
                 self.grid.GetPointData().AddArray(array)
             self.grid.GetFieldData().AddArray(_named(self.name, np.array([value])))
             file = self.folder / f"{len(self.lines):04d}.vtu"
-            self.writer.SetFileName(os.fspath(file))
+            # the .pvd of an earlier export may name this file
+            partial = file.with_suffix(".part")
+            self.writer.SetFileName(os.fspath(partial))
             if not self.writer.Write():
+                partial.unlink(missing_ok=True)
                 raise FileError(f"{file} cannot be written: the disk is full, or takes no files")
+            os.replace(partial, file)
             source = quoteattr(f"{self.folder.name}/{file.name}")
             time = float(self.times[len(self.lines)])
             self.lines.append(f'    <DataSet timestep="{time!r}" part="0" file={source}/>\n')

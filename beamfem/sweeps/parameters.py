@@ -71,15 +71,21 @@ def check_call(function: Callable[..., Any], point: Mapping[str, Any]) -> None:
 def labels(values: Sequence[Any]) -> tuple[str, ...]:
     """Return a text for each value: its name where it has one; equal names get the members in which they differ."""
     found = [_label(value) for value in values]
-    for text in {text for text in found if found.count(text) > 1}:
-        same = [i for i, other in enumerate(found) if other == text]
+    for text, same in _repeated(found):
         for i, detail in zip(same, _differences([values[i] for i in same]), strict=True):
             found[i] = f"{text} ({detail})" if detail else text
-    for text in {text for text in found if found.count(text) > 1}:
-        same = [i for i, other in enumerate(found) if other == text]
+    for text, same in _repeated(found):
         for number, i in enumerate(same, 1):
             found[i] = f"{text} #{number}"
     return tuple(found)
+
+
+def _repeated(texts: Sequence[str]) -> list[tuple[str, list[int]]]:
+    """Return each text that is there more than once, with its places."""
+    places: dict[str, list[int]] = {}
+    for i, text in enumerate(texts):
+        places.setdefault(text, []).append(i)
+    return [(text, own) for text, own in places.items() if len(own) > 1]
 
 
 def assignments(point: Mapping[str, Any]) -> str:

@@ -36,6 +36,7 @@ SOLVES = {
     "save beyond floats": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=10**400), BAD, "save_every must be at most"),
     "integrator by name": (lambda: bf.simulate(FREE, 1.0, 0.1, integrator="newmark"), BAD, "GeneralizedAlpha"),
     "integrator as a class": (lambda: bf.simulate(FREE, 1.0, 0.1, bf.GeneralizedAlpha), BAD, "GeneralizedAlpha"),
+    "spin of 1e300": (lambda: bf.RigidVelocity(angular=1e300), BAD, "cannot square"),
     "start from text": (lambda: bf.simulate(FREE, 1.0, 0.1, start="a"), BAD, "start must be a state"),
     "velocity of numbers": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=(1, 0)), BAD, "velocity"),
     "velocity of nothing": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=lambda x: None), BAD, "velocity"),
@@ -74,6 +75,8 @@ RESULTS = {
     "spline of a polynomial": (lambda s, out: s.spline(BEAM), BAD, "no cubic spline"),
     "row as True": (lambda s, out: s[True], BAD, "a row of a solution"),
     "row as text": (lambda s, out: s["last"], BAD, "a row of a solution"),
+    "every 0th row": (lambda s, out: s[::0], BAD, "rows of a solution are chosen by whole numbers"),
+    "rows from a half": (lambda s, out: s[0.5:], BAD, "rows of a solution are chosen by whole numbers"),
     "no rows": (lambda s, out: s[5:4], BAD, "holds no row"),
     "time of statics": (lambda s, out: s.time, BAD, "use load_factor"),
     "a misspelt colour": (lambda s, out: s.plot(colour="momnt"), BAD, "did you mean moment"),
@@ -113,6 +116,8 @@ RESULTS = {
     "mode beyond": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(1), BAD, "mode must be between 0 and 0"),
     "mode as True": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(True), BAD, "mode must be a whole"),
     "mode of no size": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 0.0), BAD, "amplitude must be"),
+    "mode of 1e300 m": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 1e300), BAD, "cannot square"),
+    "mode of 1e15 frames": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=10**15), BAD, "computer has"),
     "mode of one frame": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=1), BAD, "at least 2"),
 }
 

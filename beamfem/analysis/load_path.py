@@ -70,7 +70,7 @@ class PathFollower:
         growing[-1] = 1.0
         try:
             line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
         while point.load_factor < beyond:
             step, iterations, cuts = _step(line, point, self.size)

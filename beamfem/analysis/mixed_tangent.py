@@ -10,10 +10,10 @@ is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, ldl
 from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
+from beamfem.analysis.lapack import LinAlgError, ldl
 from beamfem.analysis.tangent import Stresses, Tangent, Turned, turning
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.kernels.block import Block

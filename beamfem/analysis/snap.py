@@ -60,7 +60,7 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
         right = -unbalanced[free] - mass @ (moved - p)[free] / time
         try:
             change = tangent.solve(right, system.turned)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             return None, iteration
         moved[free] += change
         size = float(np.max(np.abs(change) / system.scale[free]))

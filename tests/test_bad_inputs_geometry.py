@@ -171,6 +171,7 @@ ELEMENTS = {
 }
 
 BEAMS = {
+    "elements as True": (lambda: a_beam(elements=True), BAD, "elements must be a whole number"),
     "zero elements": (lambda: a_beam(elements=0), BAD, "elements must be at least 1"),
     "half an element": (lambda: a_beam(elements=2.5), BAD, "elements must be a whole number"),
     "more elements than floats count": (lambda: a_beam(elements=10**400), BAD, r"elements must be at most 2\^53"),

@@ -9,6 +9,17 @@ import beamfem as bf
 BAD = bf.InputError
 FREE = bf.Model([BEAM])
 
+
+def double(x):
+    return 2.0 * x
+
+
+def feather():
+    """A cantilever that its load would move by 1e165 of its length."""
+    beam = a_beam(material=bf.Material(1e-6, 0.3, 1.0))
+    return bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 1e150))])
+
+
 SOLVES = {
     "statics of a beam": (lambda: bf.solve_static(BEAM), BAD, "a Model is asked for"),
     "statics of a class": (lambda: bf.solve_static(bf.Model), BAD, "a Model is asked for"),
@@ -49,6 +60,8 @@ SOLVES = {
     "path of no step": (lambda: bf.trace_equilibrium(CANTILEVER, step=0.0), BAD, "step must be greater"),
     "path of steps of round-off": (lambda: bf.trace_equilibrium(CANTILEVER, step=1e-300), BAD, "round-off only"),
     "path of no points": (lambda: bf.trace_equilibrium(CANTILEVER, points=0), BAD, "points must be at least 1"),
+    "path of a feather": (lambda: bf.trace_equilibrium(feather()), bf.ConvergenceError, "loads closer to its stiff"),
+    "buckling of a feather": (lambda: bf.solve_buckling(feather()), bf.ConvergenceError, "loads closer to its stiff"),
     "path from a point": (lambda: bf.trace_equilibrium(CANTILEVER, start=END), BAD, "start must be a bifurcation"),
     "no modes": (lambda: bf.solve_modes(CANTILEVER, 0), BAD, "count must be at least 1"),
     "too many modes": (lambda: bf.solve_modes(CANTILEVER, 10**6), BAD, "only .* unknown coordinates"),
@@ -60,6 +73,16 @@ SOLVES = {
     "a study of a quantity as a number": (lambda: bf.converge(lambda n: n, 3, refine="n", n=[1, 2]), BAD, "quantity"),
     "a study until zero": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], until=0.0), BAD, "until must be"),
     "a study of nan": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], reference=NAN), BAD, "reference"),
+    "stale results by words": (lambda: bf.sweep(abs, keep_stale="no", x=[1]), BAD, "keep_stale must be True or False"),
+    "stale results by number": (lambda: bf.sweep(abs, keep_stale=0, x=[1]), BAD, "keep_stale must be True or False"),
+    "a column of two names": (lambda: bf.sweep(double, x=[1, 2])[["x"]], BAD, r"no \['x'\]; known are x, value"),
+    "a misspelt column": (lambda: bf.sweep(double, x=[1, 2])["valeu"], BAD, "did you mean value"),
+    "steps as True": (lambda: bf.solve_static(CANTILEVER, steps=True), BAD, "steps must be a whole number"),
+    "count of modes as True": (lambda: bf.solve_modes(CANTILEVER, True), BAD, "count must be a whole number"),
+    "count of loads as True": (lambda: bf.solve_buckling(CANTILEVER, True), BAD, "count must be a whole number"),
+    "points as True": (lambda: bf.trace_equilibrium(CANTILEVER, points=True), BAD, "points must be a whole number"),
+    "save every True": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=True), BAD, "save_every must be a whole"),
+    "iterations as True": (lambda: bf.Newton(iterations=True), BAD, "iterations of Newton must be a whole"),
     "a study of equal counts": (lambda: bf.converge(lambda n: n, refine="n", n=[2, 2]), BAD, "each once"),
 }
 

@@ -14,6 +14,12 @@ def double(x):
     return 2.0 * x
 
 
+def leaning():
+    """Nine unknown coordinates, two of which an inclined roller lets move together only."""
+    beam = a_beam(elements=1)
+    return bf.Model([beam], [bf.Roller(beam.end, (1, 1))])
+
+
 def feather():
     """A cantilever that its load would move by 1e165 of its length."""
     beam = a_beam(material=bf.Material(1e-6, 0.3, 1.0))
@@ -73,6 +79,11 @@ SOLVES = {
     "a study of a quantity as a number": (lambda: bf.converge(lambda n: n, 3, refine="n", n=[1, 2]), BAD, "quantity"),
     "a study until zero": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], until=0.0), BAD, "until must be"),
     "a study of nan": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], reference=NAN), BAD, "reference"),
+    "a study of a number's quantity": (lambda: bf.converge(double, "tip", refine="x", x=[1, 2]), BAD, "leave quantity"),
+    "a sweep of a number": (lambda: bf.sweep(3, x=[1]), BAD, "the first argument must be a function"),
+    "a column of unequal arrays": (lambda: bf.sweep(np.ones, shape=[1, 2])["value"], BAD, "have different shapes"),
+    "stability of a motion": (lambda: bf.simulate(FREE, 0.1, 0.1).stable, BAD, "this one is a motion"),
+    "as many modes as unknowns on an inclined roller": (lambda: bf.solve_modes(leaning(), 9), BAD, "only 8 modes"),
     "stale results by words": (lambda: bf.sweep(abs, keep_stale="no", x=[1]), BAD, "keep_stale must be True or False"),
     "stale results by number": (lambda: bf.sweep(abs, keep_stale=0, x=[1]), BAD, "keep_stale must be True or False"),
     "a column of two names": (lambda: bf.sweep(double, x=[1, 2])[["x"]], BAD, r"no \['x'\]; known are x, value"),

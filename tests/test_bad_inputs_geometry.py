@@ -244,6 +244,11 @@ MAGNITUDES = {
         BAD,
         "moment of order 4",
     ),
+    "a flat body of a length of 1e-35": (
+        lambda: a_beam(curve=bf.Line((0, 0), (1e-35, 0)), section=bf.Rectangle(1.0, 1.0), element=bf.ANCF()),
+        BAD,
+        "moment of order 4",
+    ),
     "elements of 1e-60 of the length": (lambda: a_beam(elements=[0.0, 1e-60, 1.0]), BAD, r"E I / h\^3"),
 }
 

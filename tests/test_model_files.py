@@ -151,7 +151,7 @@ MISTAKES = {
     "output of two things": ('name = "tip"', 'beam = "arm"', 32, "outputs[1].beam", "one of them, or none"),
     "no states": ('["fx", "fy", "m"]', '["fx"]\nat = []', 40, "outputs[2].at", '"last", "all"'),
     "states at a number": ('["fx", "fy", "m"]', '["fx"]\nat = 1.0', 40, "outputs[2].at", "a list of numbers"),
-    "outputs of modes": ("[[loads]]", '[analysis]\nkind = "modes"\n[[loads]]', 33, "outputs[1]", "outputs go with static"),
+    "outputs of modes": ("[[loads]]", '[analysis]\nkind = "modes"\n[[loads]]', 33, "outputs[1]", "go with static"),
     "a mode beyond": (
         "[[loads]]",
         '[analysis]\nkind = "modes"\ncount = 2\nmode = 3\n[[loads]]',

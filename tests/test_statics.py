@@ -103,6 +103,16 @@ def test_energy_equals_the_work_of_the_load(element):
 
 
 @pytest.mark.parametrize(
+    ("stiffness", "words"), [((0.0, 1e3), "translates along x"), ((1e3, 0.0), "translates along y")]
+)
+def test_a_foundation_that_resists_one_way_holds_nothing_of_the_other(stiffness, words):
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([one], [bf.Foundation(one, stiffness)], [bf.PointForce(one.end, (0.0, 1.0))])
+    with pytest.raises(bf.FreeMotionError, match=words):
+        bf.solve_static(model)
+
+
+@pytest.mark.parametrize(
     ("supports", "words"),
     [
         ((), "translates along"),

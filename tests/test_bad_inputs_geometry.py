@@ -178,6 +178,7 @@ ELEMENTS = {
 }
 
 BEAMS = {
+    "elements as True": (lambda: a_beam(elements=True), BAD, "elements must be a whole number"),
     "zero elements": (lambda: a_beam(elements=0), BAD, "elements must be at least 1"),
     "half an element": (lambda: a_beam(elements=2.5), BAD, "elements must be a whole number"),
     "more elements than floats count": (lambda: a_beam(elements=10**400), BAD, r"elements must be at most 2\^53"),
@@ -249,6 +250,11 @@ MAGNITUDES = {
     "an axis of 1e160": (lambda: a_beam(section=bf.Layered([bf.Layer(STEEL, 1.0)], 1.0, 1e160)), BAD, "of Beam"),
     "a body of 1e40": (
         lambda: a_beam(section=bf.Section(1.0, 1.0, fourth_moment=1e200), element=bf.ANCF()),
+        BAD,
+        "moment of order 4",
+    ),
+    "a flat body of a length of 1e-35": (
+        lambda: a_beam(curve=bf.Line((0, 0), (1e-35, 0)), section=bf.Rectangle(1.0, 1.0), element=bf.ANCF()),
         BAD,
         "moment of order 4",
     ),

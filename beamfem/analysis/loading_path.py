@@ -121,7 +121,7 @@ class LoadingPath:
         pencil = Pencil(self.system, point.y[:-1], point.load_factor)
         none = np.empty((len(self.system.free_dofs), 0))
         shift = self._shift or None
-        while shift is not None and pencil.below(shift) > 0:
+        while shift is not None and not pencil.clear_of(shift):
             shift *= 4.0
         found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
         if not len(found[0]):

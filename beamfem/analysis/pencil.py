@@ -13,6 +13,7 @@ from beamfem.model.system import System
 # turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
 UNTURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 _RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
+_AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
 _ASYMMETRY = 1e-12
 
 
@@ -82,6 +83,14 @@ class Pencil:
             near = self.below(size) - (self.below(-size) if self.symmetric else 0)
             low, high = (low, middle) if near > rigid else (middle, high)
         shift = -float(np.exp(high))
-        while self.symmetric and self.below(shift) > 0:
+        while self.symmetric and not self.clear_of(shift):
             shift *= 4.0
         return shift
+
+    def clear_of(self, shift: float) -> bool:
+        """Tell whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
+
+        What is at an eigenvalue is below it or above by round-off, and its factors lose the others: stiffness is odd in
+        the load about a critical point, so that eigenvalues on one side of it are where a shift for the other is.
+        """
+        return self.below(_AWAY * shift) == 0

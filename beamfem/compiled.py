@@ -1,24 +1,14 @@
 """Which kernels are compiled already."""
 
-import importlib
-import pkgutil
 import sys
 from functools import cache
-from typing import Any
 
-import beamfem.kernels
-from beamfem.kernels.compiling import cache_folder
+from beamfem.kernels.compiling import Routine, cache_folder
 
 
-def kernels() -> dict[str, Any]:
-    """Return every compiled function of beamfem by `module.name`."""
-    found = {}
-    for module in pkgutil.iter_modules(beamfem.kernels.__path__):
-        members = vars(importlib.import_module(f"beamfem.kernels.{module.name}"))
-        for name, value in members.items():
-            if hasattr(value, "stats") and getattr(value, "__module__", "").endswith(f".{module.name}"):
-                found[f"{module.name}.{name}"] = value
-    return found
+def compiled_here() -> list[Routine]:
+    """Return the kernels that this process had to compile."""
+    return [routine for routine in Routine.made if routine.compiled_here]
 
 
 def cached() -> int:

@@ -1,8 +1,8 @@
-"""What the compiler costs: kernels and their specialisations of a first static problem and a first motion, and imports.
+"""What the compiler costs: kernels of first problems of different kinds, and imports.
 
-Each figure is of a new process, the kernels of one with an empty cache folder. The compiler starts on what a kernel
-calls while it works on the kernel, so that each kernel has CPU seconds of its own and in all.
-Run as a script with the argument `child` it does the work and prints JSON.
+Each figure is of a new process, the kernels of one with an empty cache folder; problems are solved one after the other,
+so that each is charged with what none before it needed. Run as a script with the argument `child` it does the work and
+prints JSON.
 """
 
 import json
@@ -17,55 +17,36 @@ from typing import Any
 from beamfem.tabulate import as_text, write_csv
 
 OUT = Path("out/bench")
-HEADER = ("kernel", "specialisations", "s, itself", "s, with what it calls")
+HEADER = ("kernel", "s")
 _IMPORTS = "import time; a = time.process_time(); import numpy, skfem, numba; "
 _IMPORTS += "b = time.process_time(); import beamfem; c = time.process_time(); print(b - a, c - b)"
 
 
 def first_solves() -> dict[str, Any]:
-    """Solve a first static problem and a first motion; return seconds of each and of each kernel that was compiled."""
-    from numba.core import event
-
-    class Listener(event.Listener):
-        """Keeps a stack of what is being compiled, so that each second belongs to one kernel."""
-
-        def __init__(self) -> None:
-            self.running: list[list[Any]] = []
-            self.found: list[tuple[str, float, float]] = []
-
-        def on_start(self, event: Any) -> None:
-            self.running.append([event.data["dispatcher"].py_func, time.process_time(), 0.0])
-
-        def on_end(self, event: Any) -> None:
-            function, begun, inside = self.running.pop()
-            spent = time.process_time() - begun
-            if self.running:
-                self.running[-1][2] += spent
-            self.found.append((f"{function.__module__}.{function.__name__}", spent - inside, spent))
-
+    """Solve first problems one after the other; return seconds of each and of each kernel that was compiled."""
     import beamfem as bf
+    from beamfem.compiled import compiled_here
 
-    listener, seconds = Listener(), {}
-    with event.install_listener("numba:compile", listener):
-        section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
-        beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 8, bf.CRBF(2), section, material)
-        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 100.0))])
-        for name, solve in (("static", bf.solve_static), ("motion", lambda model: bf.simulate(model, 0.01, 1e-3))):
-            begun = time.process_time()
-            solve(model)
-            seconds[name] = time.process_time() - begun
-    return {"seconds": seconds, "kernels": listener.found}
+    section, material = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 
+    def cantilever(element: bf.Element) -> bf.Model:
+        beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 8, element, section, material)
+        return bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 100.0))])
 
-def rows_of(found: list[tuple[str, float, float]]) -> list[tuple[str, int, float, float]]:
-    """Return a line for each kernel, the dearest first."""
-    names = dict.fromkeys(name for name, _, _ in found)
-    rows = []
-    for name in names:
-        own = [(alone, spent) for other, alone, spent in found if other == name]
-        alone, spent = (sum(column) for column in zip(*own, strict=True))
-        rows.append((name.removeprefix("beamfem.kernels."), len(own), alone, spent))
-    return sorted(rows, key=lambda row: -row[2])
+    tasks = {
+        "static": lambda: bf.solve_static(cantilever(bf.CRBF(2))),
+        "motion": lambda: bf.simulate(cantilever(bf.CRBF(2)), 0.01, 1e-3),
+        "static of another order": lambda: bf.solve_static(cantilever(bf.CRBF(4))),
+        "static of another strain measure": lambda: bf.solve_static(cantilever(bf.ANCFCRBF())),
+        "static of another kind of nodes": lambda: bf.solve_static(cantilever(bf.ANCF())),
+    }
+    seconds = {}
+    for name, task in tasks.items():
+        begun = time.process_time()
+        task()
+        seconds[name] = time.process_time() - begun
+    found = [(routine.name.removeprefix("beamfem.kernels."), routine.seconds) for routine in compiled_here()]
+    return {"seconds": seconds, "kernels": sorted(found, key=lambda row: -row[1])}
 
 
 def import_times(rounds: int = 5) -> tuple[float, float]:
@@ -79,14 +60,14 @@ def _run(*arguments: str, **environment: str) -> str:
     return subprocess.run(command, env=inherited, capture_output=True, text=True, check=True).stdout
 
 
-def main(folder: Path = OUT) -> list[tuple[str, int, float, float]]:
+def main(folder: Path = OUT) -> list[tuple[str, float]]:
     """Measure, print the table and write it as CSV."""
     with tempfile.TemporaryDirectory() as cache:
         cold = json.loads(_run(__file__, "child", NUMBA_CACHE_DIR=cache))
         warm = json.loads(_run(__file__, "child", NUMBA_CACHE_DIR=cache))
-    rows = rows_of(cold["kernels"])
-    print(as_text(HEADER, rows, "compiled for a first static problem and a first motion"))
-    print(f"{sum(row[1] for row in rows)} specialisations of {len(rows)} kernels, {sum(row[2] for row in rows):.1f} s")
+    rows = [tuple(row) for row in cold["kernels"]]
+    print(as_text(HEADER, rows, "compiled for first problems of different kinds"))
+    print(f"{len(rows)} kernels, {sum(row[1] for row in rows):.1f} s")
     for name, spent in cold["seconds"].items():
         print(f"first {name}: {spent:.1f} s with an empty cache, {warm['seconds'][name]:.2f} s in the next process")
     others, own = import_times()

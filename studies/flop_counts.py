@@ -1,24 +1,19 @@
 """Floating-point operations of the kernels as they are written: the kernels run uncompiled on numbers that count.
 
-Run as a script with NUMBA_DISABLE_JIT=1 it prints JSON: form -> kernel -> [operations, slow ones among them] of one
-element inside a long chain. An addition or a multiplication is one operation, a fused multiply-add two; a division,
-root, sine or cosine is one as well, and slow. A compiler may share some of what is written twice.
+Of one element inside a long chain. An addition or a multiplication is one operation, a fused multiply-add two; a
+division, root, sine or cosine is one as well, and slow. A compiler may share some of what is written twice.
 """
 
-import json
 import operator
-import os
-import subprocess
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, Case, case
+from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
+from uncompiled import Memory, uncompiled
 
-from beamfem.kernels.balance import balance
-from beamfem.kernels.band import factor, solve
+from beamfem.kernels.band import band
+from beamfem.kernels.model_passes import balance
 
 _CHAINS = (5, 9)  # elements; their difference leaves the ends out
 
@@ -89,21 +84,6 @@ for _name in ("add", "sub", "mul", "truediv"):
     setattr(Counted, f"__r{_name}__", _both[1])
 
 
-def counted(data: Any, tally: Tally) -> Any:
-    """Return nested tuples of arrays with every floating-point number replaced by one that counts."""
-    if isinstance(data, np.ndarray):
-        if data.dtype.kind != "f":
-            return data
-        numbers = [Counted(float(x), tally) for x in data.ravel()]
-        result = np.empty(len(numbers), dtype=object)
-        result[:] = numbers
-        return result.reshape(data.shape)
-    if isinstance(data, tuple):
-        parts = [counted(part, tally) for part in data]
-        return type(data)(*parts) if hasattr(data, "_fields") else tuple(parts)
-    return data
-
-
 def count(form: str) -> dict[str, tuple[float, float]]:
     """Return operations, and slow ones, of each kernel, for an element."""
     less, more = (_count_chain(form, elements) for elements in _CHAINS)
@@ -113,34 +93,43 @@ def count(form: str) -> dict[str, tuple[float, float]]:
 
 def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tally = Tally()
-    one: Case = counted(case(form, elements)[1], tally)
-    nothing = one.band.reshape(-1)[:0]
+    _, one = case(form, elements)
+    own, half, n = band(one.half_width), one.half_width, len(one.right)
+    equations, space = one.equations, np.empty(n)
+    work = equations.works[0]
+    arrays = [*work.sheet.kept, work.chunks, work.space, work.table, one.residual, one.band, one.right, space]
+    arrays += [one.state, equations.table, *equations.tables, *equations.values]
+    addresses = [each.ctypes.data for each in (one.band, one.right, space)]
+    routines = balance, own.factor, own.solve_lower, own.solve_upper
+    for routine in routines:
+        assert routine.address
+    memory = Memory(arrays, lambda value: Counted(value, tally))
+    rows, right, pivots = (memory.at(address) for address in addresses)
+    table = equations.table.ctypes.data
+
+    def balanced(tangent: bool) -> None:
+        place(one, tangent)
+        balance.function(table)
+
+    def solved() -> None:
+        own.solve_lower.function(n, n, half, rows, right)
+        own.solve_upper.function(n, n, half, rows, right)
+
     tasks = {
-        RESIDUAL: lambda: balance(*one.balance, one.residual, nothing),
-        TANGENT: lambda: balance(*one.balance, one.residual, one.band.reshape(-1)),
-        FACTOR: lambda: factor(one.band, one.right[:0], np.empty_like(one.right), one.window),
-        SOLVE: lambda: solve(one.band, one.right, one.window),
+        RESIDUAL: lambda: balanced(False),
+        TANGENT: lambda: balanced(True),
+        FACTOR: lambda: own.factor.function(n, n, half, 0, rows, right, pivots),
+        SOLVE: solved,
     }
     found = {}
-    for name, task in tasks.items():
-        tally.operations = tally.slow = 0
-        task()
-        found[name] = tally.operations, tally.slow
+    with uncompiled(memory):
+        for name, task in tasks.items():
+            tally.operations = tally.slow = 0
+            task()
+            found[name] = tally.operations, tally.slow
     return found
 
 
 def count_all() -> dict[str, dict[str, tuple[float, float]]]:
-    """Return the counts of all forms, from a process in which nothing is compiled."""
-    done = subprocess.run(
-        [sys.executable, str(Path(__file__))],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    result: dict[str, dict[str, tuple[float, float]]] = json.loads(done.stdout)
-    return result
-
-
-if __name__ == "__main__":
-    print(json.dumps({form: count(form) for form in FORMS}))
+    """Return the counts of all forms."""
+    return {form: count(form) for form in FORMS}

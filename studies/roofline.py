@@ -1,22 +1,20 @@
 """How far the kernels are from what one core gives: operations and bytes a coordinate against measured ceilings.
 
 Operations are counted (`flop_counts`), bytes are the least that must move (`roofline_cases.least_traffic`), times are
-of warm kernels in a compiled loop. 1000 elements stay in cache, 100,000 do not. The limit named is the ceiling of which
-a kernel reaches half or more: that of memory (or cache), or of arithmetic without vectors, which element kernels do not
-use. Where it is none, operations wait for each other: chains, divisions, sines.
+of warm kernels. 1000 elements stay in cache, 100,000 do not. The limit named is the ceiling of which a kernel reaches
+half or more: that of memory (or cache), or of arithmetic without vectors. Where it is none, operations wait for each
+other: chains, divisions, sines.
 """
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from ceilings import Ceilings, least_seconds, measure
 from flop_counts import count_all
-from numba import njit
-from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, least_traffic
+from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, least_traffic, place
 
-from beamfem.kernels.balance import balance
-from beamfem.kernels.band import factor, solve
+from beamfem.kernels.band import band
+from beamfem.kernels.model_passes import balance
 from beamfem.tabulate import as_text, write_csv
 
 OUT = Path("out/bench")
@@ -39,43 +37,37 @@ HEADER = (
 )
 
 
-@njit
-def _balance(times: int, arguments: Any) -> None:
-    for _ in range(times):
-        balance(*arguments)
-
-
-@njit
-def _copy(times: int, band: np.ndarray, copy: np.ndarray) -> None:
-    for _ in range(times):
-        copy[:] = band
-
-
-@njit
-def _factor(times: int, band: np.ndarray, copy: np.ndarray, space: np.ndarray, window: Any) -> None:
-    for _ in range(times):
-        copy[:] = band
-        factor(copy, space[:0], space, window)
-
-
-@njit
-def _solve(times: int, band: np.ndarray, right: np.ndarray, copy: np.ndarray, window: Any) -> None:
-    for _ in range(times):
-        copy[:] = right
-        solve(band, copy, window)
-
-
 def seconds(form: str, elements: int) -> dict[str, float]:
     """Return the CPU time of one call of each kernel [s]."""
     one = case(form, elements)[1]
     times = max(1, 100_000 // elements)
-    nothing, matrix, copy = one.band.reshape(-1)[:0], one.band.reshape(-1), np.empty_like(one.band)
-    found = {RESIDUAL: least_seconds(_balance, times, (*one.balance, one.residual, nothing))}
-    found[TANGENT] = least_seconds(_balance, times, (*one.balance, one.residual, matrix))
-    copying = least_seconds(_copy, times, one.band, copy)
-    found[FACTOR] = least_seconds(_factor, times, one.band, copy, np.empty_like(one.right), one.window) - copying
-    found[SOLVE] = least_seconds(_solve, times, copy, one.right, np.empty_like(one.right), one.window)
-    return {name: spent / times for name, spent in found.items()}
+    own, half, n = band(one.half_width), one.half_width, len(one.right)
+    copy, right, space = np.empty_like(one.band), np.empty_like(one.right), np.empty_like(one.right)
+
+    def balanced() -> None:
+        for _ in range(times):
+            balance(one.equations.table)
+
+    def copied() -> None:
+        for _ in range(times):
+            np.copyto(copy, one.band)
+
+    def factored() -> None:
+        for _ in range(times):
+            np.copyto(copy, one.band)
+            own.factor(n, n, half, 0, copy, right, space)
+
+    def solved() -> None:
+        for _ in range(times):
+            np.copyto(right, one.right)
+            own.solve_lower(n, n, half, copy, right)
+            own.solve_upper(n, n, half, copy, right)
+
+    found = {TANGENT: least_seconds(balanced), FACTOR: least_seconds(factored) - least_seconds(copied)}
+    found[SOLVE] = least_seconds(solved)
+    place(one, tangent=False)
+    found[RESIDUAL] = least_seconds(balanced)
+    return {name: found[name] / times for name in KERNELS}
 
 
 def rows_of(

@@ -1,12 +1,13 @@
 """What the roofline looks at: residual, tangent, factorisation and solution of a pendulum in motion."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from peer_cases import STRUCTURAL, pendulum
 
 import beamfem as bf
-from beamfem.analysis.equations import point_rows
+from beamfem.assembly.assembler import Assembler
+from beamfem.kernels import record
 from beamfem.kernels.block import Block, Layout
 from beamfem.model.system import System, system_of
 
@@ -17,32 +18,42 @@ _STEP = 1e-3  # [s]; weighs the inertia in the tangent
 
 
 class Case(NamedTuple):
-    """Arguments of the kernels.
+    """What the kernels work on: equations of the pendulum, its state p, p', p'' (3, n), and space.
 
-    balance: all but the residual (n,) and the matrix; band (unknown, width); right: a right-hand side (unknown,);
-    window: of the band, see `beamfem.kernels.band`.
+    band (unknown, width); right: a right-hand side (unknown,).
     """
 
-    balance: tuple[Any, ...]
+    equations: Assembler
+    state: np.ndarray
     residual: np.ndarray
     band: np.ndarray
     right: np.ndarray
-    window: tuple[float, ...]
+
+    @property
+    def half_width(self) -> int:
+        return self.band.shape[1] // 2
 
 
 def case(form: str, elements: int) -> tuple[System, Case]:
-    """Return the pendulum in a state somewhat away from its reference, and the arguments of the kernels for it."""
+    """Return the pendulum in a state somewhat away from its reference, and what the kernels work on for it."""
     system = system_of(pendulum(FORMS[form], elements), False)
     rng = np.random.default_rng(6)
-    p, v, a = system.reference.copy(), rng.normal(size=system.model.size), rng.normal(size=system.model.size)
-    p += 1e-3 / elements * rng.normal(size=len(p))
+    state = rng.normal(size=(3, system.model.size))
+    state[0] = system.reference + 1e-3 / elements * rng.normal(size=system.model.size)
     unknown, width = len(system.free_dofs), 2 * system.layouts[0].half_width + 1
-    weights = np.array([1.0, 2.0 / _STEP, 4.0 / _STEP**2])
-    model = system.forms, system.blocks, system.workspaces(), system.point_loads, system.springs, system.layouts
-    actions = system.body(0.0), point_rows(system, 0.0), 0
-    arguments = (*model, p, v, a, *actions, weights, False)
-    window = system.forms[0].window
-    return system, Case(arguments, np.empty(len(p)), np.zeros((unknown, width)), rng.normal(size=unknown), window)
+    equations = system.assembler()
+    equations.load(system.body(0.0), system.point_values(0.0))
+    equations.weigh((1.0, 2.0 / _STEP, 4.0 / _STEP**2))
+    one = Case(equations, state, np.empty(len(state[0])), np.zeros((unknown, width)), rng.normal(size=unknown))
+    place(one, tangent=True)
+    return system, one
+
+
+def place(one: Case, tangent: bool) -> None:
+    """Make ready for calls of `balance` on the table of the equations, with the tangent or without."""
+    one.equations.require("tangent")
+    one.equations.place(*one.state, one.residual, one.band)
+    one.equations.table[record.TANGENT] = int(tangent)
 
 
 def least_traffic(system: System, one: Case) -> dict[str, int]:
@@ -52,11 +63,9 @@ def least_traffic(system: System, one: Case) -> dict[str, int]:
     """
     block: Block = system.blocks[0]
     layout: Layout = system.layouts[0]
-    work = one.balance[2][0]
-    tables = (block.node, block.kind, block.beam, block.carrier, block.frame, block.dof)
-    state = one.balance[6:9]
-    nodal = work.nodes[0].nbytes
-    residual = sum(table.nbytes for table in (*tables, *state)) + 2 * (3 * nodal + one.residual.nbytes)
+    tables = (block.node, block.kind, block.beam, block.frame, block.dof)
+    nodal = len(block.dof) * 2 * block.scale.shape[1] // block.node.shape[1] * one.state.itemsize
+    residual = sum(table.nbytes for table in (*tables, one.state)) + 2 * (3 * nodal + one.residual.nbytes)
     rest = layout.free.nbytes + layout.slot.nbytes + block.home.nbytes + 2 * (nodal + one.band.nbytes)
     return {
         RESIDUAL: residual,

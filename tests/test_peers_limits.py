@@ -1,7 +1,6 @@
 """Growth, roofline and compile budget: what is counted is what closed forms say."""
 
 import chain_growth
-import compile_budget
 import flop_counts
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import roofline_cases
 
 def test_operations_of_plain_numbers():
     tally = flop_counts.Tally()
-    x, y = (flop_counts.counted(np.array([value]), tally)[0] for value in (3.0, 4.0))
+    x, y = (flop_counts.Counted(value, tally) for value in (3.0, 4.0))
     assert float(np.sqrt(float(x * x + y * y))) == 5.0
     assert (tally.operations, tally.slow) == (4, 1)  # two products, a sum and a root
     assert (1.0 / x + -y).value == pytest.approx(1 / 3 - 4)
@@ -65,9 +64,3 @@ def test_growth_measures_a_chain(analysis):
     assert peak > 50.0
     assert np.isnan(error) if analysis == "motion" else error < 1e-6
     assert len(found) + 4 == len(chain_growth.HEADER)
-
-
-def test_compile_times_add_up():
-    inner, outer = ("beamfem.kernels.a.f", 1.0, 1.0), ("beamfem.kernels.a.g", 2.0, 3.0)
-    rows = compile_budget.rows_of([inner, outer, inner])
-    assert rows == [("a.f", 2, 2.0, 2.0), ("a.g", 1, 2.0, 3.0)]

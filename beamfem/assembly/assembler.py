@@ -45,6 +45,11 @@ class Assembler:
         """Values of point loads of each group, as they were taken."""
         return self._acting[1:]
 
+    @property
+    def tables(self) -> tuple[np.ndarray, ...]:
+        """The arrays whose addresses the table of the equations holds."""
+        return (self._groups, self._values, self._factors, *self._springs, *self._acting)
+
     def load(self, body: np.ndarray, values: Sequence[np.ndarray]) -> None:
         """Take body forces (..., beams, 4) and values of point loads (..., nl, 3) of each group; steps may come first."""
         self._acting = tuple(np.ascontiguousarray(each, dtype=float) for each in (body, *values))

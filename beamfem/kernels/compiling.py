@@ -1,4 +1,8 @@
-"""How kernels are compiled and kept: one decorator, and a cache whose folder is named by the content of all kernels."""
+"""How kernels are compiled and kept: one decorator, and a cache whose folder is named by the content of all kernels.
+
+A pass over rows of numbers is compiled once, on its own, and called by its address: drivers that call it neither wait
+for it nor compile it again.
+"""
 
 import hashlib
 import shutil
@@ -7,9 +11,10 @@ from collections.abc import Callable, Iterator
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
+from time import process_time
+from typing import Any, ClassVar
 
-from numba import config, njit, types
+from numba import config, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.core.ccallback import CFunc
 from numba.misc.appdirs import AppDirs
@@ -20,40 +25,39 @@ from beamfem.kernels.pointers import KINDS
 _HERE = Path(__file__).parent
 
 
-def kernel(**options):
-    """Return a decorator that compiles a function for plain arrays; `options` are those of `numba.njit`.
+class Routine:
+    """A compiled function of plain memory, called by its address; compiled, or loaded, when that is first asked for.
 
     Machine code is kept on disk where a folder can be written; where none can, or the disk is full, it is compiled for
-    each process.
+    each process. kinds: one letter an argument, see `pointers.KINDS`; seconds: CPU time of compiling or loading it;
+    made: all there are in this process.
     """
 
-    def decorate(function):
-        compiled = njit(error_model="numpy", **{"_nrt": False, **options})(function)
-        if cache_folder() is not None:
-            compiled._cache = _KernelCache(function)
-        return compiled
-
-    return decorate
-
-
-class Routine:
-    """A compiled function of plain memory, called by its address; compiled, or loaded, when the address is first asked for.
-
-    kinds: one letter an argument, see `pointers.KINDS`.
-    """
+    made: ClassVar[list["Routine"]] = []
 
     def __init__(self, function: Callable[..., Any], kinds: str, returns: types.Type, options: dict[str, Any]) -> None:
         self.function, self.kinds, self.returns, self.options = function, kinds, returns, options
-        self.__doc__, self.__module__ = function.__doc__, function.__module__
+        self.__doc__, self.__module__, self.seconds = function.__doc__, function.__module__, 0.0
+        self.made.append(self)
 
     @cached_property
     def compiled(self) -> Any:
-        arguments = [KINDS[kind] for kind in self.kinds]
+        begun, arguments = process_time(), [KINDS[kind] for kind in self.kinds]
         pointer = CFunc(self.function, (arguments, self.returns), {}, {"error_model": "numpy", **self.options})
         if cache_folder() is not None:
             pointer._cache = _KernelCache(self.function)
         pointer.compile()
+        self.seconds = process_time() - begun
         return pointer
+
+    @property
+    def name(self) -> str:
+        return f"{self.__module__}.{self.function.__name__}"
+
+    @property
+    def compiled_here(self) -> bool:
+        """Whether this process had to compile it, and did not find it on disk."""
+        return "compiled" in vars(self) and self.compiled.cache_hits == 0
 
     @property
     def address(self) -> int:
@@ -79,7 +83,7 @@ def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Cal
 def cache_folder() -> Path | None:
     """Return the folder of machine code of exactly these kernels, None where none can be written.
 
-    One kernel inlines others, so that the code of all of them is in the name: machine code of other sources is never
+    Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code of other sources is never
     found, whatever their times and whoever else writes.
     """
     sources = sorted(_HERE.rglob("*.py"))

@@ -1,0 +1,85 @@
+"""Kernels run as the Python they are written in, on memory whose floating-point numbers may be replaced by others."""
+
+import importlib
+import math
+import pkgutil
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+from numba.core.extending import _Intrinsic
+
+import beamfem.kernels
+from beamfem.kernels import nodes, pointers
+from beamfem.kernels.compiling import Routine
+
+
+class Pointer:
+    """A place in an array."""
+
+    __slots__ = ("first", "values")
+
+    def __init__(self, values: Any, first: int) -> None:
+        self.values, self.first = values, first
+
+    def __getitem__(self, index: int) -> Any:
+        return self.values[self.first + index]
+
+    def __setitem__(self, index: int, value: Any) -> None:
+        self.values[self.first + index] = value
+
+
+class Memory:
+    """Arrays by their addresses; those of floating-point numbers as lists, each number passed through `made`."""
+
+    def __init__(self, arrays: Iterable[np.ndarray], made: Callable[[float], Any]) -> None:
+        held = sorted({each.ctypes.data: each for each in arrays if each.size}.items())
+        self._bases = [base for base, _ in held]
+        self._sizes = [each.itemsize for _, each in held]
+        self._values = [
+            [made(x) for x in each.ravel().tolist()] if each.dtype.kind == "f" else each.ravel() for _, each in held
+        ]
+
+    def at(self, address: int) -> Pointer:
+        number = max(bisect_right(self._bases, int(address)) - 1, 0)
+        return Pointer(self._values[number], (int(address) - self._bases[number]) // self._sizes[number])
+
+
+@contextmanager
+def uncompiled(memory: Memory) -> Iterator[None]:
+    """Let functions of all kernel modules call each other as Python, on this memory."""
+    functions = {routine.address: routine.function for routine in Routine.made if "compiled" in vars(routine)}
+    replaced: list[tuple[ModuleType, str, Any]] = []
+
+    def call(address: int, *arguments: Any) -> Any:
+        return functions[int(address)](*arguments)
+
+    def at(pointer: Pointer, count: int) -> Pointer:
+        return Pointer(pointer.values, pointer.first + int(count))
+
+    plain = {"at": at, "reals": memory.at, "wholes": memory.at, "slots": memory.at}
+    numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
+    try:
+        for module in _modules():
+            for name, value in list(vars(module).items()):
+                if isinstance(value, _Intrinsic) and module is not pointers:
+                    replaced.append((module, name, value))
+                    setattr(module, name, plain.get(name, call))
+                elif isinstance(value, Dispatcher):
+                    replaced.append((module, name, value))
+                    setattr(module, name, value.py_func)
+        replaced.append((nodes, "np", np))
+        setattr(nodes, "np", numbers)
+        yield
+    finally:
+        for module, name, value in replaced:
+            setattr(module, name, value)
+
+
+def _modules() -> Iterator[ModuleType]:
+    for found in pkgutil.walk_packages(beamfem.kernels.__path__, "beamfem.kernels."):
+        yield importlib.import_module(found.name)

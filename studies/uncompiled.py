@@ -73,7 +73,7 @@ def uncompiled(memory: Memory) -> Iterator[None]:
                     replaced.append((module, name, value))
                     setattr(module, name, value.py_func)
         replaced.append((nodes, "np", np))
-        setattr(nodes, "np", numbers)
+        nodes.np = numbers
         yield
     finally:
         for module, name, value in replaced:

@@ -38,6 +38,7 @@ ELEMENTS = tuple(combinations())
 # the same kernels with other tables: every integration is tested where strains and forces are, one where models are
 USUAL = tuple(e for e in ELEMENTS if e.integration == bf.Element(e.field, e.coordinates, e.forces).integration)
 
+
 def identify(element):
     flag = "-plane-stress" if getattr(element.forces, "plane_stress", False) else ""
     return f"{element.name}-{element.forces.name}{flag}-{element.integration}"

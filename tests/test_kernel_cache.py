@@ -31,9 +31,7 @@ PLAIN = {
 }
 
 # two files: `outer` inlines `inner`
-INNER = (
-    "from numba import njit\n\n@njit(forceinline=True, _nrt=False)\ndef inner(x):\n    return {factor} * x\n"
-)
+INNER = "from numba import njit\n\n@njit(forceinline=True, _nrt=False)\ndef inner(x):\n    return {factor} * x\n"
 OUTER = (
     "from numba import types\nfrom small.compiling import routine\nfrom small.inner import inner\n\n"
     "@routine('d', types.float64)\ndef outer(x):\n    return inner(x) + 1.0\n"

@@ -21,7 +21,10 @@ class BandMotion:
         self._system = system
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
         h, alpha_m, alpha_f, gamma, beta = rule
-        self._assembler, self._solver = system.assembler(), SolverTable(system.free_dofs, half, system.turned, moving=True)
+        self._assembler, self._solver = (
+            system.assembler(),
+            SolverTable(system.free_dofs, half, system.turned, moving=True),
+        )
         self._assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
         self._assembler.require("tangent")
         self._rows, self._residual = np.zeros((unknown, 2 * half + 1)), np.empty(size)

@@ -176,9 +176,7 @@ def resisting(block: Block) -> np.ndarray:
     return np.flatnonzero(np.abs(block.stiffness).max(axis=(0, 1, 3)) > 0.0)
 
 
-def _elastic(
-    system: System, block: Block, p: np.ndarray
-) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
+def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
     """Return strains by coordinates (m, n), weights times inverse stiffness (m, m), weights and strains (m,)."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
     points, strains = block.reference.shape[1:]

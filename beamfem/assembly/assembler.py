@@ -22,7 +22,8 @@ class Assembler:
         self.works = tuple(Work(sheet, stress) for sheet, stress in zip(sheets, given, strict=True))
         self.size = size
         self._springs = tuple(
-            np.ascontiguousarray(values, dtype=kind) for values, kind in zip(springs, (np.int64, float, float, np.int64), strict=True)
+            np.ascontiguousarray(values, dtype=kind)
+            for values, kind in zip(springs, (np.int64, float, float, np.int64), strict=True)
         )
         self._groups = np.array([work.table.ctypes.data for work in self.works], dtype=np.int64)
         self._values = np.zeros(len(sheets), dtype=np.int64)
@@ -91,7 +92,10 @@ class Assembler:
     def predict(self, p: np.ndarray, step: np.ndarray) -> None:
         """Fill `stresses` with those after a linearised step (n,) from p (n,)."""
         self.require("prediction")
-        self.table[record.COORDINATES_P], self.table[record.COORDINATES_V] = _address(p, self.size), _address(step, self.size)
+        self.table[record.COORDINATES_P], self.table[record.COORDINATES_V] = (
+            _address(p, self.size),
+            _address(step, self.size),
+        )
         for work in self.works:
             model_passes.predict_resultants(work.table, self.table)
 

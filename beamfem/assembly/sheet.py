@@ -7,7 +7,17 @@ import numpy as np
 from beamfem.assembly.routines import Routines, routines
 from beamfem.kernels import record
 from beamfem.kernels.batch import rows_of
-from beamfem.kernels.block import ELASTIC_LINE, GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS, Block, Layout, PointLoads
+from beamfem.kernels.block import (
+    ELASTIC_LINE,
+    GRADIENTS,
+    ROTATION,
+    SHEAR_RIGID,
+    STRETCH,
+    TURNED_GRADIENTS,
+    Block,
+    Layout,
+    PointLoads,
+)
 from beamfem.kernels.record import LANES, ROW
 
 _CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
@@ -136,9 +146,17 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
     table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends
     table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, tables.shape[1], coordinates
-    table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = len(held[record.RUNS]), layout.half_width, len(loads.element)
+    table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = (
+        len(held[record.RUNS]),
+        layout.half_width,
+        len(loads.element),
+    )
     chunks = -(-count // LANES), chunk_rows, ROW
-    constant = _constant(block, chunks, size, turned, turning) if turned and len(kinds) > 1 or TURNED_GRADIENTS in kinds else None
+    constant = (
+        _constant(block, chunks, size, turned, turning)
+        if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds
+        else None
+    )
     needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)))
     return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs)
 

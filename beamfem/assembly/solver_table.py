@@ -8,10 +8,13 @@ from beamfem.kernels import march, model_passes, motion_steps, newton, record, r
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.compiling import Routine
 
+
 class SolverTable:
     """A table for `kernels.newton` and `kernels.march`; it keeps the arrays whose addresses it holds."""
 
-    def __init__(self, free_dofs: np.ndarray, half_width: int, turned: tuple[np.ndarray, np.ndarray], moving: bool) -> None:
+    def __init__(
+        self, free_dofs: np.ndarray, half_width: int, turned: tuple[np.ndarray, np.ndarray], moving: bool
+    ) -> None:
         self.table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
         self._kept: dict[int, np.ndarray] = {}
         first, normal = turned
@@ -19,7 +22,11 @@ class SolverTable:
         self.set_whole(record.FREE_DOFS, free_dofs)
         self.set_whole(record.ROLLER_FIRST, first)
         self.set(record.ROLLER_NORMAL, normal)
-        self.table[record.UNKNOWN], self.table[record.HALF], self.table[record.ROLLERS] = len(free_dofs), half_width, len(first)
+        self.table[record.UNKNOWN], self.table[record.HALF], self.table[record.ROLLERS] = (
+            len(free_dofs),
+            half_width,
+            len(first),
+        )
 
     def set(self, field: int, values: np.ndarray) -> None:
         """Take an array of numbers; compiled code writes to it where it is contiguous."""

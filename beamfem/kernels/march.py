@@ -4,15 +4,9 @@ import math
 
 from numba import types
 
+from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, wholes
-from beamfem.kernels.record import (
-    BALANCE, BEFORE, BODIES, BODY, BODY_STRIDE, COMPLETE, CORRECT, COUNT_TURNS, DIFFERENCES, EVERY, FACTOR, FACTORS, FIRST_STEP,
-    FREE_DOFS, GROUP_RECORDS, GROUPS, HALF, HELD, HELD_DOFS, HELD_VALUES, HOLD_NORMALS, INVERSE_SCALE, JUDGE, KEEP_DIRECTIONS, KEPT,
-    LIMITS, LOAD_VALUES, LOADED, LOADS, LOADS_VARY, NODES, PAIR_TABLE, PAIRS, PREDICT, RESIDUAL, RIGHT, ROLLER_FIRST, ROLLER_NORMAL,
-    ROLLERS, ROWS, RULE, SAVED, SAVED_TURNS, SIZE, SOLVE_LOWER, SOLVE_TURNED, SOLVE_UPPER, STATE, STATISTICS, STEP, STEPS, TANGENT, TURN_BACK,
-    TURN_ALL, TURN_COUNT, TURN_IN, TURN_PAIRS, TURN_TABLE, TURNED_BY, TURNS, TURNS_SINCE, UNKNOWN, VALUES,
-)  # fmt: skip
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
@@ -29,31 +23,42 @@ _count, _all = caller("inrrr"), caller("iiii")
 def turn_all(system, solver, calls, keep):
     """Keep the directions of all sections with a new tangent, and fill how far they have turned since the last one."""
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    groups, kept, turns = wholes(s[GROUP_RECORDS]), reals(b[KEPT]), reals(b[TURNS])
+    groups, kept, turns = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS])
     first = 0
-    for group in range(s[GROUPS]):
+    for group in range(s[r.GROUPS]):
         if keep != 0:
-            _turns(call[KEEP_DIRECTIONS], groups[group], first, kept, kept)
-        _turns(call[TURNS_SINCE], groups[group], first, kept, turns)
-        first += wholes(groups[group])[NODES]
+            _turns(call[r.KEEP_DIRECTIONS], groups[group], first, kept, kept)
+        _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
+        first += wholes(groups[group])[r.NODES]
 
 
 @routine("iiii")
 def solve_turned(system, solver, calls, turn):
     """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    unknown, half, rollers, residual, right = b[UNKNOWN], b[HALF], b[ROLLERS], reals(s[RESIDUAL]), reals(b[RIGHT])
-    free, first_of, normal, rows = wholes(b[FREE_DOFS]), wholes(b[ROLLER_FIRST]), reals(b[ROLLER_NORMAL]), reals(b[ROWS])
+    unknown, half, rollers, residual, right = (
+        b[r.UNKNOWN],
+        b[r.HALF],
+        b[r.ROLLERS],
+        reals(s[r.RESIDUAL]),
+        reals(b[r.RIGHT]),
+    )
+    free, first_of, normal, rows = (
+        wholes(b[r.FREE_DOFS]),
+        wholes(b[r.ROLLER_FIRST]),
+        reals(b[r.ROLLER_NORMAL]),
+        reals(b[r.ROWS]),
+    )
     for i in range(unknown):
         right[i] = -residual[free[i]]
     if rollers > 0:
-        _roll(call[TURN_IN], rollers, first_of, normal, right)
-    _turn_pairs(call[TURN_PAIRS], b[PAIRS], -1.0, wholes(b[PAIR_TABLE]), reals(b[TURNS]), right)
-    _solve(call[SOLVE_LOWER], unknown, unknown, half, rows, right)
-    _solve(call[SOLVE_UPPER], unknown, unknown, half, rows, right)
-    _turn_pairs(call[TURN_PAIRS], b[PAIRS], 1.0, wholes(b[PAIR_TABLE]), reals(b[TURNS]), right)
+        _roll(call[r.TURN_IN], rollers, first_of, normal, right)
+    _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], -1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
+    _solve(call[r.SOLVE_LOWER], unknown, unknown, half, rows, right)
+    _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
+    _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], 1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
     if rollers > 0:
-        _roll(call[TURN_BACK], rollers, first_of, normal, right)
+        _roll(call[r.TURN_BACK], rollers, first_of, normal, right)
 
 
 @routine("iii", types.int64)
@@ -71,50 +76,78 @@ def march(system, solver, calls):
     and Wanner 1996, IV.8).
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, held = s[SIZE], b[UNKNOWN], b[HALF], b[HELD]
-    free, held_dofs, rows, right = wholes(b[FREE_DOFS]), wholes(b[HELD_DOFS]), reals(b[ROWS]), reals(b[RIGHT])
-    state, before, differences, scale = reals(b[STATE]), reals(b[BEFORE]), reals(b[DIFFERENCES]), reals(b[INVERSE_SCALE])
-    rule, limits, statistics, factors, room = reals(b[RULE]), reals(b[LIMITS]), reals(b[STATISTICS]), reals(s[FACTORS]), reals(b[STEP])
-    groups, bodies, values, given = wholes(s[GROUP_RECORDS]), b[BODIES], wholes(s[VALUES]), wholes(b[LOAD_VALUES])
-    saved, every, turned_by, saved_turns = reals(b[SAVED]), b[EVERY], reals(b[TURNED_BY]), reals(b[SAVED_TURNS])
-    for step in range(b[STEPS]):
-        s[BODY] = bodies + 8 * step * b[BODY_STRIDE]
-        for group in range(s[GROUPS]):
-            loads = wholes(groups[group])[LOADS]
-            values[group] = given[group] + (24 * step * loads if b[LOADS_VARY] != 0 else 0)
-        prescribed = at(reals(b[HELD_VALUES]), 3 * held * step)
-        _predict(call[PREDICT], n, held, statistics[6], state, before, differences, held_dofs, prescribed, rule)
+    n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.HELD]
+    free, held_dofs, rows, right = (
+        wholes(b[r.FREE_DOFS]),
+        wholes(b[r.HELD_DOFS]),
+        reals(b[r.ROWS]),
+        reals(b[r.RIGHT]),
+    )
+    state, before, differences, scale = (
+        reals(b[r.STATE]),
+        reals(b[r.BEFORE]),
+        reals(b[r.DIFFERENCES]),
+        reals(b[r.INVERSE_SCALE]),
+    )
+    rule, limits, statistics, factors, room = (
+        reals(b[r.RULE]),
+        reals(b[r.LIMITS]),
+        reals(b[r.STATISTICS]),
+        reals(s[r.FACTORS]),
+        reals(b[r.STEP]),
+    )
+    groups, bodies, values, given = (
+        wholes(s[r.GROUP_RECORDS]),
+        b[r.BODIES],
+        wholes(s[r.VALUES]),
+        wholes(b[r.LOAD_VALUES]),
+    )
+    saved, every, turned_by, saved_turns = (
+        reals(b[r.SAVED]),
+        b[r.EVERY],
+        reals(b[r.TURNED_BY]),
+        reals(b[r.SAVED_TURNS]),
+    )
+    for step in range(b[r.STEPS]):
+        s[r.BODY] = bodies + 8 * step * b[r.BODY_STRIDE]
+        for group in range(s[r.GROUPS]):
+            loads = wholes(groups[group])[r.LOADS]
+            values[group] = given[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
+        prescribed = at(reals(b[r.HELD_VALUES]), 3 * held * step)
+        _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, held_dofs, prescribed, rule)
         size, first_size, iteration = 0.0, 0.0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(room, n)
         rate[0] = max(statistics[4], 1e-4) ** 0.8 if not fresh else 1.0
         while iteration < limits[1]:
             renew = full != 0 or fresh
-            s[TANGENT] = 1 if renew else 0
-            _balance(call[BALANCE], system)
+            s[r.TANGENT] = 1 if renew else 0
+            _balance(call[r.BALANCE], system)
             if renew:
-                if b[ROLLERS] > 0:
-                    first_of, normal = wholes(b[ROLLER_FIRST]), reals(b[ROLLER_NORMAL])
-                    _hold(call[HOLD_NORMALS], unknown, half, b[ROLLERS], rows, first_of, normal)
-                statistics[3] = min(statistics[3], _factor(call[FACTOR], unknown, unknown, half, 0, rows, right, room))
+                if b[r.ROLLERS] > 0:
+                    first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
+                    _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
+                statistics[3] = min(
+                    statistics[3], _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, room)
+                )
                 statistics[5] += 1.0
             if iteration == 0 or renew:
-                _all(call[TURN_ALL], system, solver, calls, 1 if renew else 0)
-            _all(call[SOLVE_TURNED], system, solver, calls, 0)
-            last, size = size, _correct(call[CORRECT], n, unknown, state, right, free, scale, factors)
+                _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
+            _all(call[r.SOLVE_TURNED], system, solver, calls, 0)
+            last, size = size, _correct(call[r.CORRECT], n, unknown, state, right, free, scale, factors)
             fresh = False
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[7])
-            done = _judge(call[JUDGE], iteration, full, size, last, first_size, limits[0], rate)
+            done = _judge(call[r.JUDGE], iteration, full, size, last, first_size, limits[0], rate)
             if done != 0 or (full != 0 and not math.isfinite(size)):
                 break
             if full == 0 and not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5)):
                 for i in range(4 * n):
                     state[i] = before[i]
-                _predict(call[PREDICT], n, held, 0.0, state, before, differences, held_dofs, prescribed, rule)
+                _predict(call[r.PREDICT], n, held, 0.0, state, before, differences, held_dofs, prescribed, rule)
                 full, iteration = 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
@@ -122,15 +155,15 @@ def march(system, solver, calls):
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        change = _complete(call[COMPLETE], n, held, state, before, differences, scale, held_dofs, rule, rate)
+        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, held_dofs, rule, rate)
         statistics[6] = rate[0]
         statistics[7] = change / factors[2]
-        _count(call[COUNT_TURNS], b[TURN_COUNT], wholes(b[TURN_TABLE]), before, state, turned_by)
-        if (b[FIRST_STEP] + step) % every == 0:
-            row = (b[FIRST_STEP] + step) // every
+        _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
+        if (b[r.FIRST_STEP] + step) % every == 0:
+            row = (b[r.FIRST_STEP] + step) // every
             to = at(saved, 3 * n * row)
             for i in range(3 * n):
                 to[i] = state[i]
-            for i in range(b[TURN_COUNT]):
-                saved_turns[row * b[TURN_COUNT] + i] = turned_by[i]
-    return b[STEPS]
+            for i in range(b[r.TURN_COUNT]):
+                saved_turns[row * b[r.TURN_COUNT] + i] = turned_by[i]
+    return b[r.STEPS]

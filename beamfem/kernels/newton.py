@@ -2,13 +2,9 @@
 
 from numba import types
 
+from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.pointers import at, caller, reals, wholes
-from beamfem.kernels.record import (
-    BALANCE, FACTOR, FOUND, FREE_DOFS, GROUP_RECORDS, GROUPS, HALF, HELD_FORCE, HELD_STEP, HOLD_NORMALS, LIMITS, COORDINATES_P,
-    PREDICT_RESULTANTS, PREDICTED, RESIDUAL, RIGHT, ROLLER_FIRST, ROLLER_NORMAL, ROLLERS, ROWS, SCALE, SIZE, SMALLEST_JACOBIAN,
-    SOLVE_UPPER, STEP, TAKE_STEP, TANGENT, TURN_BACK, TURN_IN, UNKNOWN,
-)  # fmt: skip
+from beamfem.kernels.pointers import caller, reals, wholes
 
 _balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", types.float64)
 _factor, _solve = caller("iiiirrr", types.float64), caller("iiirr")
@@ -41,24 +37,34 @@ def iterate(system, solver, calls):
     corrections are small or stagnant, or have grown.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, rollers = s[SIZE], b[UNKNOWN], b[HALF], b[ROLLERS]
-    free, first_of, normal = wholes(b[FREE_DOFS]), wholes(b[ROLLER_FIRST]), reals(b[ROLLER_NORMAL])
-    rows, right, step, scale = reals(b[ROWS]), reals(b[RIGHT]), reals(b[STEP]), reals(b[SCALE])
-    limits, found, held_step, held_force = reals(b[LIMITS]), reals(b[FOUND]), reals(b[HELD_STEP]), reals(b[HELD_FORCE])
-    residual, p, groups = reals(s[RESIDUAL]), reals(s[COORDINATES_P]), wholes(s[GROUP_RECORDS])
+    n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
+    free, first_of, normal = wholes(b[r.FREE_DOFS]), wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
+    rows, right, step, scale = (
+        reals(b[r.ROWS]),
+        reals(b[r.RIGHT]),
+        reals(b[r.STEP]),
+        reals(b[r.SCALE]),
+    )
+    limits, found, held_step, held_force = (
+        reals(b[r.LIMITS]),
+        reals(b[r.FOUND]),
+        reals(b[r.HELD_STEP]),
+        reals(b[r.HELD_FORCE]),
+    )
+    residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
     first, done = True, False
     while True:
-        s[TANGENT] = 0 if done else 1
-        s[PREDICTED] = 1 if not done and found[0] > 0.0 and limits[5] > 0.0 else 0
-        _balance(call[BALANCE], system)
+        s[r.TANGENT] = 0 if done else 1
+        s[r.PREDICTED] = 1 if not done and found[0] > 0.0 and limits[5] > 0.0 else 0
+        _balance(call[r.BALANCE], system)
         if done:
             break
         for i in range(unknown):
             right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
         if rollers > 0:
-            _hold(call[HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
-            _turn(call[TURN_IN], rollers, first_of, normal, right)
-        if not _factor(call[FACTOR], unknown, unknown, half, 1, rows, right, step) > limits[3]:
+            _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
+            _turn(call[r.TURN_IN], rollers, first_of, normal, right)
+        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, rows, right, step) > limits[3]:
             return 0
         negative = 0
         for i in range(unknown):
@@ -67,19 +73,19 @@ def iterate(system, solver, calls):
         if limits[6] >= 0.0 and found[6] != limits[6] and found[0] > 1.0:
             found[0] += 1.0
             return 1
-        _solve(call[SOLVE_UPPER], unknown, unknown, half, rows, right)
+        _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
         if rollers > 0:
-            _turn(call[TURN_BACK], rollers, first_of, normal, right)
+            _turn(call[r.TURN_BACK], rollers, first_of, normal, right)
         for i in range(n):
             step[i] = held_step[i] if first else 0.0
         for i in range(unknown):
             step[free[i]] = right[i]
         first = False
         if limits[5] > 0.0:
-            for group in range(s[GROUPS]):
-                _two(call[PREDICT_RESULTANTS], groups[group], system)
+            for group in range(s[r.GROUPS]):
+                _two(call[r.PREDICT_RESULTANTS], groups[group], system)
         found[0] += 1.0
-        found[2], found[1] = found[1], _take(call[TAKE_STEP], n, step, p, scale)
+        found[2], found[1] = found[1], _take(call[r.TAKE_STEP], n, step, p, scale)
         if found[0] == 1.0:
             found[7] = found[1]
         if not found[1] <= limits[2]:
@@ -92,10 +98,10 @@ def iterate(system, solver, calls):
     for i in range(unknown):
         right[i] = residual[free[i]]
     if rollers > 0:
-        _turn(call[TURN_IN], rollers, first_of, normal, right)
+        _turn(call[r.TURN_IN], rollers, first_of, normal, right)
     for i in range(unknown):
         found[3] = max(found[3], abs(right[i]) * scale[free[i]])
     found[5] = 1.0
-    for group in range(s[GROUPS]):
-        found[5] = min(found[5], _jacobian(call[SMALLEST_JACOBIAN], groups[group]))
+    for group in range(s[r.GROUPS]):
+        found[5] = min(found[5], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return 1

@@ -1,13 +1,9 @@
 """All nodes of a group: from the coordinates of the model to nodal vectors, and from nodal forces to the residual."""
 
+from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
-from beamfem.kernels.record import (
-    ACCELERATION, ADD_CURVATURE, ADD_NODE_FORCES, CHUNKS, CLEAR, CONVECTIVE, COORDINATES, COORDINATES_A, COORDINATES_P, COORDINATES_V,
-    COPY, CURVATURE, DOF, FACTORS, FORCE, FRAME, FREE, HALF_WIDTH, HOME, LANES, MATRIX, MOVING, NODE_ROWS, NODES, NODES_PER_ELEMENT,
-    PLACE_KIND, PREDICTED, PREDICTED_FORCE, RESIDUAL, ROTATE, ROUTINES, ROW, RUN_COUNT, RUNS, SLOT, SPACE, TAKE, TANGENT, TRANSFORM,
-    TURN, TURNED, TURNING, VECTORS,
-)  # fmt: skip
+from beamfem.kernels.record import LANES, ROW
 
 GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID, TURNED_GRADIENTS = range(5)
 
@@ -20,12 +16,17 @@ _add_forces, _add_curvature = caller("iiiiiiniirr"), caller("iiiiiiiinnnisrrd")
 def place_nodes(group, system, moving):
     """Fill the chunks of a group with nodal vectors, and where wanted with accelerations and what tangents need."""
     b, s = wholes(group), wholes(system)
-    call = wholes(b[ROUTINES])
-    runs, stride, size = wholes(b[RUNS]), b[NODES], 2 * b[VECTORS]
-    dof, frame, chunks, x = wholes(b[DOF]), reals(b[FRAME]), reals(b[CHUNKS]), reals(b[SPACE])
-    p, v, a = reals(s[COORDINATES_P]), reals(s[COORDINATES_V]), reals(s[COORDINATES_A])
-    turned, turning, factors = b[TURNED], b[TURNING], reals(s[FACTORS])
-    for run in range(b[RUN_COUNT]):
+    call = wholes(b[r.ROUTINES])
+    runs, stride, size = wholes(b[r.RUNS]), b[r.NODES], 2 * b[r.VECTORS]
+    dof, frame, chunks, x = (
+        wholes(b[r.DOF]),
+        reals(b[r.FRAME]),
+        reals(b[r.CHUNKS]),
+        reals(b[r.SPACE]),
+    )
+    p, v, a = reals(s[r.COORDINATES_P]), reals(s[r.COORDINATES_V]), reals(s[r.COORDINATES_A])
+    turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
+    for run in range(b[r.RUN_COUNT]):
         kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
         linear = size
         if kind == ROTATION:
@@ -36,40 +37,53 @@ def place_nodes(group, system, moving):
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
-            chunk = at(chunks, first // LANES * b[NODE_ROWS] * ROW + lane)
-            _take(call[TAKE], first, count, linear, stride, dof, p, chunk)
+            chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
+            _take(call[r.TAKE], first, count, linear, stride, dof, p, chunk)
             if moving != 0:
-                _take(call[TAKE], first, count, linear, stride, dof, a, at(chunk, b[ACCELERATION] * ROW))
+                _take(call[r.TAKE], first, count, linear, stride, dof, a, at(chunk, b[r.ACCELERATION] * ROW))
             if kind == TURNED_GRADIENTS:
                 c, t = at(frame, first), at(frame, stride + first)
-                _rotate(call[ROTATE], count, c, t, at(chunk, (size - 2) * ROW))
+                _rotate(call[r.ROTATE], count, c, t, at(chunk, (size - 2) * ROW))
                 if moving != 0:
-                    _rotate(call[ROTATE], count, c, t, at(chunk, (b[ACCELERATION] + size - 2) * ROW))
+                    _rotate(call[r.ROTATE], count, c, t, at(chunk, (b[r.ACCELERATION] + size - 2) * ROW))
             elif kind != GRADIENTS:
-                _take(call[TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
+                _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
                 if moving != 0:
-                    _take(call[TAKE], first, count, own, stride, at(dof, linear * stride), v, at(x, own * ROW))
-                    _take(call[TAKE], first, count, own, stride, at(dof, linear * stride), a, at(x, 2 * own * ROW))
+                    _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), v, at(x, own * ROW))
+                    _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), a, at(x, 2 * own * ROW))
                 else:
-                    _clear(call[CLEAR], 2 * own, count, at(x, own * ROW))
+                    _clear(call[r.CLEAR], 2 * own, count, at(x, own * ROW))
                 directions = at(x, 3 * own * ROW)
-                _turn(call[TURN], count, at(x, (own - 1) * ROW), at(frame, first), at(frame, stride + first), directions)
-                _copy(call[COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
-                _place(call[PLACE_KIND + 3 * (kind - 1)], count, x)
+                _turn(
+                    call[r.TURN],
+                    count,
+                    at(x, (own - 1) * ROW),
+                    at(frame, first),
+                    at(frame, stride + first),
+                    directions,
+                )
+                _copy(call[r.COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
+                _place(call[r.PLACE_KIND + 3 * (kind - 1)], count, x)
                 parts, result = size - linear, at(directions, 3 * ROW)
-                _copy(call[COPY], parts, count, result, at(chunk, linear * ROW))
+                _copy(call[r.COPY], parts, count, result, at(chunk, linear * ROW))
                 if moving != 0:
-                    _copy(call[COPY], parts, count, at(result, parts * ROW), at(chunk, (b[ACCELERATION] + linear) * ROW))
+                    _copy(
+                        call[r.COPY],
+                        parts,
+                        count,
+                        at(result, parts * ROW),
+                        at(chunk, (b[r.ACCELERATION] + linear) * ROW),
+                    )
                 # b stands in the last rows and columns that turn
                 corner = (turned - parts) * turning + linear - (size - turned)
                 for part in range(parts):
-                    to = at(chunk, (b[TRANSFORM] + corner + part * turning) * ROW)
-                    _copy(call[COPY], own, count, at(result, (2 * parts + part * own) * ROW), to)
-                if moving != 0 and s[TANGENT] != 0:
-                    _convect(call[PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
+                    to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
+                    _copy(call[r.COPY], own, count, at(result, (2 * parts + part * own) * ROW), to)
+                if moving != 0 and s[r.TANGENT] != 0:
+                    _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
                     for part in range(parts):
-                        to = at(chunk, (b[CONVECTIVE] + corner + part * turning) * ROW)
-                        _copy(call[COPY], own, count, at(result, part * own * ROW), to)
+                        to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
+                        _copy(call[r.COPY], own, count, at(result, part * own * ROW), to)
             first += count
 
 
@@ -77,20 +91,43 @@ def place_nodes(group, system, moving):
 def finish_nodes(group, system):
     """Add the forces on all nodes of a group to the residual, and what turns with them to the matrix."""
     b, s = wholes(group), wholes(system)
-    call = wholes(b[ROUTINES])
-    runs, stride, size = wholes(b[RUNS]), b[NODES], 2 * b[VECTORS]
-    dof, frame, chunks, x = wholes(b[DOF]), reals(b[FRAME]), reals(b[CHUNKS]), reals(b[SPACE])
-    p, residual, turned, turning = reals(s[COORDINATES_P]), reals(s[RESIDUAL]), b[TURNED], b[TURNING]
-    forces = b[PREDICTED_FORCE] if s[PREDICTED] != 0 else b[FORCE]
+    call = wholes(b[r.ROUTINES])
+    runs, stride, size = wholes(b[r.RUNS]), b[r.NODES], 2 * b[r.VECTORS]
+    dof, frame, chunks, x = (
+        wholes(b[r.DOF]),
+        reals(b[r.FRAME]),
+        reals(b[r.CHUNKS]),
+        reals(b[r.SPACE]),
+    )
+    p, residual, turned, turning = (
+        reals(s[r.COORDINATES_P]),
+        reals(s[r.RESIDUAL]),
+        b[r.TURNED],
+        b[r.TURNING],
+    )
+    forces = b[r.PREDICTED_FORCE] if s[r.PREDICTED] != 0 else b[r.FORCE]
     first = 0
     while first < stride:
-        count, chunk = min(LANES, stride - first), at(chunks, first // LANES * b[NODE_ROWS] * ROW)
-        _add_forces(call[ADD_NODE_FORCES], first, count, size, turned, turning, stride, dof, b[TRANSFORM], b[FORCE], chunk, residual)
+        count, chunk = min(LANES, stride - first), at(chunks, first // LANES * b[r.NODE_ROWS] * ROW)
+        _add_forces(
+            call[r.ADD_NODE_FORCES],
+            first,
+            count,
+            size,
+            turned,
+            turning,
+            stride,
+            dof,
+            b[r.TRANSFORM],
+            b[r.FORCE],
+            chunk,
+            residual,
+        )
         first += count
-    factor = reals(s[FACTORS])[0]
-    if s[TANGENT] == 0 or factor == 0.0:
+    factor = reals(s[r.FACTORS])[0]
+    if s[r.TANGENT] == 0 or factor == 0.0:
         return
-    for run in range(b[RUN_COUNT]):
+    for run in range(b[r.RUN_COUNT]):
         kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
         if kind == GRADIENTS or kind == TURNED_GRADIENTS:
             continue
@@ -99,16 +136,44 @@ def finish_nodes(group, system):
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
-            chunk = at(chunks, first // LANES * b[NODE_ROWS] * ROW + lane)
-            _take(call[TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
+            chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
+            _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
             directions, parts = at(x, 3 * own * ROW), size - linear
-            _turn(call[TURN], count, at(x, (own - 1) * ROW), at(frame, first), at(frame, stride + first), directions)
-            _copy(call[COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
-            _copy(call[COPY], parts, count, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
-            _place(call[PLACE_KIND + 3 * (kind - 1) + 2], count, x)
-            _copy(call[COPY], own * own, count, at(directions, (3 + parts) * ROW), at(chunk, b[CURVATURE] * ROW))
+            _turn(
+                call[r.TURN],
+                count,
+                at(x, (own - 1) * ROW),
+                at(frame, first),
+                at(frame, stride + first),
+                directions,
+            )
+            _copy(call[r.COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
+            _copy(call[r.COPY], parts, count, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
+            _place(call[r.PLACE_KIND + 3 * (kind - 1) + 2], count, x)
+            _copy(
+                call[r.COPY],
+                own * own,
+                count,
+                at(directions, (3 + parts) * ROW),
+                at(chunk, b[r.CURVATURE] * ROW),
+            )
             _add_curvature(
-                call[ADD_CURVATURE], first, count, b[NODES_PER_ELEMENT], linear, own, stride, b[CURVATURE], b[COORDINATES],
-                dof, wholes(b[FREE]), wholes(b[HOME]), b[HALF_WIDTH], slots(b[SLOT]), chunk, reals(s[MATRIX]), factor,
-            )  # fmt: skip
+                call[r.ADD_CURVATURE],
+                first,
+                count,
+                b[r.NODES_PER_ELEMENT],
+                linear,
+                own,
+                stride,
+                b[r.CURVATURE],
+                b[r.COORDINATES],
+                dof,
+                wholes(b[r.FREE]),
+                wholes(b[r.HOME]),
+                b[r.HALF_WIDTH],
+                slots(b[r.SLOT]),
+                chunk,
+                reals(s[r.MATRIX]),
+                factor,
+            )
             first += count

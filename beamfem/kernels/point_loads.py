@@ -4,14 +4,11 @@ import math
 
 from numba import types
 
+from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, wholes
-from beamfem.kernels.record import (
-    ANCHOR, BATCH, CHUNKS, CLEAR, CURVATURE, DIRECTION, FACTORS, FOLLOWS, FORCE, GATHER, LOAD_FORCES, LOAD_PLACE, LOADS,
-    NODES_PER_ELEMENT, POINTS, POSITION, PREDICTED, PREDICTED_FORCE, REDUCE, ROUTINES, ROW, SCATTER, SPACE, SPRING, STRETCHES, TABLE_ROWS,
-    TANGENT, VECTORS,
-)  # fmt: skip
+from beamfem.kernels.record import ROW
 
 _gather, _scatter, _clear = caller("iiiinirr"), caller("iiiiniirr"), caller("iir")
 _reduced, _forces = caller("iiiir"), caller("iiidrrrr", types.int64)
@@ -24,30 +21,45 @@ def add_loads(group, system, values):
     values: address of forces and moments (loads, 3) [N, N, N m].
     """
     b, s = wholes(group), wholes(system)
-    call, x, chunks = wholes(b[ROUTINES]), reals(b[SPACE]), reals(b[CHUNKS])
-    nodes, vectors, loads, place = b[NODES_PER_ELEMENT], b[VECTORS], b[LOADS], wholes(b[LOAD_PLACE])
-    size, tangent = 2 * vectors, s[TANGENT]
-    ck = reals(s[FACTORS])[0]
-    rows = b[CURVATURE] if tangent != 0 else size
-    _, e, f, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[POINTS], b[CURVATURE], b[TABLE_ROWS])
+    call, x, chunks = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.CHUNKS])
+    nodes, vectors, loads, place = (
+        b[r.NODES_PER_ELEMENT],
+        b[r.VECTORS],
+        b[r.LOADS],
+        wholes(b[r.LOAD_PLACE]),
+    )
+    size, tangent = 2 * vectors, s[r.TANGENT]
+    ck = reals(s[r.FACTORS])[0]
+    rows = b[r.CURVATURE] if tangent != 0 else size
+    _, e, f, _, _, _, _, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, f, k = at(x, e * ROW), at(x, f * ROW), at(x, k * ROW)
     stiff = 1 if tangent != 0 and ck != 0.0 else 0
     first = 0
     while first < loads:
-        count = min(b[BATCH], loads - first)
-        _gather(call[GATHER], nodes, count, first, loads, place, rows, chunks, e)
+        count = min(b[r.BATCH], loads - first)
+        _gather(call[r.GATHER], nodes, count, first, loads, place, rows, chunks, e)
         if stiff != 0:
-            _clear(call[CLEAR], nodes * size * nodes * size, count, k)
+            _clear(call[r.CLEAR], nodes * size * nodes * size, count, k)
         coupled = 0
         for lane in range(count):
             own = at(reals(values), 3 * (first + lane))
-            done = _forces(call[LOAD_FORCES], group, first + lane, rows, ck * stiff, own, at(e, lane), at(f, lane), at(k, lane))
+            done = _forces(
+                call[r.LOAD_FORCES],
+                group,
+                first + lane,
+                rows,
+                ck * stiff,
+                own,
+                at(e, lane),
+                at(f, lane),
+                at(k, lane),
+            )
             coupled = max(coupled, done)
-        _scatter(call[SCATTER], nodes, count, first, loads, place, size, b[FORCE], f, chunks)
-        if s[PREDICTED] != 0:
-            _scatter(call[SCATTER], nodes, count, first, loads, place, size, b[PREDICTED_FORCE], f, chunks)
+        _scatter(call[r.SCATTER], nodes, count, first, loads, place, size, b[r.FORCE], f, chunks)
+        if s[r.PREDICTED] != 0:
+            _scatter(call[r.SCATTER], nodes, count, first, loads, place, size, b[r.PREDICTED_FORCE], f, chunks)
         if stiff != 0 and coupled != 0:
-            _reduced(call[REDUCE], group, system, first, count, x)
+            _reduced(call[r.REDUCE], group, system, first, count, x)
         first += count
 
 
@@ -60,8 +72,12 @@ def load_forces(group, load, stride, ck, values, e, f, k):
     with |g| as well.
     """
     b = wholes(group)
-    nodes, vectors, loads = b[NODES_PER_ELEMENT], b[VECTORS], b[LOADS]
-    position, direction, follow = at(reals(b[POSITION]), load), at(reals(b[DIRECTION]), load), at(reals(b[FOLLOWS]), load)
+    nodes, vectors, loads = b[r.NODES_PER_ELEMENT], b[r.VECTORS], b[r.LOADS]
+    position, direction, follow = (
+        at(reals(b[r.POSITION]), load),
+        at(reals(b[r.DIRECTION]), load),
+        at(reals(b[r.FOLLOWS]), load),
+    )
     gx, gy, rx, ry = 0.0, 0.0, 0.0, 0.0
     for n in range(nodes):
         for s in range(vectors):
@@ -81,7 +97,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
     # derivatives of the force by g
     fxx, fxy, fyx, fyy = 0.0, 0.0, 0.0, 0.0
     if follows:
-        if reals(b[STRETCHES])[load] != 0.0:
+        if reals(b[r.STRETCHES])[load] != 0.0:
             co, si = gx * ux + gy * uy, gy * ux - gx * uy
             fxx, fxy = ux * fx + uy * fy, uy * fx - ux * fy
             fyx, fyy = -fxy, fxx
@@ -91,7 +107,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
             co, si = (gx * ux + gy * uy) / long, (gy * ux - gx * uy) / long
             fx, fy = co * fx - si * fy, si * fx + co * fy
             fxx, fxy, fyx, fyy = -fy * ax, -fy * ay, fx * ax, fx * ay
-    spring, anchor = at(reals(b[SPRING]), load), at(reals(b[ANCHOR]), load)
+    spring, anchor = at(reals(b[r.SPRING]), load), at(reals(b[r.ANCHOR]), load)
     kx, ky = spring[0], spring[loads]
     sx, sy = fx - kx * (rx - anchor[0]), fy - ky * (ry - anchor[loads])
     slots, size = nodes * vectors, 2 * vectors

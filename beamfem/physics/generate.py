@@ -56,13 +56,24 @@ def measure_source(measure: Measure) -> str:
     resultants = _rows([str(symbol) for symbol in s], point.RESULTANT)
     functions = [
         _function("strains", "strains", rows, [], eps, point.STRAIN),
-        _function("forces", "forces on q of stress resultants", {**rows, **resultants}, [], slopes.T * sympy.Matrix(s), point.FORCE),
         _function(
-            "rates", "the change of strains with a change of q, in its place",
-            {**rows, **_rows([str(symbol) for symbol in dq], point.RATE)}, [], slopes * sympy.Matrix(dq), point.RATE,
-        ),  # fmt: skip
+            "forces",
+            "forces on q of stress resultants",
+            {**rows, **resultants},
+            [],
+            slopes.T * sympy.Matrix(s),
+            point.FORCE,
+        ),
+        _function(
+            "rates",
+            "the change of strains with a change of q, in its place",
+            {**rows, **_rows([str(symbol) for symbol in dq], point.RATE)},
+            [],
+            slopes * sympy.Matrix(dq),
+            point.RATE,
+        ),
         _second(q, eps, s, slopes, {**rows, **resultants}),
-    ]  # fmt: skip
+    ]
     return _module(f"Passes of the strain measure `beamfem.physics.measures.{measure.__name__}`.", functions)
 
 
@@ -81,13 +92,17 @@ def _second(q: Sequence[Any], eps: Sequence[Any], s: Sequence[Any], slopes: Any,
     needed = set().union(*(result.free_symbols for result in results))
     wanted = {symbol: (law * named)[key] for key, symbol in stressed.items() if symbol in needed}
     steps = [(slope[key], slopes[key]) for key in slope]
-    common, reduced = sympy.cse([value for _, value in steps] + [geometric[i, j] for i, j in _ORDER], optimizations="basic")
+    common, reduced = sympy.cse(
+        [value for _, value in steps] + [geometric[i, j] for i, j in _ORDER], optimizations="basic"
+    )
     lines = [(name, value) for name, value in common]
     lines += [(name, value) for (name, _), value in zip(steps, reduced, strict=False)]
     lines += list(wanted.items())
     finals = [result + extra for result, extra in zip(results, reduced[len(steps) :], strict=True)]
     known = {**rows, **{str(symbol): point.STIFFNESS + number for number, symbol in enumerate(stiffness.values())}}
-    return _function("hessian", "the second derivative of the energy by q", known, lines, finals, point.HESSIAN, cse=False)
+    return _function(
+        "hessian", "the second derivative of the energy by q", known, lines, finals, point.HESSIAN, cse=False
+    )
 
 
 def kinematics_source(kind: Kinematics) -> str:
@@ -101,7 +116,9 @@ def kinematics_source(kind: Kinematics) -> str:
     c, s, length = sympy.symbols("c s length", real=True)
     turned = sympy.Matrix(kind.vectors(tuple(u), sympy.cos(u[-1]), sympy.sin(u[-1]), length))
     speed = turned.jacobian(u)
-    second = speed * sympy.Matrix(a) + sum((speed.diff(u[k]) * v[k] * sympy.Matrix(v) for k in range(size)), sympy.zeros(len(turned), 1))
+    second = speed * sympy.Matrix(a) + sum(
+        (speed.diff(u[k]) * v[k] * sympy.Matrix(v) for k in range(size)), sympy.zeros(len(turned), 1)
+    )
     ck, cv = sympy.symbols("ck cv", real=True)
     extra = ck * second.jacobian(u) + cv * second.jacobian(v)
     f = sympy.symbols(f"f:{len(turned)}", real=True)
@@ -110,10 +127,21 @@ def kinematics_source(kind: Kinematics) -> str:
     rows = _rows([*map(str, (*u, *v, *a)), "c", "s", "length"], 0)
     first = len(rows)
     functions = [
-        _function("place", "w, w'' and B", rows, [], [*turned.subs(plain), *second.subs(plain), *speed.subs(plain)], first),
-        _function("convect", "ck dw''/du + cv dw''/du'", rows, [], list(extra.subs(plain)), first, scalars=("ck", "cv")),
-        _function("curve", "the derivative of B^T f", {**rows, **_rows([str(x) for x in f], first)}, [], list(curved.subs(plain)), first + len(f)),
-    ]  # fmt: skip
+        _function(
+            "place", "w, w'' and B", rows, [], [*turned.subs(plain), *second.subs(plain), *speed.subs(plain)], first
+        ),
+        _function(
+            "convect", "ck dw''/du + cv dw''/du'", rows, [], list(extra.subs(plain)), first, scalars=("ck", "cv")
+        ),
+        _function(
+            "curve",
+            "the derivative of B^T f",
+            {**rows, **_rows([str(x) for x in f], first)},
+            [],
+            list(curved.subs(plain)),
+            first + len(f),
+        ),
+    ]
     title = f"Passes of nodes of the kind `beamfem.physics.kinematics.{kind.name.upper()}`."
     title += f"\n\nRows: {', '.join(rows)}; then results."
     return _module(title, functions)

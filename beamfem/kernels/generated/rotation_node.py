@@ -20,11 +20,11 @@ def place(count, x):
         c = x[3 * ROW + i]
         s = x[4 * ROW + i]
         x0 = -s
-        x1 = (v_theta * v_theta)
+        x1 = v_theta * v_theta
         x[6 * ROW + i] = x0
         x[7 * ROW + i] = c
-        x[8 * ROW + i] = -a_theta*c + s*x1
-        x[9 * ROW + i] = -a_theta*s - c*x1
+        x[8 * ROW + i] = -a_theta * c + s * x1
+        x[9 * ROW + i] = -a_theta * s - c * x1
         x[10 * ROW + i] = -c
         x[11 * ROW + i] = x0
 
@@ -37,10 +37,10 @@ def convect(count, ck, cv, x):
         a_theta = x[2 * ROW + i]
         c = x[3 * ROW + i]
         s = x[4 * ROW + i]
-        x0 = 2.0*cv*v_theta
-        x1 = (v_theta * v_theta)
-        x[6 * ROW + i] = ck*(a_theta*s + c*x1) + s*x0
-        x[7 * ROW + i] = -c*x0 - ck*(a_theta*c - s*x1)
+        x0 = 2.0 * cv * v_theta
+        x1 = v_theta * v_theta
+        x[6 * ROW + i] = ck * (a_theta * s + c * x1) + s * x0
+        x[7 * ROW + i] = -c * x0 - ck * (a_theta * c - s * x1)
 
 
 @routine("ir", fastmath=FAST)
@@ -51,4 +51,4 @@ def curve(count, x):
         s = x[4 * ROW + i]
         f0 = x[6 * ROW + i]
         f1 = x[7 * ROW + i]
-        x[8 * ROW + i] = -c*f1 + f0*s
+        x[8 * ROW + i] = -c * f1 + f0 * s

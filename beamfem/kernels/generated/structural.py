@@ -23,10 +23,10 @@ def strains(count, x):
         ey = x[5 * ROW + i]
         x0 = (dx * dx) + (dy * dy)
         x1 = math.sqrt(x0)
-        x2 = (1.0 / x1)
-        x[6 * ROW + i] = -dx*ry*x2 + dy*rx*x2 - 1.0
-        x[7 * ROW + i] = x2*(dx*rx + dy*ry)
-        x[8 * ROW + i] = (dx*ey - dy*ex)/x0
+        x2 = 1.0 / x1
+        x[6 * ROW + i] = -dx * ry * x2 + dy * rx * x2 - 1.0
+        x[7 * ROW + i] = x2 * (dx * rx + dy * ry)
+        x[8 * ROW + i] = (dx * ey - dy * ex) / x0
         x[9 * ROW + i] = x1 - 1.0
 
 
@@ -44,29 +44,39 @@ def forces(count, x):
         s1 = x[13 * ROW + i]
         s2 = x[14 * ROW + i]
         s3 = x[15 * ROW + i]
-        x0 = (dx * dx)
-        x1 = (dy * dy)
+        x0 = dx * dx
+        x1 = dy * dy
         x2 = x0 + x1
-        x3 = (1.0 / math.sqrt(x2))
-        x4 = (1.0 / x2)
-        x5 = dx*x4
-        x6 = dy*x5
-        x7 = rx*x6
-        x8 = x0*x4
-        x9 = s0*x3
-        x10 = ry*x6
-        x11 = s1*x3
-        x12 = dy*ex
-        x13 = dx*ey
-        x14 = x4*(-x12 + x13)
-        x15 = s2*x4
-        x16 = x1*x4
-        x[39 * ROW + i] = x3*(dx*s1 + dy*s0)
-        x[40 * ROW + i] = x3*(-dx*s0 + dy*s1)
-        x[41 * ROW + i] = dx*s3*x3 - x11*(rx*x8 - rx + x10) - x15*(dx*x14 + ey*x8 - ey - x12*x5) - x9*(-ry*x8 + ry + x7)
-        x[42 * ROW + i] = dy*s3*x3 - x11*(ry*x16 - ry + x7) - x15*(dy*x13*x4 + dy*x14 - ex*x16 + ex) + x9*(-rx*x16 + rx + x10)
-        x[43 * ROW + i] = -dy*x15
-        x[44 * ROW + i] = dx*x15
+        x3 = 1.0 / math.sqrt(x2)
+        x4 = 1.0 / x2
+        x5 = dx * x4
+        x6 = dy * x5
+        x7 = rx * x6
+        x8 = x0 * x4
+        x9 = s0 * x3
+        x10 = ry * x6
+        x11 = s1 * x3
+        x12 = dy * ex
+        x13 = dx * ey
+        x14 = x4 * (-x12 + x13)
+        x15 = s2 * x4
+        x16 = x1 * x4
+        x[39 * ROW + i] = x3 * (dx * s1 + dy * s0)
+        x[40 * ROW + i] = x3 * (-dx * s0 + dy * s1)
+        x[41 * ROW + i] = (
+            dx * s3 * x3
+            - x11 * (rx * x8 - rx + x10)
+            - x15 * (dx * x14 + ey * x8 - ey - x12 * x5)
+            - x9 * (-ry * x8 + ry + x7)
+        )
+        x[42 * ROW + i] = (
+            dy * s3 * x3
+            - x11 * (ry * x16 - ry + x7)
+            - x15 * (dy * x13 * x4 + dy * x14 - ex * x16 + ex)
+            + x9 * (-rx * x16 + rx + x10)
+        )
+        x[43 * ROW + i] = -dy * x15
+        x[44 * ROW + i] = dx * x15
 
 
 @routine("ir", fastmath=FAST)
@@ -85,23 +95,28 @@ def rates(count, x):
         dy_ = x[69 * ROW + i]
         ex_ = x[70 * ROW + i]
         ey_ = x[71 * ROW + i]
-        x0 = (dx * dx)
-        x1 = (dy * dy)
+        x0 = dx * dx
+        x1 = dy * dy
         x2 = x0 + x1
-        x3 = (1.0 / math.sqrt(x2))
-        x4 = (1.0 / x2)
-        x5 = rx*x4
-        x6 = dx*dy
-        x7 = x5*x6
-        x8 = ry*x4
-        x9 = x6*x8
-        x10 = dx*ey
-        x11 = dy*ex
-        x12 = x4*(x10 - x11)
-        x[66 * ROW + i] = x3*(-dx*ry_ - dx_*(ry - x0*x8 + x7) + dy*rx_ + dy_*(rx - x1*x5 + x9))
-        x[67 * ROW + i] = x3*(dx*rx_ - dx_*(-rx + x0*x5 + x9) + dy*ry_ - dy_*(-ry + x1*x8 + x7))
-        x[68 * ROW + i] = x4*(dx*ey_ - dx_*(-dx*x11*x4 + dx*x12 + ey*x0*x4 - ey) - dy*ex_ - dy_*(dy*x10*x4 + dy*x12 - ex*x1*x4 + ex))
-        x[69 * ROW + i] = x3*(dx*dx_ + dy*dy_)
+        x3 = 1.0 / math.sqrt(x2)
+        x4 = 1.0 / x2
+        x5 = rx * x4
+        x6 = dx * dy
+        x7 = x5 * x6
+        x8 = ry * x4
+        x9 = x6 * x8
+        x10 = dx * ey
+        x11 = dy * ex
+        x12 = x4 * (x10 - x11)
+        x[66 * ROW + i] = x3 * (-dx * ry_ - dx_ * (ry - x0 * x8 + x7) + dy * rx_ + dy_ * (rx - x1 * x5 + x9))
+        x[67 * ROW + i] = x3 * (dx * rx_ - dx_ * (-rx + x0 * x5 + x9) + dy * ry_ - dy_ * (-ry + x1 * x8 + x7))
+        x[68 * ROW + i] = x4 * (
+            dx * ey_
+            - dx_ * (-dx * x11 * x4 + dx * x12 + ey * x0 * x4 - ey)
+            - dy * ex_
+            - dy_ * (dy * x10 * x4 + dy * x12 - ex * x1 * x4 + ex)
+        )
+        x[69 * ROW + i] = x3 * (dx * dx_ + dy * dy_)
 
 
 @routine("ir", fastmath=FAST)
@@ -128,107 +143,134 @@ def hessian(count, x):
         c22 = x[25 * ROW + i]
         c23 = x[26 * ROW + i]
         c33 = x[27 * ROW + i]
-        x0 = (dx * dx)
-        x1 = (dy * dy)
+        x0 = dx * dx
+        x1 = dy * dy
         x2 = x0 + x1
-        x3 = (1.0 / math.sqrt(x2))
-        x4 = dy*x3
-        x5 = dx*x3
-        x6 = (1.0 / x2)
-        x7 = dy*x6
-        x8 = dx*rx
-        x9 = x7*x8
-        x10 = dx*ry
-        x11 = x10*x7
-        x12 = x1*x6
-        x13 = x0*x6
-        x14 = ey*x13
-        x15 = dx*ey
-        x16 = dy*ex
+        x3 = 1.0 / math.sqrt(x2)
+        x4 = dy * x3
+        x5 = dx * x3
+        x6 = 1.0 / x2
+        x7 = dy * x6
+        x8 = dx * rx
+        x9 = x7 * x8
+        x10 = dx * ry
+        x11 = x10 * x7
+        x12 = x1 * x6
+        x13 = x0 * x6
+        x14 = ey * x13
+        x15 = dx * ey
+        x16 = dy * ex
         x17 = x15 - x16
-        x18 = dx*x6
-        x19 = x17*x7
-        x20 = -ex*x12 + ex + x15*x7
-        x21 = dx*x7
-        x22 = s0*x21
+        x18 = dx * x6
+        x19 = x17 * x7
+        x20 = -ex * x12 + ex + x15 * x7
+        x21 = dx * x7
+        x22 = s0 * x21
         x23 = x13 - 1.0
-        x24 = s1*x21
+        x24 = s1 * x21
         x25 = x12 - 1.0
-        x26 = s3*x3
-        x27 = dy*rx
-        x28 = 3.0*x6
-        x29 = (dx * dx * dx)*x28
-        x30 = x0*x7
-        x31 = 3.0*x30
-        x32 = rx*x31
-        x33 = (1.0 / (x2 * math.sqrt(x2)))
-        x34 = s0*x33
-        x35 = dy*ry
-        x36 = 3.0*ry
-        x37 = x30*x36 - x35
-        x38 = (1.0 / (x2 * x2))
-        x39 = 3.0*x17
-        x40 = ey - x14 + x16*x18
-        x41 = 2.0*dx
-        x42 = x1*x18
-        x43 = 3.0*x42
-        x44 = rx*x43
-        x45 = -x10 + x36*x42
-        x46 = (dy * dy * dy)*x28
-        x47 = dy*s2*x38*x41
-        x48 = s2*x6
+        x26 = s3 * x3
+        x27 = dy * rx
+        x28 = 3.0 * x6
+        x29 = (dx * dx * dx) * x28
+        x30 = x0 * x7
+        x31 = 3.0 * x30
+        x32 = rx * x31
+        x33 = 1.0 / (x2 * math.sqrt(x2))
+        x34 = s0 * x33
+        x35 = dy * ry
+        x36 = 3.0 * ry
+        x37 = x30 * x36 - x35
+        x38 = 1.0 / (x2 * x2)
+        x39 = 3.0 * x17
+        x40 = ey - x14 + x16 * x18
+        x41 = 2.0 * dx
+        x42 = x1 * x18
+        x43 = 3.0 * x42
+        x44 = rx * x43
+        x45 = -x10 + x36 * x42
+        x46 = (dy * dy * dy) * x28
+        x47 = dy * s2 * x38 * x41
+        x48 = s2 * x6
         j00 = x4
         j01 = -x5
-        j02 = x3*(ry*x0*x6 - ry - x9)
-        j03 = x3*(-rx*x12 + rx + x11)
+        j02 = x3 * (ry * x0 * x6 - ry - x9)
+        j03 = x3 * (-rx * x12 + rx + x11)
         j10 = x5
         j11 = x4
-        j12 = x3*(-rx*x13 + rx - x11)
-        j13 = x3*(-ry*x12 + ry - x9)
-        j22 = x6*(dx*dy*ex*x6 + ey - x14 - x17*x18)
-        j23 = -x6*(x19 + x20)
+        j12 = x3 * (-rx * x13 + rx - x11)
+        j13 = x3 * (-ry * x12 + ry - x9)
+        j22 = x6 * (dx * dy * ex * x6 + ey - x14 - x17 * x18)
+        j23 = -x6 * (x19 + x20)
         j24 = -x7
         j25 = x18
         j32 = x5
         j33 = x4
-        u00 = c00*j00 + c01*j10
-        u01 = c00*j01 + c01*j11
-        u02 = c00*j02 + c01*j12 + c02*j22 + c03*j32
-        u03 = c00*j03 + c01*j13 + c02*j23 + c03*j33
-        u04 = c02*j24
-        u05 = c02*j25
-        u10 = c01*j00 + c11*j10
-        u11 = c01*j01 + c11*j11
-        u12 = c01*j02 + c11*j12 + c12*j22 + c13*j32
-        u13 = c01*j03 + c11*j13 + c12*j23 + c13*j33
-        u14 = c12*j24
-        u15 = c12*j25
-        u22 = c02*j02 + c12*j12 + c22*j22 + c23*j32
-        u23 = c02*j03 + c12*j13 + c22*j23 + c23*j33
-        u24 = c22*j24
-        u25 = c22*j25
-        u32 = c03*j02 + c13*j12 + c23*j22 + c33*j32
-        u33 = c03*j03 + c13*j13 + c23*j23 + c33*j33
-        u34 = c23*j24
-        u35 = c23*j25
-        x[45 * ROW + i] = j00*u00 + j10*u10
-        x[46 * ROW + i] = j00*u01 + j10*u11
-        x[47 * ROW + i] = j01*u01 + j11*u11
-        x[48 * ROW + i] = j00*u02 + j10*u12 - x3*(s1*x23 + x22)
-        x[49 * ROW + i] = j00*u03 + j10*u13 - x3*(s0*x25 + x24)
-        x[50 * ROW + i] = j01*u02 + j11*u12 + x3*(s0*x23 - x24)
-        x[51 * ROW + i] = j01*u03 + j11*u13 + x3*(-s1*x25 + x22)
-        x[52 * ROW + i] = j00*u04 + j10*u14
-        x[53 * ROW + i] = j00*u05 + j10*u15
-        x[54 * ROW + i] = j01*u04 + j11*u14
-        x[55 * ROW + i] = j01*u05 + j11*u15
-        x[56 * ROW + i] = j02*u02 + j12*u12 + j22*u22 + j32*u32 + s1*x33*(rx*x29 + x37 - 3.0*x8) + s2*x38*(ey*x29 - 3.0*x13*x16 + x13*x39 - 4.0*x15 + 2.0*x16 - x40*x41) - x23*x26 - x34*(ry*x29 - 3.0*x10 + x27 - x32)
-        x[57 * ROW + i] = -dx*dy*s3*x33 + j02*u03 + j12*u13 + j22*u23 + j32*u33 + s1*x33*(-x27 + x32 + x45) + s2*x38*(dx*ex + 3.0*dx*x19 + dx*x20 - dy*ey - dy*x40 - ex*x43 + ey*x31) - x34*(x37 - x44 + x8)
-        x[58 * ROW + i] = j03*u03 + j13*u13 + j23*u23 + j33*u33 + s1*x33*(ry*x46 - 3.0*x35 + x44 - x8) + s2*x38*(2.0*dy*x20 - ex*x46 + 3.0*x12*x15 + x12*x39 - 2.0*x15 + 4.0*x16) - x25*x26 - x34*(-rx*x46 + 3.0*x27 + x45)
-        x[59 * ROW + i] = j02*u04 + j12*u14 + j22*u24 + j32*u34 + x47
-        x[60 * ROW + i] = j02*u05 + j12*u15 + j22*u25 + j32*u35 - x48*(2.0*x13 - 1.0)
-        x[61 * ROW + i] = j03*u04 + j13*u14 + j23*u24 + j33*u34 + x48*(2.0*x12 - 1.0)
-        x[62 * ROW + i] = j03*u05 + j13*u15 + j23*u25 + j33*u35 - x47
-        x[63 * ROW + i] = j24*u24
-        x[64 * ROW + i] = j24*u25
-        x[65 * ROW + i] = j25*u25
+        u00 = c00 * j00 + c01 * j10
+        u01 = c00 * j01 + c01 * j11
+        u02 = c00 * j02 + c01 * j12 + c02 * j22 + c03 * j32
+        u03 = c00 * j03 + c01 * j13 + c02 * j23 + c03 * j33
+        u04 = c02 * j24
+        u05 = c02 * j25
+        u10 = c01 * j00 + c11 * j10
+        u11 = c01 * j01 + c11 * j11
+        u12 = c01 * j02 + c11 * j12 + c12 * j22 + c13 * j32
+        u13 = c01 * j03 + c11 * j13 + c12 * j23 + c13 * j33
+        u14 = c12 * j24
+        u15 = c12 * j25
+        u22 = c02 * j02 + c12 * j12 + c22 * j22 + c23 * j32
+        u23 = c02 * j03 + c12 * j13 + c22 * j23 + c23 * j33
+        u24 = c22 * j24
+        u25 = c22 * j25
+        u32 = c03 * j02 + c13 * j12 + c23 * j22 + c33 * j32
+        u33 = c03 * j03 + c13 * j13 + c23 * j23 + c33 * j33
+        u34 = c23 * j24
+        u35 = c23 * j25
+        x[45 * ROW + i] = j00 * u00 + j10 * u10
+        x[46 * ROW + i] = j00 * u01 + j10 * u11
+        x[47 * ROW + i] = j01 * u01 + j11 * u11
+        x[48 * ROW + i] = j00 * u02 + j10 * u12 - x3 * (s1 * x23 + x22)
+        x[49 * ROW + i] = j00 * u03 + j10 * u13 - x3 * (s0 * x25 + x24)
+        x[50 * ROW + i] = j01 * u02 + j11 * u12 + x3 * (s0 * x23 - x24)
+        x[51 * ROW + i] = j01 * u03 + j11 * u13 + x3 * (-s1 * x25 + x22)
+        x[52 * ROW + i] = j00 * u04 + j10 * u14
+        x[53 * ROW + i] = j00 * u05 + j10 * u15
+        x[54 * ROW + i] = j01 * u04 + j11 * u14
+        x[55 * ROW + i] = j01 * u05 + j11 * u15
+        x[56 * ROW + i] = (
+            j02 * u02
+            + j12 * u12
+            + j22 * u22
+            + j32 * u32
+            + s1 * x33 * (rx * x29 + x37 - 3.0 * x8)
+            + s2 * x38 * (ey * x29 - 3.0 * x13 * x16 + x13 * x39 - 4.0 * x15 + 2.0 * x16 - x40 * x41)
+            - x23 * x26
+            - x34 * (ry * x29 - 3.0 * x10 + x27 - x32)
+        )
+        x[57 * ROW + i] = (
+            -dx * dy * s3 * x33
+            + j02 * u03
+            + j12 * u13
+            + j22 * u23
+            + j32 * u33
+            + s1 * x33 * (-x27 + x32 + x45)
+            + s2 * x38 * (dx * ex + 3.0 * dx * x19 + dx * x20 - dy * ey - dy * x40 - ex * x43 + ey * x31)
+            - x34 * (x37 - x44 + x8)
+        )
+        x[58 * ROW + i] = (
+            j03 * u03
+            + j13 * u13
+            + j23 * u23
+            + j33 * u33
+            + s1 * x33 * (ry * x46 - 3.0 * x35 + x44 - x8)
+            + s2 * x38 * (2.0 * dy * x20 - ex * x46 + 3.0 * x12 * x15 + x12 * x39 - 2.0 * x15 + 4.0 * x16)
+            - x25 * x26
+            - x34 * (-rx * x46 + 3.0 * x27 + x45)
+        )
+        x[59 * ROW + i] = j02 * u04 + j12 * u14 + j22 * u24 + j32 * u34 + x47
+        x[60 * ROW + i] = j02 * u05 + j12 * u15 + j22 * u25 + j32 * u35 - x48 * (2.0 * x13 - 1.0)
+        x[61 * ROW + i] = j03 * u04 + j13 * u14 + j23 * u24 + j33 * u34 + x48 * (2.0 * x12 - 1.0)
+        x[62 * ROW + i] = j03 * u05 + j13 * u15 + j23 * u25 + j33 * u35 - x47
+        x[63 * ROW + i] = j24 * u24
+        x[64 * ROW + i] = j24 * u25
+        x[65 * ROW + i] = j25 * u25

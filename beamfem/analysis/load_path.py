@@ -1,5 +1,6 @@
 """Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +16,8 @@ from beamfem.errors import BeamfemError
 from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
+_PACE = 50  # steps, from which it is foretold how many more are needed
+_MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,7 @@ class PathFollower:
         self.newton = newton
         self.start = p, load_factor
         self.size = _FIRST_STEP
+        self.passed: deque[float] = deque(maxlen=_PACE)
 
     @cached_property
     def line(self) -> Continuation:
@@ -64,7 +68,7 @@ class PathFollower:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
         end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
-        along the path is accepted.
+        along the path is accepted, or where load factor 1 is out of reach at the pace of the last steps.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -73,6 +77,7 @@ class PathFollower:
         except (LinAlgError, ValueError):
             raise PathLostError("the tangent is singular there", 0, 0) from None
         while point.load_factor < beyond:
+            self._require_pace(point.load_factor)
             step, iterations, cuts = _step(line, point, self.size)
             self.size = step.next_size
             if step.limits:
@@ -81,6 +86,20 @@ class PathFollower:
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
+
+
+    def _require_pace(self, load_factor: float) -> None:
+        """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
+        self.passed.append(load_factor)
+        if len(self.passed) == _PACE:
+            gained = (load_factor - self.passed[0]) / (_PACE - 1)
+            if 1.0 - load_factor > _MOST_STEPS * gained:
+                raise PathLostError(
+                    f"its last {_PACE} steps gained {gained:.1e} of the load factor each, at which pace load factor 1 "
+                    "is out of reach: the loads are far too large for what bears them",
+                    0,
+                    0,
+                )
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

@@ -1,7 +1,8 @@
 """Where a structure comes to rest that snaps at a limit point under a load that stays.
 
 Slow loading and damping: the motion is the overdamped one, M q' = -r(q), in implicit Euler steps that grow as it comes
-to rest. It loses potential energy in every step, so it ends in a stable equilibrium.
+to rest. Loads that keep their direction lose potential energy in every step, so it ends in a stable equilibrium, as
+long as a step does not leave the valley it is in: M / dt + K must be positive on the way.
 """
 
 import numpy as np
@@ -52,14 +53,20 @@ def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Ne
 
 
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
-    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations."""
+    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations.
+
+    It fails as well where the step is so long that more than one state is at its end: some lie in other valleys.
+    """
     free, moved, rest = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)
     for iteration in range(1, _ITERATIONS + 1):
         unbalanced, tangent = linearise(system, moved, rest, rest, load_factor, (1.0, 0.0, 1.0 / time))
         right = -unbalanced[free] - mass @ (moved - p)[free] / time
         try:
-            change = tangent.solve(right, system.turned)
+            factors = tangent.factorised(system.turned)
+            if system.symmetric and factors.negative_pivots > 0:
+                return None, iteration
+            change = factors.solve(right)
         except (LinAlgError, ValueError):
             return None, iteration
         moved[free] += change

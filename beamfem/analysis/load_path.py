@@ -16,7 +16,7 @@ from beamfem.errors import BeamfemError
 from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
-_PACE = 50  # steps, from which it is foretold how many more are needed
+_PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
@@ -57,6 +57,7 @@ class PathFollower:
         self.newton = newton
         self.start = p, load_factor
         self.size = _FIRST_STEP
+        self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
         self.passed: deque[float] = deque(maxlen=_PACE)
 
     @cached_property
@@ -79,6 +80,7 @@ class PathFollower:
         while point.load_factor < beyond:
             self._require_pace(point.load_factor)
             step, iterations, cuts = _step(line, point, self.size)
+            self.passed.extend((cuts + 1) * [point.load_factor])
             self.size = step.next_size
             if step.limits:
                 raise TurnsBackError(step.segment.critical(step.limits[0]), step.segment.after.y, iterations, cuts)
@@ -90,9 +92,8 @@ class PathFollower:
 
     def _require_pace(self, load_factor: float) -> None:
         """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
-        self.passed.append(load_factor)
         if len(self.passed) == _PACE:
-            gained = (load_factor - self.passed[0]) / (_PACE - 1)
+            gained = (load_factor - self.passed[0]) / _PACE
             if 1.0 - load_factor > _MOST_STEPS * gained:
                 raise PathLostError(
                     f"its last {_PACE} steps gained {gained:.1e} of the load factor each, at which pace load factor 1 "
@@ -121,4 +122,4 @@ def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int,
         cuts += 1
         size *= 0.5
         if too_small(line, point, size):
-            raise PathLostError(taken.reason, iterations, cuts)
+            raise PathLostError(f"{taken.reason}, with steps along it cut to round-off", iterations, cuts)

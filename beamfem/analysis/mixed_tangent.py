@@ -10,7 +10,8 @@ is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, ldl
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dsytrf, dsytrf_lwork
 from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
@@ -44,8 +45,7 @@ class MixedFactors:
         """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
         if self.matrix.shape[0] > _COUNTED:
             return self.tangent.plain.factorised(self.turned).negative_pivots
-        _, blocks, _ = ldl(self.matrix.toarray())
-        return negative_eigenvalues(blocks) - (self.matrix.shape[0] - int(self.kept.sum()))
+        return negative_eigenvalues(self.matrix.toarray()) - (self.matrix.shape[0] - int(self.kept.sum()))
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
@@ -139,10 +139,12 @@ class MixedTangent:
         return self.plain.sparse(turned)
 
 
-def negative_eigenvalues(blocks: np.ndarray) -> int:
-    """Return how many eigenvalues of a symmetric matrix (n, n) of blocks of one or two rows are negative."""
-    pivots, beside = np.diagonal(blocks).copy(), np.append(np.diagonal(blocks, 1), 0.0)
-    first = np.flatnonzero(beside)
+def negative_eigenvalues(matrix: np.ndarray) -> int:
+    """Return how many eigenvalues of a symmetric matrix (n, n) are negative (Bunch and Kaufman 1977)."""
+    work, _ = dsytrf_lwork(len(matrix), lower=1)
+    factored, exchanged, _ = dsytrf(matrix, lower=1, lwork=int(work))
+    pivots, beside = np.diagonal(factored).copy(), np.diagonal(factored, -1)
+    first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a block of two are marked
     mean, half = 0.5 * (pivots[first] + pivots[first + 1]), 0.5 * (pivots[first] - pivots[first + 1])
     away = np.hypot(half, beside[first])
     pivots[first], pivots[first + 1] = mean - away, mean + away

@@ -17,6 +17,7 @@ from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
+_FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
@@ -82,9 +83,12 @@ class PathFollower:
             step, iterations, cuts = _step(line, point, self.size)
             self.passed.extend((cuts + 1) * [point.load_factor])
             self.size = step.next_size
-            if step.limits:
-                raise TurnsBackError(step.segment.critical(step.limits[0]), step.segment.after.y, iterations, cuts)
             point = step.segment.after
+            if step.limits:
+                limit = step.segment.critical(step.limits[0])
+                if np.array_equal(limit, point.y):
+                    point = _step(line, point, self.size)[0].segment.after
+                raise TurnsBackError(limit, point.y, iterations, cuts)
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
@@ -93,11 +97,12 @@ class PathFollower:
     def _require_pace(self, load_factor: float) -> None:
         """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
         if len(self.passed) == _PACE:
-            gained = (load_factor - self.passed[0]) / _PACE
-            if 1.0 - load_factor > _MOST_STEPS * gained:
+            half = _PACE // 2
+            before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
+            if gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise PathLostError(
-                    f"its last {_PACE} steps gained {gained:.1e} of the load factor each, at which pace load factor 1 "
-                    "is out of reach: the loads are far too large for what bears them",
+                    f"its last steps gained {gained / half:.1e} of the load factor each, at which pace load factor 1 is "
+                    "out of reach: the loads are far too large for what bears them",
                     0,
                     0,
                 )

@@ -106,15 +106,15 @@ class MixedTangent:
         rest = (turn @ self.rest @ turn.T)[kept][:, kept]
         couples = dia_array((self.weight[None], [0]), shape=(len(self.weight),) * 2) @ self.slopes @ turn.T
         couples = csr_array(couples)[:, kept]
-        matrix = csc_array(block_array([[rest, couples.T], [couples, -self.flexibility]]))
-        scale = np.ones(matrix.shape[0])
+        placed = coo_array(block_array([[rest, couples.T], [couples, -self.flexibility]]))
+        (row, column), sizes = placed.coords, np.abs(placed.data)
+        scale = np.ones(placed.shape[0])
         for _ in range(3):
-            scaled = dia_array((scale[None], [0]), shape=matrix.shape) @ abs(matrix)
-            largest = (scaled @ dia_array((scale[None], [0]), shape=matrix.shape)).max(axis=1).toarray().ravel()
+            largest = np.zeros(len(scale))
+            np.maximum.at(largest, row, scale[row] * sizes * scale[column])
             # powers of two round nothing
             scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
-        diagonal = dia_array((scale[None], [0]), shape=matrix.shape)
-        matrix = csc_array(diagonal @ matrix @ diagonal)
+        matrix = csc_array(coo_array((scale[row] * placed.data * scale[column], (row, column)), shape=placed.shape))
         try:
             return MixedFactors(splu(matrix), scale, matrix, kept, self, turned)
         except RuntimeError as error:

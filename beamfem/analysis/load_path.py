@@ -93,7 +93,6 @@ class PathFollower:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
 
-
     def _require_pace(self, load_factor: float) -> None:
         """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
         if len(self.passed) == _PACE:

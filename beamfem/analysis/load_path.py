@@ -100,7 +100,7 @@ class PathFollower:
             before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
             if gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise PathLostError(
-                    f"its last steps gained {gained / half:.1e} of the load factor each, at which pace load factor 1 is "
+                    f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
                     "out of reach: the loads are far too large for what bears them",
                     0,
                     0,

@@ -13,6 +13,8 @@ from uuid import uuid4
 from beamfem.errors import FileError, InputError, MissingFileError
 from beamfem.validation import shown
 
+_STEM = 40  # characters that a file beside its place takes of its name, as systems allow 255 bytes in all
+
 
 def path_of(path: str | PathLike[str]) -> Path:
     """Return a path. Raises InputError for what is none."""
@@ -29,10 +31,14 @@ def readable(path: str | PathLike[str]) -> Path:
     """Return the path of a file that can be opened. Raises InputError, FileNotFoundError, FileError."""
     source = path_of(path)
     try:
+        if source.is_char_device():
+            raise FileError(f"{source} cannot be read: it is a device, whose bytes may have no end")
         with source.open("rb"):
             return source
     except FileNotFoundError:
         raise MissingFileError(f"there is no file {source}") from None
+    except FileError:
+        raise
     except OSError as error:
         raise FileError(f"{source} cannot be read: {error.strerror or error}") from error
 
@@ -61,7 +67,7 @@ def whole(path: str | PathLike[str]) -> Iterator[Path]:
         if target.exists() and not target.is_file():
             yield target  # a pipe or a device: it cannot be replaced
             return
-        partial = target.with_name(f"{target.stem}.{uuid4().hex[:8]}.part{target.suffix}")
+        partial = target.with_name(f"{target.stem[:_STEM]}.{uuid4().hex[:8]}.part{target.suffix}")
         try:
             yield partial
             _to_disk(partial)

@@ -6,9 +6,11 @@ from typing import Any, overload
 
 import numpy as np
 
+from beamfem.fitting import require_crossing
 from beamfem.model.beam import Beam, Point
 from beamfem.postprocess import Components, Fields, SectionForces
-from beamfem.solution import Solution, State, Statistics
+from beamfem.solution import Solution, State
+from beamfem.status import Statistics
 from beamfem.turns import start_rotations
 
 
@@ -75,6 +77,10 @@ class Bifurcation(PathState):
 
     mode: np.ndarray
     tangent: np.ndarray
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_crossing(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,33 +13,17 @@ from beamfem import postprocess
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.energies import Energy, potential
 from beamfem.errors import InputError
+from beamfem.fitting import require_rows, require_state
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.postprocess import Fields, SectionForces
-from beamfem.status import Status
+from beamfem.status import Statistics, Status
 from beamfem.turns import start_rotations, turned_of
-from beamfem.validation import number_below, shown
+from beamfem.validation import number_below, shown, whole
 
 if TYPE_CHECKING:
     from beamfem.energy_drift import EnergyDrift
-
-
-@dataclass(frozen=True)
-class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
-
-    digits: of the forces of the last equilibrium that the balance of loads and reactions makes sure, nan if not known.
-    status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
-    """
-
-    iterations: int
-    steps: int
-    cuts: int
-    ended: str
-    status: Status = Status.COMPLETED
-    warnings: tuple[str, ...] = ()
-    digits: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +39,9 @@ class State:
     at: float
     model: Model
     turned: np.ndarray | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        require_state(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +64,9 @@ class Solution:
     turned: np.ndarray | None = None
     loaded: np.ndarray | None = None
 
+    def __post_init__(self) -> None:
+        require_rows(self)
+
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
         span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
@@ -98,18 +88,21 @@ class Solution:
         """
         if isinstance(row, slice):
             return self._rows(row)
-        if isinstance(row, bool) or not isinstance(row, int | np.integer):
-            raise InputError(f"a row of a solution is a number or a slice such as solution[2:5], got {shown(row)}")
-        if not -len(self) <= row < len(self):
-            raise IndexError(f"the solution has {len(self)} rows, so there is no row {row}")
-        return self._state(int(row))
+        number = whole("a row of a solution, or a slice such as solution[2:5],", row)
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"the solution has {len(self)} rows, so there is no row {number}")
+        return self._state(number)
 
     def _state(self, row: int) -> State:
         turned = start_rotations(self)[row]
         return State(self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model, turned=turned)
 
     def _rows(self, rows: slice) -> "Solution":
-        if len(self.at[rows]) == 0:
+        try:
+            chosen = range(len(self))[rows]
+        except (TypeError, ValueError) as error:
+            raise InputError(f"rows of a solution are chosen by whole numbers, got {shown(rows)}: {error}") from None
+        if not chosen:
             first, last, stride = ("" if value is None else value for value in (rows.start, rows.stop, rows.step))
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
             raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")

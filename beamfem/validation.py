@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from difflib import get_close_matches
 from functools import cache
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -61,22 +62,28 @@ def positive(name: str, value: Any) -> float:
 
 def count(name: str, value: Any) -> int:
     """Return `value` as an integer of at least one, or raise InputError naming it."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise InputError(f"{name} must be a whole number, got {shown(value)}")
-    if value < 1:
-        raise InputError(f"{name} must be at least 1, got {value}")
-    if value > _MOST:
+    number = whole(name, value)
+    if number < 1:
+        raise InputError(f"{name} must be at least 1, got {shown(number)}")
+    if number > _MOST:
         raise InputError(f"{name} must be at most 2^53, about 9e15")
-    return int(value)
+    return number
 
 
 def number_below(name: str, value: Any, size: int, lowest: int = 0) -> int:
     """Return `value` as an integer from `lowest` to size - 1, or raise InputError naming it."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise InputError(f"{name} must be a whole number, got {shown(value)}")
-    if not lowest <= value < size:
+    number = whole(name, value)
+    if not lowest <= number < size:
         raise InputError(f"{name} must be between {lowest} and {size - 1}, got {shown(value)}")
-    return int(value)
+    return number
+
+
+def whole(name: str, value: Any) -> int:
+    """Return an int of what is one whole number, also in an array without dimensions, or raise InputError naming it."""
+    if not isinstance(value, bool | np.bool_):
+        with suppress(TypeError):
+            return index(value)
+    raise InputError(f"{name} must be a whole number, got {shown(value)}")
 
 
 def convert(item: object, check: Callable[[str, Any], Any], *names: str) -> None:

@@ -1,5 +1,7 @@
 """Bad files of meshes, results, drawings and models get an error that names them, on the command line no traceback."""
 
+import time
+
 import h5py
 import pytest
 from bad_inputs import CANTILEVER, require_named
@@ -25,6 +27,10 @@ FILES = {
     "an ASCII mesh": ("x.msh", b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", BAD, "cannot be read"),
     "noise for a grid": ("x.vtu", b"\x00\xff" * 50, BAD, "cannot be read as vtu"),
     "a mesh of an unknown kind": ("x.mesh99", b"", BAD, "mesh files end in"),
+    "a mesh without a cell": ("x.obj", b"", BAD, "no lines"),
+    "an Abaqus file of 1e300": ("x.inp", b"*NODE\n1, 0, 0\n2, 1e300, 0\n*ELEMENT, TYPE=B21\n1, 1, 2\n", BAD, "apart"),
+    "an include without end": ("x.inp", b"*INCLUDE, INPUT=/dev/zero\n", BAD, "it is a device"),
+    "a drawing of its first line": ("x.dxf", b"  0\n", BAD, "DXF"),
     "an empty Abaqus file": ("x.inp", b"", BAD, "no lines"),
     "an element of no node": ("x.inp", f"{NODES}*ELEMENT, TYPE=B21\n1, 1, 9\n".encode(), BAD, "does not give"),
     "an element of no type": ("x.inp", f"{NODES}*ELEMENT\n1, 1, 2\n".encode(), BAD, "line 4"),
@@ -133,3 +139,47 @@ def test_a_wrong_command_shows_no_traceback(case):
     assert result.exit_code == 2
     assert isinstance(result.exception, SystemExit)
     assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("reader", [bf.load, bf.read_mesh, bf.read_dxf])
+def test_a_device_is_read_by_nothing(reader):
+    """Its bytes have no end, and would fill the memory."""
+    require_named(lambda: reader("/dev/zero"), FILE, "it is a device")
+    done = CliRunner().invoke(app, ["run", "/dev/zero"])
+    assert (done.exit_code, "this is a device" in done.stderr) == (2, True)
+
+
+def test_a_mesh_whose_lines_name_nodes_that_are_not_there_is_named(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    path = tmp_path / "x.vtk"
+    meshio.Mesh([[0, 0, 0], [1, 0, 0]], [("line", [[0, 7]])]).write(path, binary=False)
+    require_named(lambda: bf.read_mesh(path), BAD, "it is damaged: nodes of its lines must be between -1 and 1, got 7")
+
+
+def test_a_number_of_thousands_of_digits_in_a_model_file_is_named(tmp_path):
+    (tmp_path / "x.toml").write_text(f"[analysis]\nsteps = {'9' * 5000}\n")
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "x.toml")])
+    assert (done.exit_code, "a number cannot be read" in done.stderr) == (2, True)
+
+
+def test_a_model_file_with_a_long_table_is_read_in_time(tmp_path):
+    """Each item was looked for from the first line: a million took minutes, and this a minute."""
+    (tmp_path / "x.toml").write_text("x = [\n" + "1,\n" * 200_000 + "]\n")
+    begun = time.perf_counter()
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "x.toml")])
+    assert (done.exit_code, "unknown key" in done.stderr) == (2, True)
+    assert time.perf_counter() - begun < 15.0
+
+
+def test_suffixes_in_capitals_are_written(tmp_path, saved):
+    (tmp_path / "good.h5").write_bytes(saved)
+    for name in ("a.PVD", "a.VTKHDF"):
+        done = CliRunner().invoke(app, ["export", str(tmp_path / "good.h5"), str(tmp_path / name)])
+        assert done.exit_code == 0, done.stderr
+        assert (tmp_path / name).exists()
+
+
+def test_a_name_as_long_as_systems_allow_is_written(tmp_path):
+    path = tmp_path / ("n" * 252 + ".h5")
+    bf.solve_static(CANTILEVER).save(path)
+    assert len(bf.load(path)) == 2

@@ -38,7 +38,7 @@ CURVES = {
     "polyline of a set": (lambda: bf.Polyline({(0, 0), (1, 0)}), BAD, "points must be a list"),
     "chain of nothing": (lambda: bf.Chain([]), BAD, "at least one curve"),
     "chain of a number": (lambda: bf.Chain([LINE, 1.0]), BAD, r"curves\[1\] of a Chain must be a curve"),
-    "chain of a class": (lambda: bf.Chain(bf.Line), BAD, "list of at least one curve"),
+    "chain of a class": (lambda: bf.Chain(bf.Line), BAD, "curves of a Chain must be a list"),
     "chain with a gap": (lambda: bf.Chain([LINE, bf.Line((2, 0), (3, 0))]), BAD, "must start where"),
     "spline of half a degree": (
         lambda: bf.BSpline(**SPLINE | {"degree": 2.5}),
@@ -65,6 +65,9 @@ CURVES = {
     "parametric to text": (lambda: bf.Parametric(lambda u: (u, u), 0, "1"), BAD, "end of Parametric must be a number"),
     "parametric that raises": (lambda: bf.Parametric(lambda u: 1 / 0, 0, 1), BAD, "cannot be computed: ZeroDivision"),
     "parametric of one number": (lambda: bf.Parametric(lambda u: u, 0, 1), BAD, "two numbers"),
+    "parametric of text": (lambda: bf.Parametric(lambda u: (u, "1"), 0, 1), BAD, "two numbers"),
+    "parametric of truth values": (lambda: bf.Parametric(lambda u: (u, True), 0, 1), BAD, "two numbers"),
+    "parametric of complex numbers": (lambda: bf.Parametric(lambda u: (u, u + 1j), 0, 1), BAD, "two numbers"),
     "parametric of nan": (lambda: bf.Parametric(lambda u: (u, NAN), 0, 1), BAD, "two finite numbers"),
     "parametric that stands still": (lambda: bf.Parametric(lambda u: (0.0, 0.0), 0, 1), BAD, "no length"),
     "parametric of a wrong derivative": (
@@ -118,7 +121,11 @@ SECTIONS = {
     "layer without thickness": (lambda: bf.Layer(STEEL, 0.0), BAD, "thickness of Layer must be greater"),
     "no layers": (lambda: bf.Layered([], 0.1), BAD, "list of Layer"),
     "layers of numbers": (lambda: bf.Layered([0.1, 0.2], 0.1), BAD, "list of Layer"),
-    "one layer for a list": (lambda: bf.Layered(bf.Layer(STEEL, 0.1), 0.1), BAD, "list of Layer"),
+    "one layer for a list": (
+        lambda: bf.Layered(bf.Layer(STEEL, 0.1), 0.1),
+        BAD,
+        "layers of a Layered section must be a list",
+    ),
     "layers of width nan": (lambda: bf.Layered([bf.Layer(STEEL, 0.1)], NAN), BAD, "width of Layered must be finite"),
     "axis of text": (
         lambda: bf.Layered([bf.Layer(STEEL, 0.1)], 0.1, "middle"),
@@ -171,10 +178,12 @@ ELEMENTS = {
 }
 
 BEAMS = {
+    "elements as True": (lambda: a_beam(elements=True), BAD, "elements must be a whole number"),
     "zero elements": (lambda: a_beam(elements=0), BAD, "elements must be at least 1"),
     "half an element": (lambda: a_beam(elements=2.5), BAD, "elements must be a whole number"),
     "more elements than floats count": (lambda: a_beam(elements=10**400), BAD, r"elements must be at most 2\^53"),
-    "elements as an array of nothing": (lambda: a_beam(elements=np.array(2)), BAD, "elements must be a whole number"),
+    "elements as a time": (lambda: a_beam(elements=np.timedelta64(3, "s")), BAD, "elements must be a whole number"),
+    "elements as half in an array": (lambda: a_beam(elements=np.array(2.5)), BAD, "elements must be a whole number"),
     "elements as a table": (lambda: a_beam(elements=np.ones((2, 2))), BAD, "elements must be a whole number"),
     "elements that do not rise": (lambda: a_beam(elements=[0, 0.5, 0.5, 1]), BAD, "rise from 0 to 1"),
     "elements of text": (lambda: a_beam(elements=["0", 1]), BAD, r"elements\[0\] must be a number"),
@@ -200,6 +209,7 @@ BEAMS = {
     "graded by zero": (lambda: bf.graded(3, 0.0), BAD, "ratio must be greater than zero"),
     "graded by text": (lambda: bf.graded(3, "2"), BAD, "ratio must be a number"),
     "graded by 1e-300": (lambda: bf.graded(3, 1e-300), BAD, "leaves elements without length"),
+    "a billion graded elements": (lambda: bf.graded(10**10, 2.0), BAD, "this computer has"),
     "no graded elements": (lambda: bf.graded(0, 2.0), BAD, "elements must be at least 1"),
     "a point beyond the end": (lambda: a_beam().at(1.5), BAD, "between 0 and 1, got 1.5"),
     "a point before the start": (lambda: bf.Point(a_beam(), -1.0), BAD, "between 0 and 1, got -1"),
@@ -243,6 +253,11 @@ MAGNITUDES = {
         BAD,
         "moment of order 4",
     ),
+    "a flat body of a length of 1e-35": (
+        lambda: a_beam(curve=bf.Line((0, 0), (1e-35, 0)), section=bf.Rectangle(1.0, 1.0), element=bf.ANCF()),
+        BAD,
+        "moment of order 4",
+    ),
     "elements of 1e-60 of the length": (lambda: a_beam(elements=[0.0, 1e-60, 1.0]), BAD, r"E I / h\^3"),
 }
 
@@ -262,3 +277,10 @@ def test_numbers_of_other_types_are_stored_as_floats(unit):
     material = bf.Material(unit(200), 0.3, unit(1))
     assert isinstance(material.youngs_modulus, float)
     assert hash(bf.Material(np.array(200.0), 0.3, 1.0)) == hash(bf.Material(200.0, 0.3, 1.0))
+
+
+def test_lists_may_be_generators_and_counts_arrays_without_dimensions():
+    assert a_beam(elements=(share / 2 for share in range(3))).elements == (0.0, 0.5, 1.0)
+    assert a_beam(elements=np.array(3)).elements == 3
+    assert len(bf.Chain(bf.Line((x, 0), (x + 1, 0)) for x in range(2)).curves) == 2
+    assert bf.Layered((bf.Layer(STEEL, 0.1) for _ in range(2)), 0.1).height == 0.2

@@ -115,7 +115,14 @@ MESHES = {
     "nodes of nan": (lambda: bf.LineMesh([[0, 0], [NAN, 0]], [[0, 1, -1]], {}, {}), BAD, "finite numbers"),
     "ragged nodes": (lambda: bf.LineMesh([[0, 0], [1]], [[0, 1, -1]], {}, {}), BAD, "nodes of LineMesh"),
     "cells of two": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1]], {}, {}), BAD, "cells of LineMesh must be"),
-    "cells of no node": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 2, -1]], {}, {}), BAD, "between -1 and 1, got 2"),
+    "cells of no node": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 2, -1]], {}, {}), BAD, "between 0 and 1, got 2"),
+    "cells of node -1": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[-1, 0, -1]], {}, {}), BAD, "0 and 1, got -1"),
+    "set of a number": (
+        lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {3: [0]}, {}),
+        BAD,
+        "a text, got 3",
+    ),
+    "set of rows": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {"a": [[0]]}, {}), BAD, "a list of whole"),
     "cells of halves": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 0.5, -1]], {}, {}), BAD, "whole numbers"),
     "sets as a list": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], [], {}), BAD, "member_sets .* mapping"),
     "set of no cell": (lambda: bf.LineMesh([[0, 0], [1, 0]], [[0, 1, -1]], {"a": [3]}, {}), BAD, "between 0 and 0"),
@@ -149,3 +156,8 @@ def test_bad_models_are_named(case):
 def test_a_model_takes_any_list_of_its_parts():
     for beams in ([BEAM], (BEAM,), np.array([BEAM], dtype=object), iter([BEAM])):
         assert bf.Model(beams, CANTILEVER.supports).beams == (BEAM,)
+
+
+def test_the_sets_of_a_mesh_may_be_lists():
+    (point,) = mesh().frame(1, *PARTS).points("top")
+    assert point.reference.tolist() == [1.0, 0.0]

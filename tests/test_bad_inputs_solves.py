@@ -9,6 +9,23 @@ import beamfem as bf
 BAD = bf.InputError
 FREE = bf.Model([BEAM])
 
+
+def double(x):
+    return 2.0 * x
+
+
+def leaning():
+    """Nine unknown coordinates, two of which an inclined roller lets move together only."""
+    beam = a_beam(elements=1)
+    return bf.Model([beam], [bf.Roller(beam.end, (1, 1))])
+
+
+def feather():
+    """A cantilever that its load would move by 1e165 of its length."""
+    beam = a_beam(material=bf.Material(1e-6, 0.3, 1.0))
+    return bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 1e150))])
+
+
 SOLVES = {
     "statics of a beam": (lambda: bf.solve_static(BEAM), BAD, "a Model is asked for"),
     "statics of a class": (lambda: bf.solve_static(bf.Model), BAD, "a Model is asked for"),
@@ -23,7 +40,7 @@ SOLVES = {
     "no iterations": (lambda: bf.Newton(iterations=0), BAD, "iterations of Newton must be at least 1"),
     "half an iteration": (lambda: bf.Newton(iterations=2.5), BAD, "iterations of Newton must be a whole"),
     "stresses of words": (lambda: bf.Newton(independent_stresses="no"), BAD, "independent_stresses"),
-    "rho beyond one": (lambda: bf.GeneralizedAlpha(1.1), BAD, "rho_inf"),
+    "rho beyond one": (lambda: bf.GeneralizedAlpha(1.1), BAD, "lies between 0 and 1"),
     "rho as text": (lambda: bf.GeneralizedAlpha("0.9"), BAD, "rho_inf of GeneralizedAlpha must be a number"),
     "velocity of text": (lambda: bf.RigidVelocity("ab"), BAD, "vector of RigidVelocity"),
     "spin of nan": (lambda: bf.RigidVelocity(angular=NAN), BAD, "angular of RigidVelocity"),
@@ -32,13 +49,14 @@ SOLVES = {
     "zero step": (lambda: bf.simulate(FREE, 1.0, 0.0), BAD, "step must be greater"),
     "step beyond duration": (lambda: bf.simulate(FREE, 1.0, 2.0), BAD, "must not exceed"),
     "step of 1e-300": (lambda: bf.simulate(FREE, 1.0, 1e-300), BAD, "this computer has"),
-    "save every half step": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=0.5), BAD, "save_every"),
+    "save every half step": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=0.5), BAD, "save_every must be a whole"),
     "save beyond floats": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=10**400), BAD, "save_every must be at most"),
     "integrator by name": (lambda: bf.simulate(FREE, 1.0, 0.1, integrator="newmark"), BAD, "GeneralizedAlpha"),
     "integrator as a class": (lambda: bf.simulate(FREE, 1.0, 0.1, bf.GeneralizedAlpha), BAD, "GeneralizedAlpha"),
+    "spin of 1e300": (lambda: bf.RigidVelocity(angular=1e300), BAD, "cannot square"),
     "start from text": (lambda: bf.simulate(FREE, 1.0, 0.1, start="a"), BAD, "start must be a state"),
-    "velocity of numbers": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=(1, 0)), BAD, "velocity"),
-    "velocity of nothing": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=lambda x: None), BAD, "velocity"),
+    "velocity of numbers": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=(1, 0)), BAD, "velocity must be a Rigid"),
+    "velocity of nothing": (lambda: bf.simulate(FREE, 1.0, 0.1, velocity=lambda x: None), BAD, "must be two numbers"),
     "path of a class": (lambda: bf.trace_equilibrium(bf.Model), BAD, "a Model is asked for"),
     "path until text": (lambda: bf.trace_equilibrium(CANTILEVER, "1"), BAD, "until must be a number"),
     "path until nothing": (lambda: bf.trace_equilibrium(CANTILEVER, lambda: True), BAD, "until .* state of the path"),
@@ -49,6 +67,8 @@ SOLVES = {
     "path of no step": (lambda: bf.trace_equilibrium(CANTILEVER, step=0.0), BAD, "step must be greater"),
     "path of steps of round-off": (lambda: bf.trace_equilibrium(CANTILEVER, step=1e-300), BAD, "round-off only"),
     "path of no points": (lambda: bf.trace_equilibrium(CANTILEVER, points=0), BAD, "points must be at least 1"),
+    "path of a feather": (lambda: bf.trace_equilibrium(feather()), bf.ConvergenceError, "loads closer to its stiff"),
+    "buckling of a feather": (lambda: bf.solve_buckling(feather()), bf.ConvergenceError, "loads closer to its stiff"),
     "path from a point": (lambda: bf.trace_equilibrium(CANTILEVER, start=END), BAD, "start must be a bifurcation"),
     "no modes": (lambda: bf.solve_modes(CANTILEVER, 0), BAD, "count must be at least 1"),
     "too many modes": (lambda: bf.solve_modes(CANTILEVER, 10**6), BAD, "only .* unknown coordinates"),
@@ -57,9 +77,24 @@ SOLVES = {
     "buckling about a number": (lambda: bf.solve_buckling(CANTILEVER, 1, 1.0), BAD, "about must be a state"),
     "a study of no parameter": (lambda: bf.converge(lambda n: n, refine="m", n=[1, 2]), BAD, "refine names"),
     "a study of a list": (lambda: bf.converge(lambda n: n, refine=["n"], n=[1, 2]), BAD, "refine names"),
-    "a study of a quantity as a number": (lambda: bf.converge(lambda n: n, 3, refine="n", n=[1, 2]), BAD, "quantity"),
-    "a study until zero": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], until=0.0), BAD, "until must be"),
-    "a study of nan": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], reference=NAN), BAD, "reference"),
+    "a study of a number": (lambda: bf.converge(lambda n: n, 3, refine="n", n=[1, 2]), BAD, "must be a text"),
+    "a study until zero": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], until=0.0), BAD, "greater than zero"),
+    "a study of nan": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], reference=NAN), BAD, "must be finite"),
+    "a study of a number's quantity": (lambda: bf.converge(double, "tip", refine="x", x=[1, 2]), BAD, "leave quantity"),
+    "a sweep of a number": (lambda: bf.sweep(3, x=[1]), BAD, "the first argument must be a function"),
+    "a column of unequal arrays": (lambda: bf.sweep(np.ones, shape=[1, 2])["value"], BAD, "have different shapes"),
+    "stability of a motion": (lambda: bf.simulate(FREE, 0.1, 0.1).stable, BAD, "this one is a motion"),
+    "as many modes as unknowns on an inclined roller": (lambda: bf.solve_modes(leaning(), 9), BAD, "only 8 modes"),
+    "stale results by words": (lambda: bf.sweep(abs, keep_stale="no", x=[1]), BAD, "keep_stale must be True or False"),
+    "stale results by number": (lambda: bf.sweep(abs, keep_stale=0, x=[1]), BAD, "keep_stale must be True or False"),
+    "a column of two names": (lambda: bf.sweep(double, x=[1, 2])[["x"]], BAD, r"no \['x'\]; known are x, value"),
+    "a misspelt column": (lambda: bf.sweep(double, x=[1, 2])["valeu"], BAD, "did you mean value"),
+    "steps as True": (lambda: bf.solve_static(CANTILEVER, steps=True), BAD, "steps must be a whole number"),
+    "count of modes as True": (lambda: bf.solve_modes(CANTILEVER, True), BAD, "count must be a whole number"),
+    "count of loads as True": (lambda: bf.solve_buckling(CANTILEVER, True), BAD, "count must be a whole number"),
+    "points as True": (lambda: bf.trace_equilibrium(CANTILEVER, points=True), BAD, "points must be a whole number"),
+    "save every True": (lambda: bf.simulate(FREE, 1.0, 0.1, save_every=True), BAD, "save_every must be a whole"),
+    "iterations as True": (lambda: bf.Newton(iterations=True), BAD, "iterations of Newton must be a whole"),
     "a study of equal counts": (lambda: bf.converge(lambda n: n, refine="n", n=[2, 2]), BAD, "each once"),
 }
 
@@ -74,6 +109,8 @@ RESULTS = {
     "spline of a polynomial": (lambda s, out: s.spline(BEAM), BAD, "no cubic spline"),
     "row as True": (lambda s, out: s[True], BAD, "a row of a solution"),
     "row as text": (lambda s, out: s["last"], BAD, "a row of a solution"),
+    "every 0th row": (lambda s, out: s[::0], BAD, "rows of a solution are chosen by whole numbers"),
+    "rows from a half": (lambda s, out: s[0.5:], BAD, "rows of a solution are chosen by whole numbers"),
     "no rows": (lambda s, out: s[5:4], BAD, "holds no row"),
     "time of statics": (lambda s, out: s.time, BAD, "use load_factor"),
     "a misspelt colour": (lambda s, out: s.plot(colour="momnt"), BAD, "did you mean moment"),
@@ -107,12 +144,14 @@ RESULTS = {
     "ParaView of another kind": (lambda s, out: s.to_vtk(out / "x.vtu"), BAD, "would be right"),
     "saved at a number": (lambda s, out: s.save(5), BAD, "a path is a text"),
     "saved at a zero byte": (lambda s, out: s.save("a\0b.h5"), BAD, "a path is a text"),
-    "saved in place of a folder": (lambda s, out: s.save(out), bf.FileError, "folder"),
+    "saved in place of a folder": (lambda s, out: s.save(out), bf.FileError, "is a folder; give the name"),
     "saved below a file": (lambda s, out: s.save(a_file(out) / "x.h5"), bf.FileError, "cannot be written"),
     "ParaView below a file": (lambda s, out: s.to_vtk(a_file(out) / "x.pvd"), bf.FileError, "cannot be made"),
     "mode beyond": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(1), BAD, "mode must be between 0 and 0"),
     "mode as True": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(True), BAD, "mode must be a whole"),
     "mode of no size": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 0.0), BAD, "amplitude must be"),
+    "mode of 1e300 m": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(0, 1e300), BAD, "cannot square"),
+    "mode of 1e15 frames": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=10**15), BAD, "computer has"),
     "mode of one frame": (lambda s, out: bf.solve_modes(CANTILEVER, 1).solution(frames=1), BAD, "at least 2"),
 }
 

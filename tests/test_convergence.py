@@ -234,7 +234,7 @@ def test_bad_input(changes, message):
 
 
 def test_elements_converge_with_their_order():
-    """Cantilever, P L^2 / EI = 5: the tip converges with order 2 k; extrapolation beats the finest value tenfold."""
+    """Cantilever, P L^2 / EI = 5: the tip converges with order 2 k; extrapolation beats the finest value twentyfold."""
 
     def tip(element, elements):
         material = bf.Material(2e11, 0.3, 7800.0)
@@ -243,7 +243,8 @@ def test_elements_converge_with_their_order():
         return bf.solve_static(model).displacement(beam.end)[-1, 1]
 
     exact = 0.72054526137677  # Reissner beam, Gauss collocation of degree 30 and 44, 12 digits
-    study = bf.converge(tip, refine="elements", element=[bf.CRBF(1), bf.CRBF(2)], elements=[8, 16, 32])
-    assert [curve.fit.order for curve in study.curves] == [pytest.approx(2, abs=0.1), pytest.approx(4, abs=0.2)]
+    study = bf.converge(tip, refine="elements", element=[bf.CRBF(1), bf.CRBF(2)], elements=[16, 32, 64])
+    # a fitted order nears that of the element with the square of the size: 0.02 short at these, 0.07 at twice the size
+    assert [curve.fit.order for curve in study.curves] == pytest.approx([2, 4], abs=0.06)
     for curve in study.curves:
-        assert abs(curve.limit - exact) < 0.1 * abs(curve.value[-1] - exact)
+        assert abs(curve.limit - exact) < 0.05 * abs(curve.value[-1] - exact)

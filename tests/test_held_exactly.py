@@ -62,6 +62,14 @@ def test_an_inclined_roller_beside_a_prescribed_displacement_is_refused(held):
         bf.solve_static(model)
 
 
+def test_two_inclined_rollers_at_one_point_are_refused():
+    beam = line()
+    rollers = [bf.Roller(beam.end, (1.0, 1.0)), bf.Roller(beam.end, (1.0, -1.0))]
+    model = bf.Model([beam], [bf.Clamp(beam.start), *rollers])
+    with pytest.raises(bf.InputError, match="two inclined Rollers stand at the same point; a Pin holds both"):
+        bf.solve_static(model)
+
+
 @pytest.mark.parametrize("moving", ["v", "a"])
 def test_vibration_about_a_state_with_a_velocity_or_only_an_acceleration_is_refused(moving):
     beam = line()

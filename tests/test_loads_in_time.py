@@ -133,3 +133,15 @@ def test_a_failed_step_is_undone_whatever_is_kept(save_every):
     assert kept.time == pytest.approx(good.time)
     assert np.array_equal(kept.p, good.p)
     assert np.array_equal(kept.a, good.a)
+
+
+@pytest.mark.parametrize("unit", [1e-5, 1e5])
+def test_a_pulse_gives_its_impulse_in_any_unit_of_time(unit):
+    """Lengths in m, times in `unit` s: what is asked beside a kink is asked at a share of the step."""
+    stiff = bf.Material(2e11 * unit**2, 0.3, 7800.0)
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), stiff)
+    begin, end = 0.0033 / unit, 0.0043 / unit
+    pulse = bf.Piecewise(lambda t: float(begin < t < end), (begin, end))
+    force = bf.PointForce(one.end, (100.0 * unit**2, 0.0), amplitude=pulse)
+    solution = bf.simulate(bf.Model([one], loads=[force]), 0.02 / unit, 2e-3 / unit)
+    assert solution.linear_momentum()[-1, 0] == pytest.approx(100.0 * 1e-3 * unit, rel=1e-9)

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.analysis.eigenpairs import general_pairs, nothing_known
+from beamfem.analysis.eigenpairs import first_that_works, general_pairs, nothing_known
 from beamfem.analysis.equations import INERTIA, STATICS, linearise
 from beamfem.analysis.modes import _rates
 from beamfem.analysis.pencil import UNTURNED, Pencil
-from beamfem.model.system import System
+from beamfem.model.system import System, system_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 # 9.timoshenko.clamped-free.L/h=10.ks=5/6 [Hz]
@@ -167,16 +168,37 @@ def test_a_compressed_column_diverges_beyond_its_critical_load():
     assert modes.growth[1] == 0.0
 
 
+class Dense:
+    def __init__(self, matrix):
+        self.matrix = matrix
+
+    def solve(self, right):
+        return np.linalg.solve(self.matrix, right)
+
+
+def test_known_pairs_of_an_unsymmetric_matrix_are_left_out_and_leave_nothing_in_the_others(rng):
+    """All pairs of a triangular K over a mass of 2, the first of them known: mu = 2 / K_ii."""
+    stiffness = np.triu(rng.uniform(-1.0, 1.0, (6, 6)), 1) + np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    mass = 2.0 * np.eye(6)
+    known = np.array([2.0]), np.eye(6)[:, :1] / np.sqrt(2.0)
+    values, shapes = general_pairs(_csr(mass), _csr(stiffness), Dense(stiffness), 5, known)
+    assert values == pytest.approx(2.0 / np.arange(2.0, 7.0))
+    assert stiffness @ shapes * values == pytest.approx(mass @ shapes)
+
+
+def test_modes_under_a_follower_force_have_a_mass_of_one():
+    beam = thick(bf.CRBF(4), 4)
+    force = bf.PointForce(beam.end, (-0.1 * 2e11 * beam.section.second_moment, 0.0), follower=True)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [force])
+    modes = bf.solve_modes(model, 3, about=bf.solve_static(model))
+    system, rest = system_of(model, static=True), np.zeros(model.size)
+    mass = linearise(system, modes.state.p, rest, rest, 1.0, INERTIA)[1].sparse(UNTURNED)
+    shapes = modes.modes[:, system.free_dofs]
+    assert np.abs(np.conj(shapes) @ (mass @ shapes.T)).diagonal() == pytest.approx(1.0, rel=1e-9)
+
+
 def test_flutter_of_a_double_pendulum_begins_at_zieglers_load():
     """Masses 2 and 1, a follower force: flutter beyond 7/2 - sqrt(2); Ziegler 1952."""
-
-    class Dense:
-        def __init__(self, matrix):
-            self.matrix = matrix
-
-        def solve(self, right):
-            return np.linalg.solve(self.matrix, right)
-
     mass = np.array([[3.0, 1.0], [1.0, 1.0]])
     growths = []
     for load in 3.5 - np.sqrt(2.0) + np.array([-1e-3, 1e-3]):
@@ -253,3 +275,12 @@ def test_bad_input_is_named():
     standing = bf.Model([beam], [bf.Clamp(beam.start)], [bf.Gravity((0, -9.81), scale=False)])
     with pytest.raises(bf.InputError, match="not in equilibrium"):
         bf.solve_modes(standing, 1)
+
+
+def test_an_iteration_that_fails_on_too_many_unknowns_to_find_all_of_them_is_named():
+    def fails(vectors):
+        raise ArpackNoConvergence("no convergence", np.empty(0), np.empty((0, 0)))
+
+    with pytest.raises(bf.ConvergenceError, match="the iteration for 3 eigenvalues of 5000 unknowns did not converge"):
+        first_that_works(lambda: pytest.fail("all pairs of 5000 unknowns"), fails, 5000, 3)
+    assert first_that_works(lambda: "all of them", fails, 4000, 3) == "all of them"

@@ -210,3 +210,29 @@ def test_motions_that_something_drives_have_no_drift():
         motion = bf.simulate(model, 1e-3, 1e-3)
         assert motion.energy_drift is None
         assert "drift" not in repr(motion)
+
+
+def test_a_velocity_field_is_that_of_the_field_where_beams_are_joined():
+    """Three beams share a node: its rates are the mean of what they say, which is one."""
+    ends = [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8)]
+    beams = [straight(bf.CRBF(2), 2, end=end) for end in ends]
+    joints = [bf.Rigid(beams[0].start, other.start) for other in beams[1:]]
+    motion = bf.simulate(bf.Model(beams, joints=joints), 1e-6, 1e-6, velocity=lambda x: (2.0 + x[1], 3.0 * x[0] - 1.0))
+    for one, (x, y) in zip(beams, ends, strict=True):
+        assert motion.velocity(one.start)[0] == pytest.approx([2.0, -1.0], abs=1e-12)
+        assert motion.velocity(one.end)[0] == pytest.approx([2.0 + y, 3.0 * x - 1.0], abs=1e-12)
+
+
+def test_a_start_from_gradients_that_thinned_keeps_the_stretch_of_the_axis():
+    """Poisson contraction shortens r_y; the stretch along the section's normal is r_x itself."""
+    pulled, tied = straight(bf.ANCF(), 2, end=(0.6, 0.8)), straight(bf.ShearRigid(), 2, end=(0.6, 0.8))
+    force = 0.02 * STEEL.youngs_modulus * SQUARE.area
+    load = bf.PointForce(pulled.end, (0.6 * force, 0.8 * force))
+    bent = bf.solve_static(bf.Model([pulled], [bf.Clamp(pulled.start)], [load]))
+    model = bf.Model([tied], [bf.Clamp(tied.start)])
+    started = bf.simulate(model, 1e-7, 1e-7, start=bent[-1])
+    for node in range(3):
+        own, other = (solution.model.meshes[0].coordinates_of(node) for solution in (started, bent))
+        r_x = np.hypot(*(bent.p[-1][other[name]] for name in ("r_x^x", "r_x^y")))
+        assert r_x > 1.01
+        assert started.p[0][own["s"]] == pytest.approx(r_x, rel=1e-9)

@@ -117,3 +117,14 @@ def test_snap_takes_two_words_only():
     _, model = toggle(1.0)
     with pytest.raises(bf.InputError, match='snap must be "error" or "jump"'):
         bf.solve_static(model, snap="yes")
+
+
+def test_a_structure_that_comes_to_rest_nowhere_says_so():
+    """A bar of St. Venant-Kirchhoff material carries at most E A / (3 sqrt 3) and is crushed beyond."""
+    material = bf.Material(2e11, 0.0, 7800.0)
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.ANCF(), bf.Rectangle(0.1, 0.1), material)
+    supports = [bf.Clamp(bar.start), bf.Prescribed(bar.end, uy=0.0, rotation=0.0)]
+    push = bf.PointForce(bar.end, (-1.25 * 2e11 * 0.01 / (3.0 * np.sqrt(3.0)), 0.0))
+    with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it") as caught:
+        bf.solve_static(bf.Model([bar], supports, [push]), snap="jump")
+    assert caught.value.load_factor == pytest.approx(0.8, rel=1e-6)

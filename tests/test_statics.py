@@ -103,6 +103,16 @@ def test_energy_equals_the_work_of_the_load(element):
 
 
 @pytest.mark.parametrize(
+    ("stiffness", "words"), [((0.0, 1e3), "translates along x"), ((1e3, 0.0), "translates along y")]
+)
+def test_a_foundation_that_resists_one_way_holds_nothing_of_the_other(stiffness, words):
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([one], [bf.Foundation(one, stiffness)], [bf.PointForce(one.end, (0.0, 1.0))])
+    with pytest.raises(bf.FreeMotionError, match=words):
+        bf.solve_static(model)
+
+
+@pytest.mark.parametrize(
     ("supports", "words"),
     [
         ((), "translates along"),
@@ -175,3 +185,10 @@ def test_a_prescribed_full_turn_is_not_taken_for_none(make):
     assert solution.reaction(beam.end)[-1, 2] > 0.0
     start = bf.simulate(model, 1e-3, 1e-3, start=solution[-1])
     assert start.rotation(beam.end)[0] == pytest.approx(2 * np.pi, abs=1e-9)
+
+
+@pytest.mark.parametrize("steps", [1, 4, 5])
+def test_the_first_load_step_is_the_share_that_is_asked(steps):
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([one], [bf.Clamp(one.start)], [bf.PointForce(one.end, (0.0, 1.0))])
+    assert bf.solve_static(model, steps).load_factor[1] == pytest.approx(1.0 / steps)  # later ones may be longer

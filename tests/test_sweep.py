@@ -258,7 +258,7 @@ def test_table_csv_and_markdown(tmp_path):
     assert lines[2].startswith(f"2,{1 / 3!r},{2 / 3!r},")
     assert found.to_markdown().splitlines()[0].replace(" ", "") == "|x|y|product|sum|seconds|"
     assert "2 points, 2 computed now, 0 failed" in str(found)
-    with pytest.raises(bf.InputError, match="it has x, y, product"):
+    with pytest.raises(bf.InputError, match="no 'missing'; known are x, y, product"):
         found["missing"]
 
 

@@ -99,7 +99,7 @@ def test_a_changed_constant_of_the_script_is_computed_again(script):
 def test_whatever_the_function_needs_counts(script, changes, files, factor, names):
     computed, value, said = script(*changes, **files)
     assert (computed, value) == (2, pytest.approx(factor))
-    assert f"before {names} changed" in said
+    assert f"2 of 2 points in the store were computed before {names} changed" in said
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import textwrap
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -172,3 +172,41 @@ def test_two_sweeps_write_one_store(tmp_path):
         again = subprocess.run([sys.executable, str(script), str(store), first], capture_output=True, text=True)
         assert again.stdout == "0\n", again.stderr
     assert np.all([line.endswith("}") for line in store.read_text().splitlines()])
+
+
+STORES = {"a number": 3, "bytes": b"x", "nothing": "", "a zero byte": "a\0b"}
+
+
+@pytest.mark.parametrize("case", STORES)
+def test_a_store_that_is_no_path_is_named(case):
+    with pytest.raises(bf.InputError, match="a path is a text"):
+        bf.sweep(square, x=[1], store=STORES[case])
+
+
+def test_sweeps_larger_than_the_memory_are_refused_at_once():
+    with pytest.raises(bf.InputError, match=r"= 1e\+12 points need .* this computer has"):
+        bf.sweep(lambda x, y: x, x=range(10**6), y=range(10**6))
+
+
+def refuses():
+    raise OSError("no cluster")
+
+
+@pytest.mark.parametrize(
+    ("executor", "words"), [(refuses, "it raised OSError: no cluster"), (Executor, "takes no calls")]
+)
+def test_executors_that_cannot_work_are_named(executor, words):
+    with pytest.raises(bf.BeamfemError, match=words):
+        bf.sweep(square, x=[1], executor=executor)
+
+
+def test_keep_stale_is_a_flag():
+    with pytest.raises(bf.InputError, match="keep_stale must be True or False"):
+        bf.sweep(square, x=[1], keep_stale="no")
+
+
+def test_a_sweep_of_many_points_begins_at_once():
+    """Labels were compared each with each: 10,000 points took seconds before the first call, 100,000 minutes."""
+    begun = time.perf_counter()
+    assert bf.sweep(square, x=range(30_000)).computed == 30_000
+    assert time.perf_counter() - begun < 30.0

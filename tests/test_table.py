@@ -6,6 +6,7 @@ from drawn import pendulum
 
 import beamfem as bf
 from beamfem.io.table import arrays
+from beamfem.tabulate import cell
 
 
 def test_a_table_of_a_motion_has_the_values_of_its_points():
@@ -44,3 +45,11 @@ def test_section_forces_of_a_table_are_statics():
     for name, expected in (("normal", 3.0 + 0.0 * s), ("shear", -2.0 + 0.0 * s), ("moment", -2.0 * (1.0 - s))):
         np.testing.assert_allclose(data[name][1][-1], expected, atol=1e-5)
     assert coordinates["load_factor"][1][-1] == pytest.approx(1.0)
+
+
+def test_what_is_missing_is_an_empty_cell():
+    assert [cell(value) for value in (None, float("nan"), np.float64("nan"), 0.0, 1.25, 3, "a")] == [
+        *[""] * 3,
+        *("0", "1.25", "3", "a"),
+    ]
+    assert cell(np.ones((2, 3))) == "array (2, 3)"

@@ -71,7 +71,8 @@ def test_a_file_a_step_at_the_times_of_the_solution(solution, written):
         times, files = collection(path)
         np.testing.assert_array_equal(times, solution.at)
         assert all(file.is_file() for file in files)
-    assert not list(written.parent.glob("*.tmp"))
+    names = ("swing", "swing.pvd", "swing_centreline", "swing_centreline.pvd")
+    assert sorted(file.name for file in written.parent.iterdir()) == sorted(names)
 
 
 def test_points_are_those_of_the_field(solution, written):
@@ -292,7 +293,8 @@ def test_vtkhdf_holds_what_the_vtu_files_hold(make, tmp_path, monkeypatch):
             at = "load_factor" if solution.static else "time"
             assert found.GetFieldData().GetArray(at).GetNumberOfTuples() == 1
             assert found.GetFieldData().GetArray(at).GetValue(0) == solution.at[row]
-    assert not list(tmp_path.glob("*.tmp"))
+    names = (f"{name}{suffix}" for name in ("a", "a_centreline") for suffix in ("", ".pvd"))
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted([*names, "b.vtkhdf", "b_centreline.vtkhdf"])
 
 
 def test_vtkhdf_without_h5py_names_the_extra(tmp_path, monkeypatch):

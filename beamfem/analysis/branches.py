@@ -20,7 +20,7 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
     start = np.append(bifurcation.p, bifurcation.at)
     try:
         way = direction * _other_way(line, start, bifurcation)
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         return "the tangent is singular"
     distance, reason = _FIRST_MODE, ""
     for _ in range(_TRIES):
@@ -32,7 +32,7 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
             if line.length(moved) < 2.0 * distance:
                 try:
                     return line.linearised(corrected.y, moved)
-                except (LinAlgError, ValueError):
+                except LinAlgError:
                     reason = "the tangent is singular"
             else:
                 reason = "the equilibrium beside it is far away"

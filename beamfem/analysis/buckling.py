@@ -21,9 +21,10 @@ from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
-from beamfem.solution import Solution, State, Statistics
+from beamfem.solution import Solution, State
+from beamfem.status import Statistics
 from beamfem.validation import count as whole_number
-from beamfem.validation import number_below, positive
+from beamfem.validation import number_below, positive, squared
 
 _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
@@ -71,7 +72,7 @@ class Buckling:
         mode = number_below("mode", mode, len(self))
         if amplitude is None:
             amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
-        p = self.states[mode] + np.outer([0.0, positive("amplitude", amplitude)], self.modes[mode])
+        p = self.states[mode] + np.outer([0.0, squared(positive)("amplitude", amplitude)], self.modes[mode])
         at = np.full(2, self.load_factors[mode])
         statistics = Statistics(0, 1, 0, "a critical state and its mode")
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)

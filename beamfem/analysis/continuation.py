@@ -124,7 +124,7 @@ class Continuation:
         for iteration in range(1, self.newton.iterations + 1):
             try:
                 balance, along, factors = self._solve(y, stresses)
-            except (LinAlgError, ValueError):
+            except LinAlgError:
                 return Corrected(y, iteration, Ended.SINGULAR)
             counts.append(factors.negative_pivots)
             reach = self.dot(normal, along)

@@ -57,7 +57,7 @@ class Segment:
             raise SegmentLostError(corrected.ended.value)
         try:
             point = self.line.linearised(corrected.y, self.chord)
-        except (LinAlgError, ValueError) as error:
+        except LinAlgError as error:
             raise SegmentLostError("the tangent is singular") from error
         if normal is None:
             self.found[x] = point

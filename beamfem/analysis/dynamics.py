@@ -18,8 +18,8 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.model.system import System, system_of
 from beamfem.model.turns import turning_pairs
-from beamfem.solution import Solution, State, Statistics
-from beamfem.status import Status
+from beamfem.solution import Solution, State
+from beamfem.status import Statistics, Status
 from beamfem.turns import first_turns
 from beamfem.validation import count, positive, shown
 

@@ -5,11 +5,11 @@ from contextlib import contextmanager
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, eig, eigh, solve_triangular
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 
-from beamfem.errors import BeamfemError, ConvergenceError
+from beamfem.analysis.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
+from beamfem.errors import ConvergenceError
 
 _DENSE = 200  # unknowns up to which all eigenpairs are as quick as a few
 _LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are found where the iteration for a few fails
@@ -28,12 +28,10 @@ Pairs = tuple[np.ndarray, np.ndarray]
 
 @contextmanager
 def digits_for(what: str) -> Iterator[None]:
-    """Raise ConvergenceError where LAPACK or ARPACK give up, or refuse what is not finite; what: is looked for."""
+    """Raise ConvergenceError where LAPACK or ARPACK give up, or numbers leave double precision; what: is looked for."""
     try:
         yield
-    except BeamfemError:
-        raise
-    except (LinAlgError, ArpackError, ValueError, ZeroDivisionError, OverflowError) as error:
+    except (LinAlgError, ArpackError, ZeroDivisionError, OverflowError) as error:
         raise ConvergenceError(
             f"{what} of this model cannot be found, round-off leaves its tangent no digits: stiffnesses, lengths and "
             f"loads of its parts are too far apart ({error})"

@@ -9,13 +9,14 @@ from beamfem.analysis.transfer import transferred
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import labels
 from beamfem.errors import InputError
+from beamfem.fitting import require_finite
 from beamfem.kernels.block import SHEAR_RIGID, STRETCH
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_position
 from beamfem.model.system import System, coordinate_columns
 from beamfem.postprocess import nodal_vectors
 from beamfem.solution import Solution, State
-from beamfem.validation import called, convert, finite, vector
+from beamfem.validation import called, convert, finite, squared, vector
 
 _NEAR = 0.01  # of an element, between the points of a difference
 _FORWARD = (-25.0, 48.0, -36.0, 16.0, -3.0)  # twelfths
@@ -30,8 +31,8 @@ class RigidVelocity:
     about: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        convert(self, vector, "vector", "about")
-        convert(self, finite, "angular")
+        convert(self, squared(vector), "vector", "about")
+        convert(self, squared(finite), "angular")
 
 
 def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
@@ -40,6 +41,7 @@ def start_state(system: System, start: State | None, name: str = "start") -> np.
         return system.reference.copy()
     if not isinstance(start, State):
         raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
+    require_finite(name, start)
     return transferred(start, system, name)[0]
 
 
@@ -144,6 +146,8 @@ def resting_state(system: System, about: State | Solution | None) -> tuple[np.nd
     if isinstance(about, Solution):
         if not about.static:
             raise InputError("about must be a static equilibrium, this solution is a motion; give one of solve_static")
+        if not len(about):
+            raise InputError("about must be a state, but this solution has no rows")
         about = about[-1]
     p = start_state(system, about, "about")
     if about is None:

@@ -1,12 +1,12 @@
 """Critical load factors as they would be if a loading path went on as it starts."""
 
 import numpy as np
-from scipy.linalg import eig, eigh, qr
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import LinearOperator, eigs
 
 from beamfem.analysis.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
 from beamfem.analysis.equations import STATICS, linearise
+from beamfem.analysis.lapack import eig, eigh, qr
 from beamfem.analysis.mode_stiffness import stiffness_of_modes
 from beamfem.analysis.pencil import UNTURNED, is_symmetric
 from beamfem.analysis.tangent import Factorised, Tangent

@@ -76,7 +76,7 @@ class PathFollower:
         growing[-1] = 1.0
         try:
             line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
         while point.load_factor < beyond:
             self._require_pace(point.load_factor)

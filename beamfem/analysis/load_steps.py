@@ -88,7 +88,7 @@ def _over_a_gap(system: System, done: StaticRecord, target: float, result: Newto
     _, tangent = linearise(system, half_way, rest, rest, 0.5 * (done.reached + target), STATICS, mean)
     try:
         return tangent.factorised(system.turned).negative_pivots != done.negative_pivots[-1]
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         return True
 
 

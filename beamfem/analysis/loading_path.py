@@ -12,7 +12,8 @@ from beamfem.analysis.pencil import Pencil
 from beamfem.analysis.steps import longest_step, too_small
 from beamfem.errors import BeamfemError, ConvergenceError
 from beamfem.model.system import System
-from beamfem.solution import Solution, Statistics
+from beamfem.solution import Solution
+from beamfem.status import Statistics
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02
@@ -112,7 +113,7 @@ class LoadingPath:
             raise PathLostError(corrected.ended.value)
         try:
             return self.line.linearised(corrected.y, like)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             raise PathLostError("the tangent is singular") from None
 
     def softest(self, point: PathPoint, count: int) -> Softest:

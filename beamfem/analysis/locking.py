@@ -79,7 +79,7 @@ def _change(state: "State", span: float | None) -> float:
             return 0.0
         try:
             step[free] = tangent.solve(-excess, system.turned)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             return 0.0
         stresses = predicted_stresses(system, state.p, step, blocks)
     return float(np.linalg.norm(step[nodes], axis=1).max()) / moved

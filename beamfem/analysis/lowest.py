@@ -1,9 +1,9 @@
 """The lowest eigenpairs of K phi = lambda M phi: none is left out, and slender beams keep their digits."""
 
 import numpy as np
-from scipy.linalg import LinAlgError, eigh
 
 from beamfem.analysis.eigenpairs import Pairs, largest_pairs, nothing_known
+from beamfem.analysis.lapack import LinAlgError, eigh
 from beamfem.analysis.mode_stiffness import stiffness_of_modes
 from beamfem.analysis.pencil import Pencil
 from beamfem.errors import ConvergenceError

@@ -10,11 +10,10 @@ is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.linalg.lapack import dsytrf, dsytrf_lwork
 from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
+from beamfem.analysis.lapack import LinAlgError, symmetric_factors
 from beamfem.analysis.tangent import Stresses, Tangent, Turned, turning
 from beamfem.kernels.block import Block
 from beamfem.kernels.form import Form
@@ -141,8 +140,7 @@ class MixedTangent:
 
 def negative_eigenvalues(matrix: np.ndarray) -> int:
     """Return how many eigenvalues of a symmetric matrix (n, n) are negative (Bunch and Kaufman 1977)."""
-    work, _ = dsytrf_lwork(len(matrix), lower=1)
-    factored, exchanged, _ = dsytrf(matrix, lower=1, lwork=int(work))
+    factored, exchanged = symmetric_factors(matrix)
     pivots, beside = np.diagonal(factored).copy(), np.diagonal(factored, -1)
     first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a block of two are marked
     mean, half = 0.5 * (pivots[first] + pivots[first + 1]), 0.5 * (pivots[first] - pivots[first + 1])

@@ -10,15 +10,17 @@ from beamfem.analysis.balance import left_over
 from beamfem.analysis.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.analysis.initial import resting_state
 from beamfem.analysis.lowest import lowest_pairs
+from beamfem.analysis.memory import require_room
 from beamfem.analysis.pencil import UNTURNED, Pencil
 from beamfem.analysis.rigid import unresisted
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.model.system import system_of
-from beamfem.solution import Solution, State, Statistics
+from beamfem.solution import Solution, State
+from beamfem.status import Statistics
 from beamfem.validation import count as whole_number
-from beamfem.validation import number_below, positive
+from beamfem.validation import number_below, positive, squared
 
 _REAL = 1e-8  # imaginary parts of lambda below this share are round-off
 _SPARE = 4  # eigenvalues found beyond those asked for
@@ -70,9 +72,10 @@ class Modes:
         mode = number_below("mode", mode, len(self))
         if whole_number("frames", frames) < 2:
             raise InputError("frames must be at least 2")
+        require_room(frames, self.model.size)
         if amplitude is None:
             amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
-        positive("amplitude", amplitude)
+        amplitude = squared(positive)("amplitude", amplitude)
         shape = amplitude / largest_translation(self.model, self.state.p, self.modes[mode]) * self.modes[mode]
         frequency, growth = self.frequencies[mode], self.growth[mode]
         at = np.linspace(0.0, 1.0 / (frequency or abs(growth) or 1.0), frames)

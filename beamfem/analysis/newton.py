@@ -84,7 +84,7 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
             if iteration == 1 and np.any(held_step):
                 step[free] -= factors.solve(_held_force(system, p, held_step, load_factor)[free])
                 after = None
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if iteration > 2 and keep not in (None, factors.negative_pivots):
             return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)

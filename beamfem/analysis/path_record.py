@@ -9,8 +9,7 @@ from beamfem.model.model import Model
 from beamfem.model.system import system_of
 from beamfem.model.turns import uncounted
 from beamfem.path import Bifurcation, Path, PathState
-from beamfem.solution import Statistics
-from beamfem.status import Status
+from beamfem.status import Statistics, Status
 from beamfem.turns import first_turns
 
 

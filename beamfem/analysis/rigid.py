@@ -1,12 +1,12 @@
 """Rigid motions of a model or its parts: which meet no resistance, sorted, and said in words."""
 
 import numpy as np
-from scipy.linalg import cholesky, null_space, solve_triangular, svd
 
 from beamfem.analysis.body_motions import Conditions, bodies_of, free_motions
 from beamfem.analysis.equations import residual
 from beamfem.analysis.free_motion import describe
 from beamfem.analysis.initial import RigidVelocity, start_velocity
+from beamfem.analysis.lapack import cholesky, null_space, solve_triangular, svd
 from beamfem.analysis.mode_stiffness import stresses_of, weak_stiffness
 from beamfem.analysis.pencil import Pencil
 from beamfem.analysis.round_off import round_off_floor

@@ -112,7 +112,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
             best = Remainder(step.copy(), digits)
             if digits > _PLENTY:
                 break
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         pass
     return best
 
@@ -125,7 +125,7 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     try:
         plain = linearise(system, p, rest, rest, load_factor, STATICS)[1]
         lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.turned)
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         return False
     system.proven.add(_KEEPS if lost <= _LOSES else MIXED)
     return bool(lost > _LOSES)

@@ -6,10 +6,10 @@ long as a step does not leave the valley it is in: M / dt + K must be positive o
 """
 
 import numpy as np
-from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import INERTIA, linearise, residual
 from beamfem.analysis.iteration import Ended, Newton, NewtonResult
+from beamfem.analysis.lapack import LinAlgError
 from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.pencil import UNTURNED
 from beamfem.kernels.reduce import place_nodes
@@ -91,7 +91,7 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
             if system.symmetric and factors.negative_pivots > 0:
                 return None, iteration
             change = factors.solve(right)
-        except (LinAlgError, ValueError):
+        except LinAlgError:
             return None, iteration
         moved[free] += change
         size = float(np.max(np.abs(change) / system.scale[free]))

@@ -8,8 +8,8 @@ from beamfem.analysis.iteration import Ended
 from beamfem.analysis.round_off import FEW_DIGITS
 from beamfem.errors import RoundOffWarning, UnstableWarning
 from beamfem.model.model import Model
-from beamfem.solution import Solution, Statistics
-from beamfem.status import Status
+from beamfem.solution import Solution
+from beamfem.status import Statistics, Status
 
 
 class StaticRecord:

@@ -85,7 +85,7 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
         return Refused("the equilibrium beside the end of the step is too far away", corrected.iterations)
     try:
         new = line.linearised(corrected.y, point.tangent)
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         return Refused("the tangent is singular", corrected.iterations)
     if _crosses_over(line, (point, new), corrected):
         return Refused("another path lies between the start and the end of the step", corrected.iterations)

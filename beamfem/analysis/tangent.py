@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import LinAlgError, solve_banded
 from scipy.sparse import csc_array, csr_array, dia_array, eye_array
 from scipy.sparse.linalg import SuperLU, splu
 
+from beamfem.analysis.lapack import LinAlgError, solve_banded
 from beamfem.kernels.band import ANY_WIDTH, factor, solve
 from beamfem.kernels.turned import hold_normals, turn_back, turn_in
 

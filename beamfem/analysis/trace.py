@@ -134,7 +134,7 @@ def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continua
         raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
     try:
         return begin(system, first.state, 0.0, newton)
-    except (LinAlgError, ValueError):
+    except LinAlgError:
         raise ConvergenceError("there is no path from load factor 0: the tangent is singular") from None
 
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import eigh, svd
 from scipy.sparse import csr_array
 
 from beamfem.analysis.continuation import PathPoint
+from beamfem.analysis.lapack import eigh, svd
 from beamfem.analysis.loading_path import LoadingPath, Softest
 from beamfem.analysis.pencil import Pencil
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem.curves.curve import GAP, Curve, turned
 from beamfem.errors import InputError
-from beamfem.validation import fulfils, shown
+from beamfem.validation import fulfils, items, shown
 
 
 @dataclass(frozen=True)
@@ -22,12 +22,12 @@ class Chain:
     curves: tuple[Curve, ...]
 
     def __post_init__(self) -> None:
-        if not isinstance(self.curves, tuple | list) or not self.curves:
-            raise InputError(f"a Chain needs a list of at least one curve, got {shown(self.curves)}")
+        object.__setattr__(self, "curves", tuple(items("curves of a Chain", self.curves)))
+        if not self.curves:
+            raise InputError("a Chain needs a list of at least one curve, got an empty one")
         for i, curve in enumerate(self.curves):
             if not fulfils(curve, Curve):
                 raise InputError(f"curves[{i}] of a Chain must be a curve such as Line, got {shown(curve)}")
-        object.__setattr__(self, "curves", tuple(self.curves))
         for i, (one, other) in enumerate(zip(self.curves, self.curves[1:], strict=False)):
             end, start = one.position(np.array([one.length]))[0], other.position(np.array([0.0]))[0]
             if np.hypot(*(start - end)) > GAP * self.length:

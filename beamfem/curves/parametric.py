@@ -12,7 +12,7 @@ from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
-from beamfem.validation import called, convert, finite
+from beamfem.validation import called, convert, finite, shown, vector
 
 PlaneFunction = Callable[[Any], Any]
 
@@ -131,7 +131,11 @@ def _plane(
 
     def values(v: np.ndarray) -> np.ndarray:
         u = parameter(v)
-        table = _table(function, u) if at_once else np.array([_point(name, function, float(each)) for each in u])
+        table = (
+            _table(function, u)
+            if at_once
+            else np.array([vector(f"{name}({each:g})", called(name, function, each)) for each in u.tolist()])
+        )
         bad = ~np.isfinite(table).all(axis=1)
         if bad.any():
             at = int(np.argmax(bad))
@@ -150,14 +154,7 @@ def _takes_arrays(function: PlaneFunction, u: np.ndarray) -> bool:
 
 
 def _table(function: PlaneFunction, u: np.ndarray) -> np.ndarray:
-    x, y = called("function", function, u)
-    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), u.shape) for part in (x, y)], axis=1)
-
-
-def _point(name: str, function: PlaneFunction, u: float) -> tuple[float, float]:
-    given = called(name, function, u)
-    try:
-        x, y = (float(part) for part in given)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}({u:g}) must be two numbers (x, y), got {given!r}") from None
-    return x, y
+    x, y = (np.asarray(part) for part in called("function", function, u))
+    if x.dtype.kind not in "iuf" or y.dtype.kind not in "iuf":
+        raise InputError(f"function({shown(u)}) must be two arrays of numbers (x, y), got {shown((x, y))}")
+    return np.stack([np.broadcast_to(part, u.shape) for part in (x, y)], axis=1).astype(float)

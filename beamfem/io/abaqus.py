@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.files import readable
 from beamfem.io.mesh_file import MeshFile
 
 _STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")
@@ -104,7 +105,7 @@ def read_abaqus(path: Path) -> MeshFile:
 
 def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:
     for row in section.rows:
-        point = (*(float(value or 0.0) for value in row[1:4]), 0.0, 0.0)[:3]
+        point = (*(float(value or 0.0) for value in row[1:4]), 0.0, 0.0, 0.0)[:3]
         if nodes.setdefault(int(row[0]), point) != point:
             raise InputError(
                 f"{section.place}: node {row[0]} is given twice at different places; files of several parts "
@@ -176,7 +177,7 @@ def _sections(path: Path, depth: int = 0) -> Iterator[_Section]:
     if depth > 10:
         raise InputError(f"{path}: files include each other without end")
     try:
-        lines = path.read_text(errors="replace").splitlines()
+        lines = readable(path).read_text(errors="replace").splitlines()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error}") from error
     section: _Section | None = None

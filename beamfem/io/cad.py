@@ -35,7 +35,7 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     optional(text)("layer", layer)
     try:
         entities = list(ezdxf.readfile(source).modelspace())
-    except (OSError, UnicodeDecodeError, ezdxf.DXFError) as error:
+    except Exception as error:  # ezdxf raises anything for a damaged file
         raise InputError(f"{source} is not a DXF file that can be read: {error}") from error
     chosen = [entity for entity in entities if layer is None or entity.dxf.layer.lower() == layer.lower()]
     if not chosen:

@@ -17,7 +17,7 @@ from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.io.touching import divided, parts_of, warn_of_gaps
 from beamfem.material import Material
-from beamfem.validation import number_table, shown
+from beamfem.validation import LARGEST, items, number_table, shown, text
 
 # distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
@@ -44,13 +44,16 @@ class LineMesh:
             number_table("cells of LineMesh", self.cells, 3),
         )
         object.__setattr__(self, "nodes", nodes.astype(float))
-        object.__setattr__(self, "cells", _numbers_below("cells of LineMesh", cells, len(nodes), -1))
+        ends = _numbers_below("ends of cells of LineMesh", cells[:, :2], len(nodes), 0)
+        middle = _numbers_below("middles of cells of LineMesh", cells[:, 2:], len(nodes), -1)
+        object.__setattr__(self, "cells", np.hstack([ends, middle]))
         for name, size, lowest in (("member_sets", len(cells), 0), ("point_sets", len(nodes), -1)):
             sets = getattr(self, name)
             if not isinstance(sets, Mapping):
                 raise InputError(f"{name} of LineMesh must be a mapping from names to numbers, got {shown(sets)}")
-            for key, numbers in sets.items():
-                _numbers_below(f"{name}[{key!r}] of LineMesh", np.asarray(numbers), size, lowest)
+            own = {text(f"a name in {name} of LineMesh", key): numbers for key, numbers in sets.items()}
+            checked = {key: _set(f"{name}[{key!r}] of LineMesh", own[key], size, lowest) for key in own}
+            object.__setattr__(self, name, checked)
 
     def frame(
         self,
@@ -108,6 +111,9 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     cells, number = np.concatenate(tables), np.concatenate(numbers)
     if not len(cells):
         raise InputError("there are no lines in it")
+    _numbers_below("it is damaged: nodes of its lines", cells, len(content.points), -1)
+    for name, chosen in content.point_sets.items():
+        _numbers_below(f"it is damaged: nodes of its set {name}", chosen, len(content.points), 0)
     used = np.unique(cells[cells >= 0])
     points = content.points[used]
     place = np.full(len(content.points) + 1, -1)
@@ -151,6 +157,8 @@ def _refuse_other_cells(content: MeshFile) -> None:
 def _check_nodes(points: np.ndarray, size: float) -> None:
     if not np.isfinite(points).all():
         raise InputError("it has a node whose coordinates are not finite")
+    if size > LARGEST:
+        raise InputError(f"its nodes are {size:g} apart, beyond what double precision can square ({LARGEST:.1g})")
     height = np.abs(points[:, 2:]).max(axis=1, initial=0.0)
     if np.any(height > _SAME * size):
         x, y, z = points[int(np.argmax(height))]
@@ -197,6 +205,13 @@ def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, si
         raise InputError(
             f"lines {owner[other]} and {owner[again[0]]} (counted from 0) are the same line from {where}; remove one"
         )
+
+
+def _set(name: str, values: Any, size: int, lowest: int) -> np.ndarray:
+    numbers = np.array(items(name, values))
+    if numbers.ndim != 1:
+        raise InputError(f"{name} must be a list of whole numbers, got {shown(values)}")
+    return _numbers_below(name, numbers, size, lowest)
 
 
 def _numbers_below(name: str, numbers: np.ndarray, size: int, lowest: int) -> np.ndarray:

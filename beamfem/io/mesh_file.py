@@ -45,7 +45,8 @@ def read_through_meshio(path: Path) -> MeshFile:
     cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
     point_sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in mesh.point_sets.items()}
     for name, values in mesh.cell_data.items():
-        cell_sets |= _by_value(name, np.concatenate(values))
+        if values:
+            cell_sets |= _by_value(name, np.concatenate(values))
     for name, values in mesh.point_data.items():
         point_sets |= _by_value(name, np.asarray(values))
     return MeshFile(np.asarray(mesh.points, dtype=float), blocks, cell_sets, point_sets)

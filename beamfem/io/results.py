@@ -14,8 +14,8 @@ from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
 from beamfem.path import Path as EquilibriumPath
-from beamfem.solution import Solution, Statistics
-from beamfem.status import Status
+from beamfem.solution import Solution
+from beamfem.status import Statistics, Status
 
 _FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1
@@ -76,7 +76,16 @@ def load(path: str | PathLike[str]) -> Solution:
             return _read(file)
     except InputError as error:
         raise InputError(f"{source} cannot be loaded: {error}") from error
-    except (OSError, KeyError, IndexError, TypeError, ValueError, RuntimeError, AssertionError) as error:
+    except (
+        OSError,
+        KeyError,
+        IndexError,
+        TypeError,
+        ValueError,
+        RuntimeError,
+        AssertionError,
+        AttributeError,
+    ) as error:
         message = f"{source} cannot be loaded: it is truncated, damaged or still being written ({error})"
         raise InputError(message) from error
 

@@ -32,7 +32,8 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
     .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
     """
     path = path_of(path)
-    if path.suffix not in (".pvd", ".vtkhdf"):
+    suffix = path.suffix.lower()
+    if suffix not in (".pvd", ".vtkhdf"):
         right = path.with_suffix(".pvd") if path.name else path / "result.pvd"
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
     if len(solution) == 0:
@@ -43,7 +44,7 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
         (path, bodies),
         (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False)),
     ):
-        if path.suffix == ".pvd":
+        if suffix == ".pvd":
             _write_series(solution, target, cells)
         else:
             from beamfem.io.vtkhdf import write_vtkhdf
@@ -95,9 +96,13 @@ class _Series:
                 self.grid.GetPointData().AddArray(array)
             self.grid.GetFieldData().AddArray(_named(self.name, np.array([value])))
             file = self.folder / f"{len(self.lines):04d}.vtu"
-            self.writer.SetFileName(os.fspath(file))
+            # the .pvd of an earlier export may name this file
+            partial = file.with_suffix(".part")
+            self.writer.SetFileName(os.fspath(partial))
             if not self.writer.Write():
+                partial.unlink(missing_ok=True)
                 raise FileError(f"{file} cannot be written: the disk is full, or takes no files")
+            os.replace(partial, file)
             source = quoteattr(f"{self.folder.name}/{file.name}")
             time = float(self.times[len(self.lines)])
             self.lines.append(f'    <DataSet timestep="{time!r}" part="0" file={source}/>\n')

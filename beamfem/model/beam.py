@@ -44,10 +44,10 @@ class Beam:
     def __post_init__(self) -> None:
         if isinstance(self.elements, str):
             _check_knots(self.elements, self.curve, self.element)
-        elif not isinstance(self.elements, int | np.integer | float):
-            object.__setattr__(self, "elements", _fractions(self.elements))
-        else:
+        elif isinstance(self.elements, int | float | np.generic) or _without_dimensions(self.elements):
             object.__setattr__(self, "elements", count("elements", self.elements))
+        else:
+            object.__setattr__(self, "elements", _fractions(self.elements))
         if not isinstance(self.element, Element):
             raise InputError(f"element of a Beam must be an Element, got {shown(self.element)}")
         if not fulfils(self.curve, Curve):
@@ -178,11 +178,16 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
     return result
 
 
+def _without_dimensions(value: object) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim == 0
+
+
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:
     """Check the ends of elements that a user gives."""
-    if not isinstance(values, Sequence | np.ndarray) or np.ndim(values) != 1:
-        raise InputError(f'elements must be a whole number, a list of fractions or "knots", got {shown(values)}')
-    ends = numbers("elements", values)
+    try:
+        ends = numbers("elements", values)
+    except InputError as error:
+        raise InputError(f'elements must be a whole number, a list of fractions or "knots": {error}') from None
     if len(ends) < 2 or ends[0] != 0.0 or ends[-1] != 1.0 or np.any(np.diff(ends) <= 0.0):
         raise InputError(
             f"elements as a list must rise from 0 to 1, the fractions where elements end, got {shown(ends)}"

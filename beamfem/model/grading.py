@@ -3,7 +3,10 @@
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.memory import SHARE, in_gib, installed_memory
 from beamfem.validation import count, positive
+
+_ELEMENT = 64  # bytes of an element: its fraction as a float in a tuple, and in arrays on the way
 
 
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
@@ -13,6 +16,12 @@ def graded(elements: int, ratio: float) -> tuple[float, ...]:
     Raises InputError.
     """
     number, ratio = count("elements", elements), positive("ratio", ratio)
+    memory = installed_memory()
+    if memory is not None and number * _ELEMENT > SHARE * memory:
+        raise InputError(
+            f"{number:.3g} elements need {in_gib(number * _ELEMENT)} at the least, and this computer has "
+            f"{in_gib(memory)}; take fewer"
+        )
     growth = ratio ** (1.0 / max(number - 1, 1))
     ends = np.cumsum(np.concatenate([[0.0], growth ** np.arange(number)]))
     ends /= ends[-1]

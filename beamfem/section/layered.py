@@ -10,7 +10,7 @@ from beamfem.material import Material
 from beamfem.section.moments import gauss_between
 from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
-from beamfem.validation import convert, finite, positive, shown
+from beamfem.validation import convert, finite, items, positive, shown
 
 _STRIPS = 6  # Gauss points over each layer
 
@@ -42,9 +42,9 @@ class Layered:
     shear_factor: float = 5 / 6
 
     def __post_init__(self) -> None:
-        layers = tuple(self.layers) if isinstance(self.layers, Sequence) else ()
+        layers = tuple(items("layers of a Layered section", self.layers))
         if not layers or not all(isinstance(layer, Layer) for layer in layers):
-            raise InputError(f"layers of a Layered section must be a list of Layer, got {shown(self.layers)}")
+            raise InputError(f"layers of a Layered section must be a list of Layer, got {shown(layers)}")
         object.__setattr__(self, "layers", layers)
         convert(self, positive, "width", "shear_factor")
         if self.axis is None:

@@ -2,6 +2,7 @@
 
 import inspect
 import itertools
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.memory import SHARE, in_gib, installed_memory
+
+_POINT = 1000  # bytes of a point; 1100 were measured with one parameter
 
 
 def split(parameters: Mapping[str, Any]) -> tuple[dict[str, tuple[Any, ...]], dict[str, Any]]:
@@ -18,14 +22,30 @@ def split(parameters: Mapping[str, Any]) -> tuple[dict[str, tuple[Any, ...]], di
     """
     varied: dict[str, tuple[Any, ...]] = {}
     fixed: dict[str, Any] = {}
+    _require_room([len(value) for value in parameters.values() if _varies(value)])
     for name, value in parameters.items():
-        if isinstance(value, list | tuple | range) or (isinstance(value, np.ndarray) and value.ndim == 1):
+        if _varies(value):
             varied[name] = tuple(value.tolist() if isinstance(value, np.ndarray) else value)
             if not varied[name]:
                 raise InputError(f"{name} must have at least one value, got an empty {type(value).__name__}")
         else:
             fixed[name] = value
     return varied, fixed
+
+
+def _varies(value: Any) -> bool:
+    return isinstance(value, list | tuple | range) or (isinstance(value, np.ndarray) and value.ndim == 1)
+
+
+def _require_room(counts: Sequence[int]) -> None:
+    """Raise InputError where the points of a study need more memory than this computer has."""
+    points, memory = math.prod(counts), installed_memory()
+    if memory is not None and points * _POINT > SHARE * memory:
+        product = " x ".join(map(str, counts))
+        raise InputError(
+            f"{product} = {points:.3g} points need {in_gib(points * _POINT)} at the least, and this computer has "
+            f"{in_gib(memory)}; take fewer values, or several sweeps"
+        )
 
 
 def combinations(varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -51,15 +71,21 @@ def check_call(function: Callable[..., Any], point: Mapping[str, Any]) -> None:
 def labels(values: Sequence[Any]) -> tuple[str, ...]:
     """Return a text for each value: its name where it has one; equal names get the members in which they differ."""
     found = [_label(value) for value in values]
-    for text in {text for text in found if found.count(text) > 1}:
-        same = [i for i, other in enumerate(found) if other == text]
+    for text, same in _repeated(found):
         for i, detail in zip(same, _differences([values[i] for i in same]), strict=True):
             found[i] = f"{text} ({detail})" if detail else text
-    for text in {text for text in found if found.count(text) > 1}:
-        same = [i for i, other in enumerate(found) if other == text]
+    for text, same in _repeated(found):
         for number, i in enumerate(same, 1):
             found[i] = f"{text} #{number}"
     return tuple(found)
+
+
+def _repeated(texts: Sequence[str]) -> list[tuple[str, list[int]]]:
+    """Return each text that is there more than once, with its places."""
+    places: dict[str, list[int]] = {}
+    for i, text in enumerate(texts):
+        places.setdefault(text, []).append(i)
+    return [(text, own) for text, own in places.items() if len(own) > 1]
 
 
 def assignments(point: Mapping[str, Any]) -> str:

@@ -9,13 +9,13 @@ import os
 from collections.abc import Mapping
 from errno import ENOSPC
 from os import PathLike
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import FileError
+from beamfem.files import path_of
 from beamfem.sweeps.workers import Outcome
 
 
@@ -26,7 +26,7 @@ class Store:
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
-        given = Path(path)
+        given = path_of(path)
         self.path = given / "results.jsonl" if given.is_dir() or not given.suffix else given
         self._known: dict[str, dict[str, tuple[Any, float]]] = {}
         self._sources: dict[str, Mapping[str, str]] = {}

@@ -15,6 +15,7 @@ from beamfem.sweeps.parameters import assignments, check_call, combinations, lab
 from beamfem.sweeps.stored import StoredCalls
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
+from beamfem.validation import flag, require_known, shown
 
 _ROWS_PRINTED = 40
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"
@@ -43,8 +44,7 @@ class Sweep:
     def __getitem__(self, name: str) -> np.ndarray:
         """Return a column (points,), of arrays of equal shape (points, ...); nan where a point failed."""
         rows = self.table()
-        if name not in rows[0]:
-            raise InputError(f"the sweep has no {name!r}; it has {', '.join(rows[0])}")
+        require_known(f"the sweep has no {shown(name)}", name, rows[0])
         column = [row[name] for row in rows]
         found = [value for value in column if value is not None]
         if not all(isinstance(value, bool | int | float | np.ndarray) for value in found):
@@ -123,6 +123,7 @@ def sweep(
     store cannot be written any more, a `NotStoredWarning` says so and the sweep goes on.
     Raises InputError; FileError for a store that cannot be opened; BeamfemError where no worker starts.
     """
+    keep_stale = flag("keep_stale", keep_stale)
     varied, fixed = split(parameters)
     points = combinations(varied, fixed)
     check_call(function, points[0])

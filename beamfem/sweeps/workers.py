@@ -67,7 +67,11 @@ def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks:
     executor = _made(factory)
     name = getattr(function, "__qualname__", repr(function))
     if not isinstance(executor, ProcessPoolExecutor):
-        executor.submit(call_all, function, (), os.getpid(), 0).result()
+        try:
+            executor.submit(call_all, function, (), os.getpid(), 0).result()
+        except Exception as error:
+            what = f"{type(error).__name__}: {error}"
+            raise BeamfemError(f"the {type(executor).__name__} of executor takes no calls; it raised {what}") from error
         return executor
     try:
         pickle.dumps(function)
@@ -97,8 +101,9 @@ def _made(factory: Any) -> Executor:
         raise InputError(f"executor must be a class or a function that makes an Executor, {right}, got {factory!r}")
     try:
         executor = _spawning(factory)()
-    except (TypeError, ValueError) as error:
-        raise InputError(f"executor must make an Executor without arguments, {right}; it raised: {error}") from error
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise InputError(f"executor must make an Executor without arguments, {right}; it raised {what}") from error
     if not isinstance(executor, Executor):
         raise InputError(f"executor must make a concurrent.futures.Executor, got {type(executor).__name__}")
     return executor

@@ -5,6 +5,7 @@ The text has been read by tomllib before, so that nothing here has to be refused
 
 import re
 import tomllib
+from bisect import bisect_left
 
 Path = tuple[str | int, ...]
 
@@ -27,6 +28,7 @@ def key_lines(text: str) -> dict[Path, int]:
 class _Scan:
     def __init__(self, text: str) -> None:
         self.text = text
+        self.breaks = [place.start() for place in re.finditer("\n", text)]
         self.at = 0
         self.found: dict[Path, int] = {}
         self.arrays: dict[Path, int] = {}  # last item of every array of tables
@@ -51,7 +53,7 @@ class _Scan:
         return found.group() if found else ""
 
     def note(self, path: Path, start: int) -> None:
-        line = self.text.count("\n", 0, start) + 1
+        line = bisect_left(self.breaks, start) + 1
         for end in range(1, len(path) + 1):
             self.found.setdefault(path[:end], line)
 

@@ -56,6 +56,8 @@ class Job:
 def read_model_file(path: str | PathLike[str]) -> Job:
     """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key."""
     file = Path(path)
+    if file.is_char_device():
+        raise ModelFileError("this is a device, not a model file", file, None, None)
     try:
         text = file.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
@@ -72,6 +74,8 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         place = re.search(r"\(at line (\d+), column \d+\)", message)
         line = int(place[1]) if place else text.count("\n") + 1
         raise ModelFileError(f"not valid TOML: {message}", file, line, None) from None
+    except ValueError as error:  # whole numbers of thousands of digits
+        raise ModelFileError(f"a number cannot be read: {error}", file, None, None) from None
     except RecursionError:
         raise ModelFileError("arrays or tables are nested too deeply", file, None, None) from None
     root = Table(Source(file, lines), (), values)

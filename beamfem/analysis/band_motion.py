@@ -61,7 +61,7 @@ class BandMotion:
         body, values = _sample_loads(self._system, times)
         assembler, solver, table = self._assembler, self._solver, self._solver.table
         assembler.load(body, values)
-        assembler.place(*state[:3], self._residual, self._rows)
+        assembler.place(state[0], state[1], state[2], self._residual, self._rows)
         for field, array in (
             (record.STATE, state),
             (record.HELD_VALUES, held),

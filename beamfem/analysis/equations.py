@@ -20,12 +20,12 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     result, assembler = np.empty(len(p)), system.assembler()
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh((1.0, 1.0, 1.0))
-    assembler.balance(*_plain(p, v, a), result, _EMPTY, False)
+    assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     return result
 
 
-def _plain(*states: np.ndarray) -> tuple[np.ndarray, ...]:
-    return tuple(np.ascontiguousarray(state, dtype=float) for state in states)
+def _plain(state: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(state, dtype=float)
 
 
 def linearise(
@@ -50,7 +50,7 @@ def linearise(
     result, assembler = np.empty(len(p)), system.assembler(stresses, blocks)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(coefficients)
-    assembler.balance(*_plain(p, v, a), result, matrix, stresses is not None)
+    assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     tangent: Tangent
     if pattern is None:
         tangent = BandTangent(matrix.reshape(unknown, width))
@@ -103,7 +103,7 @@ def predicted_stresses(
     blocks: to take instead of those of the system.
     """
     assembler = system.assembler(blocks=blocks)
-    assembler.predict(*_plain(p, step))
+    assembler.predict(_plain(p), _plain(step))
     return assembler.stresses
 
 

@@ -12,7 +12,6 @@ from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.lapack import LinAlgError
 from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.pencil import UNTURNED
-from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
 
 _STEPS = 2000
@@ -62,18 +61,10 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
     """
     if abs(one[-1] - other[-1]) > _SAME_LOAD * abs(one[-1]):
         return False
-    nodes = [nodal_vectors(system, y[:-1]) for y in (one, other)]
+    nodes = [system.assembler().nodal_vectors(np.ascontiguousarray(y[:-1])) for y in (one, other)]
     changes = [np.abs(a - b) for a, b in zip(*nodes, strict=True)]
     positions = max(float(change[:, :2].max()) for change in changes) / system.extent
     return max(positions, *(float(change[:, 2:].max()) for change in changes)) < _SAME_PLACE
-
-
-def nodal_vectors(system: System, p: np.ndarray) -> list[np.ndarray]:
-    """Return r and the gradients of the nodes (N, per_node) of each block."""
-    work, rest = system.workspaces(), np.zeros(len(p))
-    for block, own in zip(system.blocks, work, strict=True):
-        place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
-    return [own.nodes[0] for own in work]
 
 
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:

@@ -38,7 +38,7 @@ class Assembler:
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:
-        """Resultants (ne, nq, ns) of each group for the geometric part of the tangent, as the last step predicts them."""
+        """Resultants (ne, nq, ns) of each group that the last step predicts, for the geometric part of the tangent."""
         return tuple(work.stress for work in self.works)
 
     @property
@@ -52,7 +52,7 @@ class Assembler:
         return (self._groups, self._values, self._factors, *self._springs, *self._acting)
 
     def load(self, body: np.ndarray, values: Sequence[np.ndarray]) -> None:
-        """Take body forces (..., beams, 4) and values of point loads (..., nl, 3) of each group; steps may come first."""
+        """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first."""
         self._acting = tuple(np.ascontiguousarray(each, dtype=float) for each in (body, *values))
         self.table[record.BODY] = self._acting[0].ctypes.data
         self.table[record.LOADED] = int(self._acting[0].any())
@@ -111,6 +111,16 @@ class Assembler:
         element_passes.add_elements(work.table, table)
         size, force = 2 * int(work.table[record.VECTORS]), int(work.table[record.FORCE])
         return work.rows(0, size), work.rows(size, size), work.rows(force, size)
+
+    def nodal_vectors(self, p: np.ndarray) -> list[np.ndarray]:
+        """Return the vectors e (N, per_node) of the nodes of each group in a state (n,)."""
+        self.require()
+        self.table[record.COORDINATES_P] = _address(p, self.size)
+        found = []
+        for work in self.works:
+            node_passes.place_nodes(work.table, self.table, 0)
+            found.append(work.rows(0, 2 * int(work.table[record.VECTORS])))
+        return found
 
     def smallest_jacobian(self, p: np.ndarray) -> float:
         """Return the smallest r0' x d of all quadrature points in a state (n,); negative inside out."""

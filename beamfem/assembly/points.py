@@ -10,7 +10,7 @@ _NO_SPRINGS = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.
 
 
 def free_sheet(block: Block, size: int) -> Sheet:
-    """Return the sheet of a block of a model with so many coordinates on which nothing acts and nothing is solved for."""
+    """Return the sheet of a block of a model with `size` coordinates: nothing acts on it, nothing is solved for."""
     none = np.empty((0, 0, 0), dtype=np.int32)
     return make_sheet(block, Layout(np.arange(size), 0, none), no_loads(block))
 

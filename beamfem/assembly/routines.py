@@ -30,7 +30,7 @@ from beamfem.kernels.generated import (
     structural,
 )
 
-_MEASURES = green_lagrange, structural, elastic_line
+MEASURE_PASSES = green_lagrange, structural, elastic_line
 _KINDS = rotation_node, stretch_node, shear_rigid_node
 
 # what a task needs, whatever the strain measure
@@ -100,7 +100,7 @@ class Routines:
                     self._ready.add((task, kind))
 
     def _fill(self, task: str, kind: int) -> None:
-        own = _MEASURES[self._measures]
+        own = MEASURE_PASSES[self._measures]
         found = dict(_TASKS[task]) if kind < 0 else {}
         if kind < 0:
             found |= {number: getattr(own, name) for number, name in _PASSES.get(task, {}).items()}

@@ -11,6 +11,7 @@ from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.structural import section_frame
 from beamfem.kernels.block import GREEN_LAGRANGE
 from beamfem.material import Material
+from beamfem.physics.measures import evaluate, green_lagrange
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import flag
 
@@ -45,17 +46,7 @@ class _Body:
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
-        return np.stack(
-            [
-                0.5 * (dot(at.r_s, at.r_s) - 1.0),
-                dot(at.r_s, at.d_s),
-                0.5 * dot(at.d_s, at.d_s),
-                0.5 * (dot(at.d, at.d) - 1.0),
-                dot(at.r_s, at.d),
-                dot(at.d, at.d_s),
-            ],
-            axis=-1,
-        )
+        return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
     def points(self, degree: int, director_degree: int) -> int:
         """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""

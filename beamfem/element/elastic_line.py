@@ -5,10 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.axis import Axis
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.material import Material
+from beamfem.physics.measures import elastic_line, evaluate
 from beamfem.section.protocol import CrossSection
 
 
@@ -29,9 +30,7 @@ class ElasticLine:
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, curvature [1/m], shear, thickness strain."""
-        square = dot(at.r_s, at.r_s)
-        curvature = cross(at.r_s, at.r_ss) / square
-        return np.stack([np.sqrt(square) - 1.0, curvature, dot(at.r_s, at.d), 0.5 * (dot(at.d, at.d) - 1.0)], axis=-1)
+        return evaluate(elastic_line, at.r_s, at.d, at.r_ss)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis

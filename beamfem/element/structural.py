@@ -5,10 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.axis import Axis
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.kernels.block import STRUCTURAL
 from beamfem.material import Material
+from beamfem.physics.measures import evaluate, structural
 from beamfem.section.protocol import CrossSection
 
 
@@ -28,10 +29,7 @@ class Structural:
 
     def strains(self, at: Axis) -> np.ndarray:
         """Return (..., 4): stretch, shear, curvature [1/m], thickness stretch."""
-        size = np.linalg.norm(at.d, axis=-1)
-        along, across = section_frame(at.d)
-        turn = cross(at.d, at.d_s) / size**2
-        return np.stack([dot(at.r_s, along) - 1.0, dot(at.r_s, across), turn, size - 1.0], axis=-1)
+        return evaluate(structural, at.r_s, at.d, at.d_s)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis

@@ -10,8 +10,10 @@ SPARE_ROWS = 40  # for a node's coordinates and what comes of them, and for redu
 
 @njit(forceinline=True, _nrt=False)
 def rows_of(nodes, vectors, points, gathered, table_rows):
-    """Return the first rows of: body, nodal vectors, forces, predicted forces, tables, a point, second derivatives of all
-    points, columns of a node at all points, rows of a pair of nodes, matrix; end.
+    """Return the first rows of each part of the work space, and their end.
+
+    Body, nodal vectors, forces, predicted forces, tables, a point, second derivatives of all points, columns of a node
+    at all points, rows of a pair of nodes, matrix.
     """
     size, slots = 2 * vectors, nodes * vectors
     body = SPARE_ROWS

@@ -42,8 +42,8 @@ class Routine:
 
     @cached_property
     def compiled(self) -> Any:
-        begun, arguments = process_time(), [KINDS[kind] for kind in self.kinds]
-        pointer = CFunc(self.function, (arguments, self.returns), {}, {"error_model": "numpy", **self.options})
+        begun, arguments = process_time(), tuple(KINDS[kind] for kind in self.kinds)
+        pointer: Any = CFunc(self.function, (arguments, self.returns), {}, {"error_model": "numpy", **self.options})
         if cache_folder() is not None:
             pointer._cache = _KernelCache(self.function)
         pointer.compile()
@@ -65,7 +65,7 @@ class Routine:
 
     @cached_property
     def _callable(self) -> Callable[..., Any]:
-        plain = {"i": c_int64, "d": c_double}
+        plain: dict[str, Any] = {"i": c_int64, "d": c_double}
         returns = {types.void: None, types.int64: c_int64, types.float64: c_double}[self.returns]
         return CFUNCTYPE(returns, *(plain.get(kind, c_void_p) for kind in self.kinds))(self.address)
 
@@ -83,8 +83,8 @@ def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Cal
 def cache_folder() -> Path | None:
     """Return the folder of machine code of exactly these kernels, None where none can be written.
 
-    Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code of other sources is never
-    found, whatever their times and whoever else writes.
+    Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code
+    of other sources is never found, whatever their times and whoever else writes.
     """
     sources = sorted(_HERE.rglob("*.py"))
     if not sources:  # imported from an archive

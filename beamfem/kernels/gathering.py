@@ -1,4 +1,4 @@
-"""Between nodes and batches: what the elements of a batch need of their nodes, tables and loads, and what they give back."""
+"""Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at
@@ -7,7 +7,7 @@ from beamfem.kernels.record import ROW
 
 @routine("iiiinirr")
 def gather(nodes, count, first, stride, place, rows, chunks, e):
-    """Copy the first rows of the nodes of a batch to e (nodes, stride, ROW); place: see `record.PLACE`, stride its length."""
+    """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`."""
     for n in range(nodes):
         own = at(place, n * stride + first)
         for row in range(rows):

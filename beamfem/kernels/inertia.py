@@ -1,4 +1,4 @@
-"""Inertia and body forces of a batch, and what inertia adds to its matrices. Tables have a row of lanes for each entry."""
+"""Inertia and body forces of a batch, and what inertia adds to its matrices; a row of lanes for each table entry."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at
@@ -9,15 +9,15 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiiirrrrrr", fastmath=FAST)
 def add_inertia(nodes, vectors, count, stride, loaded, moving, mass, gravity, length, body, e, f):
-    """Fill f (nodes, 2 vectors, ROW) with M e'' less weight and loads per length; e (nodes, stride, ROW), e'' behind e."""
+    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e (nodes, stride, ROW), e'' behind e."""
     slots = nodes * vectors
     for slot in range(slots):
         x, y = at(f, 2 * slot * ROW), at(f, (2 * slot + 1) * ROW)
         if loaded != 0:
-            m, l = at(gravity, slot * ROW), at(length, slot * ROW)
+            m, own = at(gravity, slot * ROW), at(length, slot * ROW)
             for i in range(count):
-                x[i] = -body[i] * m[i] - body[2 * ROW + i] * l[i]
-                y[i] = -body[ROW + i] * m[i] - body[3 * ROW + i] * l[i]
+                x[i] = -body[i] * m[i] - body[2 * ROW + i] * own[i]
+                y[i] = -body[ROW + i] * m[i] - body[3 * ROW + i] * own[i]
         else:
             for i in range(count):
                 x[i] = 0.0

@@ -1,4 +1,4 @@
-"""What a time step of the generalized-alpha method does to the state, apart from solving: predict, correct, complete."""
+"""What a time step of the generalized-alpha method does to a state, apart from solving for corrections."""
 
 import math
 

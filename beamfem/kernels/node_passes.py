@@ -31,7 +31,7 @@ def place_nodes(group, system, moving):
         linear = size
         if kind == ROTATION:
             linear = size - 2
-        elif kind == STRETCH or kind == SHEAR_RIGID:
+        elif kind in (STRETCH, SHEAR_RIGID):
             linear = size - 4
         own = 2 if kind == STRETCH else 1
         while first < end:
@@ -129,7 +129,7 @@ def finish_nodes(group, system):
         return
     for run in range(b[r.RUN_COUNT]):
         kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
-        if kind == GRADIENTS or kind == TURNED_GRADIENTS:
+        if kind in (GRADIENTS, TURNED_GRADIENTS):
             continue
         linear = size - 2 if kind == ROTATION else size - 4
         own = 2 if kind == STRETCH else 1

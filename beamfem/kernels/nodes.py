@@ -1,4 +1,4 @@
-"""The nodes of a chunk: coordinates in, nodal vectors out; see `record` for rows of a chunk, `generated` for what turns."""
+"""The nodes of a chunk: coordinates in, nodal vectors out; `record` has the rows of a chunk."""
 
 import numpy as np
 from numba import njit

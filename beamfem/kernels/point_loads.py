@@ -110,7 +110,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
     spring, anchor = at(reals(b[r.SPRING]), load), at(reals(b[r.ANCHOR]), load)
     kx, ky = spring[0], spring[loads]
     sx, sy = fx - kx * (rx - anchor[0]), fy - ky * (ry - anchor[loads])
-    slots, size = nodes * vectors, 2 * vectors
+    slots = nodes * vectors
     for slot in range(slots):
         f[2 * slot * ROW] = -position[slot * loads] * sx - direction[slot * loads] * moment * ax
         f[(2 * slot + 1) * ROW] = -position[slot * loads] * sy - direction[slot * loads] * moment * ay

@@ -63,5 +63,5 @@ def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
         return signature(returns, address, *wanted), generate
 
     names = ("context", "address", *(f"argument_{number}" for number in range(len(wanted))))
-    call.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
+    vars(call)["__signature__"] = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
     return intrinsic(call)

@@ -144,7 +144,7 @@ SYSTEM_FIELDS = 21
 PLACE_KIND = 41  # place, convect and curve of each kind of node that turns
 ROUTINE_COUNT = 50
 
-# ------------------------------------------------------------------ the unknown coordinates, and how they are solved for
+# ------------------------------------------------------------------ the unknown coordinates and how to solve for them
 UNKNOWN = 0
 FREE_DOFS = 1  # address (unknown,)
 HALF = 2

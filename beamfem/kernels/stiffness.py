@@ -1,7 +1,7 @@
 """Elastic matrices of a batch: B^T (T^T h T summed over quadrature points) B, T the tables of q = (r0', d, third).
 
-h has 21 rows a point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy each), dd (xx, xy, yy), dt (xx, xy, yx, yy) and
-tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
+h has 21 rows a point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy each), dd (xx, xy, yy), dt (xx, xy, yx, yy)
+and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
 """
 
 from beamfem.kernels.compiling import routine
@@ -141,7 +141,7 @@ def products(vectors, bends, count, points, coordinates, slots, z_stride, slope,
 def store(size, turned, turning, coordinates, count, rows, b, own, k):
     """Put rows of a node (coordinates, size, ROW), their last ones summed with its b, into columns and rows of k.
 
-    k: entry (row, column) of the first coordinates of both nodes, `rows` in all; the transposed entry is filled as well.
+    k: from the entry of the first coordinates of both nodes on; it has `rows` rows in all.
     """
     linear = size - turned
     own_count = linear + turning

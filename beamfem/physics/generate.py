@@ -1,8 +1,11 @@
-"""Write the compiled passes of strain measures and node kinematics from their definitions: python -m beamfem.physics.generate.
+"""Write the compiled passes of strain measures and node kinematics from their definitions.
 
-sympy differentiates; what it finds goes to `beamfem/kernels/generated`, is committed, and a test writes it again.
+Run as python -m beamfem.physics.generate: sympy differentiates, and what it finds goes to `beamfem/kernels/generated`,
+is committed, and compared by a test.
 """
 
+import subprocess
+import sys
 from collections.abc import Iterable, Sequence
 from itertools import combinations_with_replacement
 from pathlib import Path
@@ -192,9 +195,15 @@ def _module(title: str, functions: Sequence[str]) -> str:
 
 
 def sources() -> dict[str, str]:
-    """Return all generated modules by their file name."""
+    """Return all generated modules, in the format of the project, by their file name."""
     measures = {f"{measure.__name__}.py": measure_source(measure) for measure in MEASURES}
-    return measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
+    found = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
+    return {name: _formatted(source) for name, source in found.items()}
+
+
+def _formatted(source: str) -> str:
+    command = [sys.executable, "-m", "ruff", "format", "--line-length", "120", "-"]
+    return subprocess.run(command, input=source, capture_output=True, text=True, check=True).stdout
 
 
 if __name__ == "__main__":

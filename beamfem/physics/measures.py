@@ -8,6 +8,8 @@ serves symbols (`generate`), arrays of real or complex numbers, and readable for
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 Number = Any  # a float, an array or a symbol
 Measure = Callable[..., tuple[Number, ...]]
 
@@ -44,3 +46,8 @@ def elastic_line(rx: Number, ry: Number, dx: Number, dy: Number, bx: Number, by:
 
 
 MEASURES: tuple[Measure, ...] = (green_lagrange, structural, elastic_line)
+
+
+def evaluate(measure: Measure, r: np.ndarray, d: np.ndarray, third: np.ndarray) -> np.ndarray:
+    """Return a measure (..., m) of r', d and the third vector (..., 2), real or complex."""
+    return np.stack(measure(*(vector[..., axis] for vector in (r, d, third) for axis in (0, 1)), np.sqrt), axis=-1)

@@ -96,16 +96,14 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     _, one = case(form, elements)
     own, half, n = band(one.half_width), one.half_width, len(one.right)
     equations, space = one.equations, np.empty(n)
-    work = equations.works[0]
-    arrays = [*work.sheet.kept, work.chunks, work.space, work.table, one.residual, one.band, one.right, space]
-    arrays += [one.state, equations.table, *equations.tables, *equations.values]
+    arrays = [*equations.memory, one.state, one.residual, one.band, one.right, space]
     addresses = [each.ctypes.data for each in (one.band, one.right, space)]
     routines = balance, own.factor, own.solve_lower, own.solve_upper
     for routine in routines:
         assert routine.address
     memory = Memory(arrays, lambda value: Counted(value, tally))
     rows, right, pivots = (memory.at(address) for address in addresses)
-    table = equations.table.ctypes.data
+    table = equations.address
 
     def balanced(tangent: bool) -> None:
         place(one, tangent)

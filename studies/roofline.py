@@ -46,7 +46,7 @@ def seconds(form: str, elements: int) -> dict[str, float]:
 
     def balanced() -> None:
         for _ in range(times):
-            balance(one.equations.table)
+            balance(one.equations.address)
 
     def copied() -> None:
         for _ in range(times):

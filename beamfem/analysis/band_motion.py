@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.solver_table import SolverTable
+from beamfem.assembly.arena import Arena, address_of
 from beamfem.kernels import record
 from beamfem.kernels.march import march
 from beamfem.model.system import System
@@ -21,34 +21,32 @@ class BandMotion:
         self._system = system
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
         h, alpha_m, alpha_f, gamma, beta = rule
-        self._assembler, self._solver = (
-            system.assembler(),
-            SolverTable(system.free_dofs, half, system.turned, moving=True),
-        )
+        self._assembler = system.assembler()
         self._assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
         self._assembler.require("tangent")
-        self._rows, self._residual = np.zeros((unknown, 2 * half + 1)), np.empty(size)
-        inverse_scale = np.zeros(size)
-        inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         nodes = sum(len(block.dof) for block in system.blocks)
-        parts = {
-            record.ROWS: self._rows,
-            record.RIGHT: np.empty(unknown),
-            record.STEP: np.empty(max(size, unknown) + 1),
-            record.BEFORE: np.empty((4, size)),
-            record.DIFFERENCES: np.zeros((3, size)),
-            record.INVERSE_SCALE: inverse_scale,
-            record.RULE: rule,
-            record.LIMITS: limits,
-            record.STATISTICS: statistics,
-            record.KEPT: np.zeros((nodes, 2)),
-            record.TURNS: np.zeros((nodes, 2)),
-        }
-        for field, array in parts.items():
-            self._solver.set(field, array)
-        self._solver.set_whole(record.PAIR_TABLE, system.turning)
-        self._solver.set_whole(record.HELD_DOFS, system.held_dofs)
-        self._solver.table[record.PAIRS], self._solver.table[record.HELD] = len(system.turning), len(system.held_dofs)
+        room = Arena(
+            {
+                "residual": (size,),
+                record.ROWS: (unknown, 2 * half + 1),
+                record.RIGHT: (unknown,),
+                record.STEP: (max(size, unknown) + 1,),
+                record.BEFORE: (4, size),
+                record.DIFFERENCES: (3, size),
+                record.INVERSE_SCALE: (size,),
+                record.KEPT: (nodes, 2),
+                record.TURNS: (nodes, 2),
+            }
+        )
+        for name in (record.ROWS, record.DIFFERENCES, record.INVERSE_SCALE, record.KEPT, record.TURNS):
+            room.arrays[name][:] = 0.0
+        room.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
+        self._room, self._kept = room, (rule, limits, statistics, system.turning, system.held_dofs)
+        places = {name: place for name, place in room.addresses.items() if name != "residual"}
+        fields = record.RULE, record.LIMITS, record.STATISTICS, record.PAIR_TABLE, record.HELD_DOFS
+        places |= {field: address_of(array) for field, array in zip(fields, self._kept, strict=True)}
+        self._solver = system.solver_table.filled(places)
+        self._solver[[record.PAIRS, record.HELD]] = len(system.turning), len(system.held_dofs)
 
     def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
@@ -59,25 +57,28 @@ class BandMotion:
         """
         saved, first, every, counted, turned_by, saved_turns = saving
         body, values = _sample_loads(self._system, times)
-        assembler, solver, table = self._assembler, self._solver, self._solver.table
-        assembler.load(body, values)
-        assembler.place(state[0], state[1], state[2], self._residual, self._rows)
+        assembler, solver, varying = self._assembler, self._solver, len(body) > 1
+        places = assembler.load(body, values)
+        given = np.array(places[1:], dtype=np.int64)
+        n, place, room = state.shape[1], address_of(state), self._room
+        states = place, place + 8 * n, place + 16 * n
+        rows = room.arrays[record.ROWS]
+        assembler.place_at(states, room.addresses["residual"], room.addresses[record.ROWS], rows.size)
+        solver[[record.STATE, record.BODIES, record.LOAD_VALUES]] = place, places[0], address_of(given)
         for field, array in (
-            (record.STATE, state),
             (record.HELD_VALUES, held),
-            (record.BODIES, body),
             (record.SAVED, saved),
+            (record.TURN_TABLE, counted),
             (record.TURNED_BY, turned_by),
             (record.SAVED_TURNS, saved_turns),
         ):
-            solver.set(field, array)
-        solver.set_whole(record.TURN_TABLE, counted)
-        solver.set_whole(record.LOAD_VALUES, np.array([each.ctypes.data for each in assembler.values]))
-        table[[record.STEPS, record.FIRST_STEP, record.EVERY]] = len(held), first, every
-        table[record.TURN_COUNT] = len(counted)
-        table[record.BODY_STRIDE] = body[0].size if len(body) > 1 else 0
-        table[record.LOADS_VARY] = int(len(body) > 1)
-        return int(march(assembler.table, table, solver.routines))
+            if not array.flags.c_contiguous:
+                raise ValueError("compiled code takes contiguous arrays")
+            solver[field] = address_of(array)
+        solver[[record.STEPS, record.FIRST_STEP, record.EVERY]] = len(held), first, every
+        solver[[record.TURN_COUNT, record.LOADS_VARY]] = len(counted), int(varying)
+        solver[record.BODY_STRIDE] = body[0].size if varying else 0
+        return int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.analysis.equations import STATICS
-from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.sheet import make_sheet
 from beamfem.kernels.block import Block, PointLoads, Springs
 from beamfem.model.system import System
@@ -100,7 +100,7 @@ def _half(
     number = free[dof - place.start]
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
     springs = Springs(dof - place.start, stiffness, rest, diagonal)
-    equations = Assembler((make_sheet(block, layout._replace(free=free), points),), springs, size)
+    equations = Assembler(Equations((make_sheet(block, layout._replace(free=free), points),), springs, size))
     equations.load(system.body(load_factor), (values[loaded],))
     equations.weigh(STATICS)
     return Half(

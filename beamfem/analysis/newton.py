@@ -21,7 +21,7 @@ from beamfem.analysis.round_off import (
     row_floors,
 )
 from beamfem.analysis.tangent import SMALLEST_PIVOT
-from beamfem.assembly.solver_table import SolverTable
+from beamfem.assembly.arena import Arena
 from beamfem.kernels import record
 from beamfem.kernels.newton import iterate
 from beamfem.model.system import System
@@ -107,38 +107,38 @@ def _solve_band(
     system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
-    p, held_force = start.copy(), np.zeros(len(start))
-    if held_step.any():
-        held_force = _held_force(system, start, held_step, load_factor)
-    n, half = len(p), system.layouts[0].half_width
-    rows, unbalanced = np.empty((len(system.free_dofs), 2 * half + 1)), np.empty(n)
+    n, unknown, half = len(start), len(system.free_dofs), system.layouts[0].half_width
     values = system.point_values(load_factor)
-    found = np.array([0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0])
-    bounds = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
-    limits = np.array(
-        (*bounds, newton.iterations, newton.independent_stresses, -1 if keep is None else keep), dtype=float
-    )
-    step = np.zeros(n)
-    assembler, solver = system.assembler(), SolverTable(system.free_dofs, half, system.turned, moving=False)
+    assembler = system.assembler()
     assembler.load(system.body(load_factor), values)
     assembler.weigh(STATICS)
     assembler.require("tangent", "prediction")
-    assembler.place(p, step, step, unbalanced, rows)
-    parts = {
-        record.ROWS: rows,
-        record.RIGHT: np.empty(len(rows)),
-        record.STEP: step,
-        record.SCALE: system.scale,
-        record.LIMITS: limits,
-        record.FOUND: found,
-        record.HELD_STEP: held_step,
-        record.HELD_FORCE: held_force,
-    }
-    for field, array in parts.items():
-        solver.set(field, array)
+    room = Arena(
+        {
+            "p": (n,),
+            "residual": (n,),
+            record.STEP: (n,),
+            record.HELD_STEP: (n,),
+            record.HELD_FORCE: (n,),
+            record.RIGHT: (unknown,),
+            record.ROWS: (unknown, 2 * half + 1),
+            record.LIMITS: (7,),
+            record.FOUND: (8,),
+        }
+    )
+    p, unbalanced, step, *held, _, rows, limits, found = room.arrays.values()
+    place = room.addresses
+    states = place.pop("p"), place[record.STEP], place[record.STEP]
+    assembler.place_at(states, place.pop("residual"), place[record.ROWS], rows.size)
+    solver, routines = system.solver_table.filled(place), system.solver_table.routines(moving=False)
+    p[:], step[:], held[0][:] = start, 0.0, held_step
+    held[1][:] = _held_force(system, start, held_step, load_factor) if held_step.any() else 0.0
+    found[:] = 0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
+    limits[:4] = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
+    limits[4:] = newton.iterations, newton.independent_stresses, -1 if keep is None else keep
     load = load_size(system, values)
     while found[0] < newton.iterations:
-        if not iterate(assembler.table, solver.table, solver.routines):
+        if not iterate(assembler.address, solver, routines):
             return None
         iterations, size, before = int(found[0]), found[1], found[2]
         negative = int(found[6])
@@ -150,10 +150,9 @@ def _solve_band(
             left = _Left(unbalanced, found[3], max(found[4], load))
             ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
-                return NewtonResult(p, iterations, ended, negative, left.digits, found[7])
-        solver.set(record.HELD_STEP, np.zeros(n))
-        solver.set(record.HELD_FORCE, np.zeros(n))
-    return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+                return NewtonResult(p.copy(), iterations, ended, negative, left.digits, found[7])
+        held[0][:] = held[1][:] = 0.0
+    return NewtonResult(p.copy(), newton.iterations, Ended.EXHAUSTED)
 
 
 def _solve_halves(

@@ -1,40 +1,105 @@
 """One evaluation of all equations of a model: a state and weights in, residual and tangent out."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.sheet import Sheet, Work
+from beamfem.assembly.arena import Arena, address_of
+from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
 
 Stresses = Sequence[np.ndarray]
 
 
+@dataclass(frozen=True, eq=False)
+class Work:
+    """A group of elements with space of its own, so that solves do not disturb each other."""
+
+    sheet: Sheet
+    table: np.ndarray
+    address: int
+    chunks: np.ndarray
+    stress: np.ndarray
+
+    def rows(self, first: int, count: int) -> np.ndarray:
+        """Return rows of all nodes (N, count)."""
+        nodes = int(self.table[record.NODES])
+        own = self.chunks[:, first : first + count, : record.LANES]
+        return np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
+
+
+class Equations:
+    """Groups of elements and springs as compiled code takes them, without any work space.
+
+    table: see `kernels.record`; springs: the arrays whose addresses it holds.
+    """
+
+    def __init__(self, sheets: Sequence[Sheet], springs: Springs, size: int) -> None:
+        self.sheets, self.size = tuple(sheets), size
+        kinds = (np.int64, float, float, np.int64)
+        self.springs = tuple(
+            np.ascontiguousarray(values, dtype=kind) for values, kind in zip(springs, kinds, strict=True)
+        )
+        self.table = np.zeros(record.SYSTEM_FIELDS, dtype=np.int64)
+        self.table[record.GROUPS], self.table[record.SIZE] = len(self.sheets), size
+        self.table[record.SPRINGS] = len(self.springs[0])
+        for number, values in enumerate(self.springs):
+            self.table[record.SPRING_DOF + number] = address_of(values)
+
+
 class Assembler:
-    """The equations of groups of elements and springs, with space of their own: one for each solve and thread.
+    """Equations with space of their own: one for each solve and thread.
 
     stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent.
     """
 
-    def __init__(self, sheets: Sequence[Sheet], springs: Springs, size: int, stresses: Stresses | None = None) -> None:
-        given = [None] * len(sheets) if stresses is None else stresses
-        self.works = tuple(Work(sheet, stress) for sheet, stress in zip(sheets, given, strict=True))
-        self.size = size
-        self._springs = tuple(
-            np.ascontiguousarray(values, dtype=kind)
-            for values, kind in zip(springs, (np.int64, float, float, np.int64), strict=True)
+    def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
+        self.equations, self.size, sheets = equations, equations.size, equations.sheets
+        count = len(sheets)
+        whole = Arena(
+            {
+                "table": (record.SYSTEM_FIELDS,),
+                "groups": (count,),
+                "values": (count,),
+                **dict.fromkeys(range(count), (record.BLOCK_FIELDS,)),
+            },
+            np.int64,
         )
-        self._groups = np.array([work.table.ctypes.data for work in self.works], dtype=np.int64)
-        self._values = np.zeros(len(sheets), dtype=np.int64)
-        self._factors = np.zeros(3)
-        self._acting: tuple[np.ndarray, ...] = ()
-        self.table = table = np.zeros(record.SYSTEM_FIELDS, dtype=np.int64)
-        table[record.GROUPS], table[record.SIZE] = len(sheets), size
-        table[record.GROUP_RECORDS], table[record.VALUES] = self._groups.ctypes.data, self._values.ctypes.data
-        table[record.FACTORS], table[record.SPRINGS] = self._factors.ctypes.data, len(self._springs[0])
-        for number, values in enumerate(self._springs):
-            table[record.SPRING_DOF + number] = values.ctypes.data
+        shapes: dict[object, Sequence[int]] = {"factors": (3,)}
+        for number, sheet in enumerate(sheets):
+            shapes |= {("chunks", number): sheet.chunks, ("space", number): (sheet.space,)}
+            if stresses is None:
+                shapes[("stress", number)] = sheet.points
+        room = Arena(shapes)
+        self.works: list[Work] = []
+        for number, sheet in enumerate(sheets):
+            table, chunks = whole.arrays[number], room.arrays["chunks", number]
+            table[:] = sheet.table
+            if stresses is None:
+                stress, place = room.arrays["stress", number], room.addresses["stress", number]
+            else:
+                stress = np.ascontiguousarray(stresses[number], dtype=float)
+                place = address_of(stress)
+            if sheet.constant is not None:
+                chunks[:] = sheet.constant
+            table[record.CHUNKS], table[record.SPACE] = (
+                room.addresses["chunks", number],
+                room.addresses["space", number],
+            )
+            table[record.STRESS] = place
+            self.works.append(Work(sheet, table, whole.addresses[number], chunks, stress))
+        self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
+        whole.arrays["groups"][:] = [work.address for work in self.works]
+        self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
+        self.table[:] = equations.table
+        self.table[record.GROUP_RECORDS], self.table[record.VALUES] = (
+            whole.addresses["groups"],
+            whole.addresses["values"],
+        )
+        self.table[record.FACTORS] = room.addresses["factors"]
+        self._tables = tuple(whole.arrays.values())
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:
@@ -42,21 +107,25 @@ class Assembler:
         return tuple(work.stress for work in self.works)
 
     @property
-    def values(self) -> tuple[np.ndarray, ...]:
-        """Values of point loads of each group, as they were taken."""
-        return self._acting[1:]
+    def memory(self) -> tuple[np.ndarray, ...]:
+        """The arrays that compiled code reads and writes, but for those that a state is placed in."""
+        kept = [array for sheet in self.equations.sheets for array in sheet.kept]
+        return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *self._acting)
 
-    @property
-    def tables(self) -> tuple[np.ndarray, ...]:
-        """The arrays whose addresses the table of the equations holds."""
-        return (self._groups, self._values, self._factors, *self._springs, *self._acting)
+    def load(self, body: np.ndarray, values: Sequence[np.ndarray]) -> list[int]:
+        """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first.
 
-    def load(self, body: np.ndarray, values: Sequence[np.ndarray]) -> None:
-        """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first."""
-        self._acting = tuple(np.ascontiguousarray(each, dtype=float) for each in (body, *values))
-        self.table[record.BODY] = self._acting[0].ctypes.data
-        self.table[record.LOADED] = int(self._acting[0].any())
-        self._values[:] = [each.ctypes.data for each in self._acting[1:]]
+        Return their addresses.
+        """
+        parts = (body, *values)
+        self._acting = (np.concatenate([part.ravel() for part in parts]),)
+        places, address = [], address_of(self._acting[0])
+        for part in parts:
+            places.append(address)
+            address += 8 * part.size
+        self.table[record.BODY], self.table[record.LOADED] = places[0], int(body.any())
+        self._values[:] = places[1:]
+        return places
 
     def weigh(self, coefficients: Sequence[float]) -> None:
         """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too."""
@@ -71,10 +140,14 @@ class Assembler:
 
     def place(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> None:
         """Take the arrays (n,) of a state and where results go; who calls keeps them alive."""
-        for number, values in enumerate((p, v, a)):
-            self.table[record.COORDINATES_P + number] = _address(values, self.size)
-        self.table[record.RESIDUAL] = _address(residual, self.size)
-        self.table[record.MATRIX], self.table[record.ENTRIES] = _address(matrix), matrix.size
+        states = [_address(values, self.size) for values in (p, v, a, residual)]
+        self.place_at((states[0], states[1], states[2]), states[3], _address(matrix), matrix.size)
+
+    def place_at(self, states: tuple[int, int, int], residual: int, matrix: int, entries: int) -> None:
+        """Take the addresses of the same, and how many entries the matrix has."""
+        table = self.table
+        table[record.COORDINATES_P], table[record.COORDINATES_V], table[record.COORDINATES_A] = states
+        table[record.RESIDUAL], table[record.MATRIX], table[record.ENTRIES] = residual, matrix, entries
 
     def balance(
         self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray, predicted: bool
@@ -87,7 +160,7 @@ class Assembler:
         self.place(p, v, a, residual, matrix)
         self.table[record.TANGENT] = int(matrix.size > 0)
         self.table[record.PREDICTED] = int(predicted and matrix.size > 0)
-        model_passes.balance(self.table)
+        model_passes.balance(self.address)
 
     def predict(self, p: np.ndarray, step: np.ndarray) -> None:
         """Fill `stresses` with those after a linearised step (n,) from p (n,)."""
@@ -97,7 +170,7 @@ class Assembler:
             _address(step, self.size),
         )
         for work in self.works:
-            model_passes.predict_resultants(work.table, self.table)
+            model_passes.predict_resultants(work.address, self.address)
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return e, e'' and elastic forces (N, per_node) of the only group in a state p, p', p'' (n,)."""
@@ -106,9 +179,9 @@ class Assembler:
         self.weigh((1.0, 0.0, 0.0))
         table[[record.TANGENT, record.PREDICTED, record.LOADED]] = 0
         self.require()
-        node_passes.place_nodes(work.table, table, 1)
-        model_passes.clear_forces(work.table)
-        element_passes.add_elements(work.table, table)
+        node_passes.place_nodes(work.address, self.address, 1)
+        model_passes.clear_forces(work.address)
+        element_passes.add_elements(work.address, self.address)
         size, force = 2 * int(work.table[record.VECTORS]), int(work.table[record.FORCE])
         return work.rows(0, size), work.rows(size, size), work.rows(force, size)
 
@@ -118,7 +191,7 @@ class Assembler:
         self.table[record.COORDINATES_P] = _address(p, self.size)
         found = []
         for work in self.works:
-            node_passes.place_nodes(work.table, self.table, 0)
+            node_passes.place_nodes(work.address, self.address, 0)
             found.append(work.rows(0, 2 * int(work.table[record.VECTORS])))
         return found
 
@@ -128,8 +201,8 @@ class Assembler:
         self.table[record.COORDINATES_P] = _address(p, self.size)
         smallest = 1.0
         for work in self.works:
-            node_passes.place_nodes(work.table, self.table, 0)
-            smallest = min(smallest, model_passes.smallest_jacobian(work.table))
+            node_passes.place_nodes(work.address, self.address, 0)
+            smallest = min(smallest, model_passes.smallest_jacobian(work.address))
         return smallest
 
 
@@ -137,4 +210,4 @@ def _address(values: np.ndarray, size: int | None = None) -> int:
     """Return the address of plain numbers (size,)."""
     if values.dtype != np.float64 or not values.flags.c_contiguous or (size is not None and values.size != size):
         raise ValueError(f"compiled code takes {size} contiguous floats, got {values.dtype} {values.shape}")
-    return int(values.ctypes.data)
+    return address_of(values)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.sheet import Sheet, make_sheet
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 
@@ -23,16 +23,16 @@ def no_loads(block: Block) -> PointLoads:
 
 def resultants(sheet: Sheet, p: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,), dp = step (n,)."""
-    assembler = Assembler((sheet,), _NO_SPRINGS, len(p))
+    assembler = Assembler(Equations((sheet,), _NO_SPRINGS, len(p)))
     assembler.predict(p, np.ascontiguousarray(step))
-    return assembler.stresses[0]
+    return assembler.stresses[0].copy()
 
 
 def elastic_forces(
     block: Block, p: np.ndarray, v: np.ndarray, a: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n)."""
-    assembler = Assembler((free_sheet(block, p.shape[1]),), _NO_SPRINGS, p.shape[1])
+    assembler = Assembler(Equations((free_sheet(block, p.shape[1]),), _NO_SPRINGS, p.shape[1]))
     size = 2 * block.scale.shape[1] // block.node.shape[1]
     e, acceleration, force = np.empty((3, len(p), len(block.dof), size))
     for step in range(len(p)):

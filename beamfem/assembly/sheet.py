@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.assembly.arena import address_of
 from beamfem.assembly.routines import Routines, routines
 from beamfem.kernels import record
 from beamfem.kernels.batch import rows_of
@@ -49,26 +50,6 @@ class Sheet:
         """Elements, quadrature points and measures."""
         t = self.table
         return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
-
-
-class Work:
-    """A sheet with space of its own, so that solves do not disturb each other."""
-
-    def __init__(self, sheet: Sheet, stress: np.ndarray | None = None) -> None:
-        self.sheet = sheet
-        self.chunks = np.empty(sheet.chunks) if sheet.constant is None else sheet.constant.copy()
-        self.space = np.empty(sheet.space)
-        self.stress = np.empty(sheet.points) if stress is None else np.ascontiguousarray(stress)
-        self.table = sheet.table.copy()
-        self.table[record.CHUNKS] = self.chunks.ctypes.data
-        self.table[record.SPACE] = self.space.ctypes.data
-        self.table[record.STRESS] = self.stress.ctypes.data
-
-    def rows(self, first: int, count: int) -> np.ndarray:
-        """Return rows of all nodes (N, count)."""
-        nodes = int(self.table[record.NODES])
-        own = self.chunks[:, first : first + count, :LANES]
-        return np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
 
 
 def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
@@ -141,7 +122,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     for field, values in held.items():
         kind = np.int32 if field == record.SLOT else (np.float64 if values.dtype.kind == "f" else np.int64)
         kept.append(np.ascontiguousarray(values, dtype=kind))
-        table[field] = kept[-1].ctypes.data
+        table[field] = address_of(kept[-1])
     table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
     table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
     table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends

@@ -1,44 +1,48 @@
 """The table of unknowns, factors and loop settings that compiled drivers work on."""
 
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
 
+from beamfem.assembly.arena import address_of
 from beamfem.kernels import march, model_passes, motion_steps, newton, record, rollers
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.compiling import Routine
 
 
 class SolverTable:
-    """A table for `kernels.newton` and `kernels.march`; it keeps the arrays whose addresses it holds."""
+    """What does not change of a table for `kernels.newton` and `kernels.march`: the unknowns (unknown,) of a band.
+
+    turned: numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): of the coordinates.
+    """
 
     def __init__(
-        self, free_dofs: np.ndarray, half_width: int, turned: tuple[np.ndarray, np.ndarray], moving: bool
+        self, free_dofs: np.ndarray, half_width: int, turned: tuple[np.ndarray, np.ndarray], scale: np.ndarray
     ) -> None:
-        self.table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
-        self._kept: dict[int, np.ndarray] = {}
-        first, normal = turned
-        self.routines = _driver_routines(half_width, moving)
-        self.set_whole(record.FREE_DOFS, free_dofs)
-        self.set_whole(record.ROLLER_FIRST, first)
-        self.set(record.ROLLER_NORMAL, normal)
-        self.table[record.UNKNOWN], self.table[record.HALF], self.table[record.ROLLERS] = (
-            len(free_dofs),
-            half_width,
-            len(first),
+        self.half_width = half_width
+        self._kept = (
+            *(np.ascontiguousarray(each, dtype=np.int64) for each in (free_dofs, turned[0])),
+            *(np.ascontiguousarray(each, dtype=float) for each in (turned[1], scale)),
         )
+        self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
+        for field, values in zip(
+            (record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL, record.SCALE), self._kept, strict=True
+        ):
+            self._table[field] = address_of(values)
+        self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), half_width
+        self._table[record.ROLLERS] = len(turned[0])
 
-    def set(self, field: int, values: np.ndarray) -> None:
-        """Take an array of numbers; compiled code writes to it where it is contiguous."""
-        self._put(field, np.ascontiguousarray(values, dtype=float))
+    def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
+        """Return the table with more of its fields filled."""
+        table = self._table.copy()
+        for field, address in addresses.items():
+            table[field] = address
+        return table
 
-    def set_whole(self, field: int, values: np.ndarray) -> None:
-        """Take an array of whole numbers."""
-        self._put(field, np.ascontiguousarray(values, dtype=np.int64))
-
-    def _put(self, field: int, values: np.ndarray) -> None:
-        self._kept[field] = values
-        self.table[field] = values.ctypes.data
+    def routines(self, moving: bool) -> np.ndarray:
+        """Return the addresses of what the driver of statics, or of motions, calls."""
+        return _driver_routines(self.half_width, moving)
 
 
 @cache

@@ -71,7 +71,9 @@ class Routine:
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, with arrays of the right type or addresses for pointers; other threads run meanwhile."""
-        return self._callable(*(each.ctypes.data if isinstance(each, ndarray) else each for each in arguments))
+        return self._callable(
+            *(each.__array_interface__["data"][0] if isinstance(each, ndarray) else each for each in arguments)
+        )
 
 
 def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:

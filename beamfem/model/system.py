@@ -6,8 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from beamfem.assembly.assembler import Assembler
-from beamfem.assembly.sheet import Sheet, make_sheet
+from beamfem.assembly.assembler import Assembler, Equations
+from beamfem.assembly.sheet import make_sheet
+from beamfem.assembly.solver_table import SolverTable
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
 from beamfem.kernels.block import (
@@ -80,12 +81,13 @@ class System:
         )
 
     @cached_property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The groups of elements as compiled code takes them."""
-        return self._sheets(self.blocks)
+    def equations(self) -> Equations:
+        """The equations as compiled code takes them."""
+        return self._equations(self.blocks)
 
-    def _sheets(self, blocks: Sequence[Block]) -> tuple[Sheet, ...]:
-        return tuple(make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True))
+    def _equations(self, blocks: Sequence[Block]) -> Equations:
+        sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
+        return Equations(sheets, self.springs, self.model.size)
 
     def assembler(
         self, stresses: Sequence[np.ndarray] | None = None, blocks: Sequence[Block] | None = None
@@ -94,8 +96,12 @@ class System:
 
         stresses (ne, nq, ns): of each block, for the geometric tangent; blocks: to take instead of those of the system.
         """
-        sheets = self.sheets if blocks is None else self._sheets(blocks)
-        return Assembler(sheets, self.springs, self.model.size, stresses)
+        return Assembler(self.equations if blocks is None else self._equations(blocks), stresses)
+
+    @cached_property
+    def solver_table(self) -> SolverTable:
+        """The unknowns of a band, as compiled drivers take them."""
+        return SolverTable(self.free_dofs, self.layouts[0].half_width, self.turned, self.scale)
 
     @cached_property
     def residual_errors(self) -> np.ndarray:

@@ -297,3 +297,18 @@ def test_a_prescribed_rotation_that_jumps_is_named_and_does_not_run_for_ever(ele
     with within(60.0), pytest.raises(bf.ConvergenceError, match="rotation") as caught:
         bf.solve_static(model, steps)
     assert caught.value.solution.load_factor[-1] == pytest.approx(0.3, abs=1e-3)
+
+
+@pytest.mark.parametrize("size", [1e10, 1e12, 1e14])
+def test_loads_beyond_all_stiffness_are_named_at_once(size):
+    """The path goes straight to a tip that is millions of lengths away, in steps of half a length each."""
+    section, material = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 10, bf.CRBF(3), section, material)
+    force = size * material.youngs_modulus * section.second_moment
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -force))])
+    with pytest.raises(bf.ConvergenceError, match=r"moved by .* times its size .* 5000 steps .* check the units") as caught:
+        bf.solve_static(model)
+    found = caught.value.solution
+    assert len(found) < 200
+    assert 0.0 < found.load_factor[-1] < 1e5 / size
+    np.testing.assert_allclose(found.reaction(beam.start)[1:, 1], force * found.load_factor[1:], rtol=1e-8)

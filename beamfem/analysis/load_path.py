@@ -10,11 +10,12 @@ from scipy.linalg import LinAlgError
 from beamfem.analysis.continuation import Continuation, PathPoint, begin
 from beamfem.analysis.critical_points import Segment, SegmentLostError
 from beamfem.analysis.iteration import Newton
-from beamfem.analysis.steps import Step, longest_step, take_step, too_small
+from beamfem.analysis.steps import Step, farthest, longest_step, take_step, too_small
 from beamfem.errors import BeamfemError
 from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
+_MOST_STEPS = 5000  # along the path, each by up to half the size of the model
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,10 @@ class PathLostError(BeamfemError):
         super().__init__(reason)
         self.iterations = iterations
         self.cuts = cuts
+
+
+class OutOfReachError(PathLostError):
+    """The path goes on straight, and the load is more steps along it away than are taken."""
 
 
 class TurnsBackError(BeamfemError):
@@ -64,7 +69,7 @@ class PathFollower:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
         end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
-        along the path is accepted.
+        along the path is accepted, OutOfReachError where too many would be needed.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -72,6 +77,7 @@ class PathFollower:
             line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
         except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
+        left = _MOST_STEPS
         while point.load_factor < beyond:
             step, iterations, cuts = _step(line, point, self.size)
             self.size = step.next_size
@@ -81,6 +87,23 @@ class PathFollower:
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
+            left -= 1
+            self._require_reach(line, step.segment, beyond, left)
+
+    def _require_reach(self, line: Continuation, segment: Segment, beyond: float, steps: int) -> None:
+        """Raise OutOfReachError where so many steps do not come to a load factor on a path as straight as it is now."""
+        point, length = segment.after, farthest(line, segment.after, steps)
+        bend = line.length(point.tangent - segment.before.tangent) / line.length(segment.chord)
+        reach = point.load_factor + length * float(point.tangent[-1])
+        if bend * length < 1.0 and reach < beyond:
+            moved = float(np.max(np.abs(point.y[:-1] - self.system.reference) / self.system.scale))
+            raise OutOfReachError(
+                f"the structure has moved by {moved:.2g} times its size there, and {_MOST_STEPS} steps along the path "
+                f"come to load factor {reach:.2g} at most. The loads are too large for its stiffness: check the units "
+                "of loads, sections and materials, or apply a share of the loads",
+                0,
+                0,
+            )
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

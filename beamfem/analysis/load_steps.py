@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import STATICS, linearise, predicted_stresses
 from beamfem.analysis.iteration import Ended, Newton, NewtonResult
-from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
+from beamfem.analysis.load_path import OutOfReachError, PathFollower, PathLostError, TurnsBackError
 from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.snap import rest_state
 from beamfem.analysis.static_record import StaticRecord
@@ -43,7 +43,7 @@ def reach(
             step = _within_a_turn(system, done, step)
             stop = next((stop for stop in ahead if stop > done.reached + _SAME), 1.0)
             target = stop if done.reached + step > stop - _SAME else done.reached + step
-            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
+            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not _over_a_gap(system, done, target, result, newton):
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
@@ -87,7 +87,7 @@ def _over_a_gap(system: System, done: StaticRecord, target: float, result: Newto
     half_way = 0.5 * (done.state + result.state)
     _, tangent = linearise(system, half_way, rest, rest, 0.5 * (done.reached + target), STATICS, mean)
     try:
-        return tangent.factorised(system.turned).negative_pivots != done.negative_pivots[-1]
+        return tangent.factorised(system.turned).negative_pivots != done.negative_pivots
     except LinAlgError:
         return True
 
@@ -123,10 +123,9 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
     except PathLostError as lost:
         done.iterations += lost.iterations
         done.cuts += lost.cuts
+        cut = "" if isinstance(lost, OutOfReachError) else ", with load steps and steps along the path cut to round-off"
         raise ConvergenceError(
-            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}, with load steps and "
-            "steps along the path cut to round-off",
-            done.solution(),
+            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}{cut}", done.solution()
         ) from lost
 
 

@@ -56,6 +56,12 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
     return size
 
 
+def farthest(line: Continuation, point: PathPoint, steps: int) -> float:
+    """Return the length of so many steps from a point at most, as their movement bounds them."""
+    load_share = abs(float(point.tangent[-1])) / line.load_scale
+    return steps * _LARGEST / max(float(np.sqrt(max(1.0 - load_share**2, 0.0))), 1e-12)
+
+
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
     """Tell whether a step would be lost in the digits of the point."""
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)

@@ -306,7 +306,7 @@ def test_loads_beyond_all_stiffness_are_named_at_once(size):
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 10, bf.CRBF(3), section, material)
     force = size * material.youngs_modulus * section.second_moment
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -force))])
-    with pytest.raises(bf.ConvergenceError, match=r"moved by .* times its size .* 5000 steps .* check the units") as caught:
+    with pytest.raises(bf.ConvergenceError, match="out of reach: the loads are far too large") as caught:
         bf.solve_static(model)
     found = caught.value.solution
     assert len(found) < 200

@@ -24,11 +24,11 @@ class _Lines:
         return line
 
 
-class _Text(_Lines, io.TextIOWrapper):
+class _Text(_Lines, io.TextIOWrapper):  # type: ignore[misc]
     pass
 
 
-class _Bytes(_Lines, io.BufferedReader):
+class _Bytes(_Lines, io.BufferedReader):  # type: ignore[misc]
     pass
 
 

@@ -11,6 +11,8 @@ from drawn import cantilever, frame, pendulum, share_of_ink
 from PIL import Image, ImageSequence
 
 import beamfem as bf
+from beamfem.view.acting import FORCE
+from beamfem.view.animation import _palette
 
 
 @pytest.fixture(scope="module")
@@ -99,3 +101,12 @@ def test_mp4_of_ffmpeg(falling, tmp_path):
     frames, seconds = library.count_frames_and_secs(str(path))
     assert frames == 20
     assert seconds == pytest.approx(2.0, abs=0.1)
+
+
+def test_colours_of_an_animation_fade_into_white():
+    """Edges are drawn with shares of a colour over white; each share must have a colour close by in the palette."""
+    palette = _palette().astype(float)
+    force = np.array([int(FORCE[i : i + 2], 16) for i in (1, 3, 5)])
+    for share in np.linspace(0.0, 1.0, 30):
+        wanted = share * force + (1.0 - share) * 255.0
+        assert np.abs(palette - wanted).max(axis=1).min() < 20.0

@@ -128,3 +128,20 @@ def test_a_structure_that_comes_to_rest_nowhere_says_so():
     with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it") as caught:
         bf.solve_static(bf.Model([bar], supports, [push]), snap="jump")
     assert caught.value.load_factor == pytest.approx(0.8, rel=1e-6)
+
+
+def test_standing_loads_that_had_to_grow_leave_the_state_as_unstable_as_it_is():
+    """A wavy cantilever that one step does not reach, and beside it a column under twice its buckling load."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    stiffness = 2e11 * section.second_moment
+    wavy = bf.Beam(bf.Parametric(lambda u: (u, 0.3 * np.sin(3 * u)), 0, 1.5), 40, bf.ShearRigid(), section, steel)
+    column = bf.Beam(bf.Line((5, 0), (6, 0)), 4, bf.ShearRigid(), section, steel)
+    loads = [
+        bf.PointForce(wavy.end, tuple(stiffness * np.array([-2.0, 3.0])), scale=False),
+        bf.PointForce(column.end, (-0.5 * np.pi**2 * stiffness, 0.0), scale=False),
+    ]
+    model = bf.Model([wavy, column], [bf.Clamp(wavy.start), bf.Clamp(column.start)], loads)
+    with pytest.warns(bf.UnstableWarning):
+        solution = bf.solve_static(model)
+    assert solution.position(wavy.end)[0] == pytest.approx([-0.00684, 1.71669], abs=2e-5)
+    assert not solution.stable.any()

@@ -1,0 +1,100 @@
+"""Critical points within a step of a path: curves given by a formula, and columns whose buckling loads are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.linalg import LinAlgError
+from test_bifurcations import buckling_load, column, loads_of
+from test_path import LIMIT_HEIGHT, SOFT, bar_force, cantilever
+
+import beamfem as bf
+from beamfem.analysis import bifurcations as found_by
+from beamfem.analysis.continuation import PathPoint, begin
+from beamfem.analysis.critical import _between
+from beamfem.analysis.critical_points import Segment
+from beamfem.analysis.iteration import Newton
+from beamfem.analysis.loading_path import PathLostError
+from beamfem.analysis.trace import trace_equilibrium
+from beamfem.model.system import System
+
+
+class Curve:
+    """A load factor given over one coordinate, as a loading path; `aside`: by how much its inside lies elsewhere."""
+
+    line = SimpleNamespace(dot=np.dot, length=np.linalg.norm)
+
+    def __init__(self, coefficients, aside=0.0):
+        self.load, self.aside = np.polynomial.Polynomial(coefficients), aside
+
+    def at(self, x):
+        tangent = np.array([1.0, self.load.deriv()(x)])
+        return PathPoint(np.array([x, self.load(x)]), tangent / np.linalg.norm(tangent), None)
+
+    def normal(self, before, after):
+        return np.array([1.0, 0.0])
+
+    def corrected(self, start, base, normal, like):
+        return self.at(start[0] + self.aside)
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "inside"),
+    [
+        ((0.0, 1.0, -0.9, 1.0), 0.3),  # the slope is least where 6 x = 1.8
+        ((0.0, 1.0, -2.91, 1.0), 0.5),  # at 0.97, next to the end
+        ((0.0, 1.0, 1.5, 1.0), 0.5),  # at -0.5, outside
+        ((0.0, 2.0), 0.5),
+    ],
+)
+def test_a_step_is_looked_at_where_its_slope_differs_most_or_half_way(coefficients, inside):
+    path = Curve(coefficients)
+    assert _between(path, path.at(0.0), path.at(1.0)).y[0] == pytest.approx(inside, abs=1e-12)
+
+
+@pytest.mark.parametrize(("aside", "refused"), [(0.01, False), (0.2, True)])
+def test_a_step_whose_inside_is_not_what_its_ends_foretell_is_refused(aside, refused):
+    path = Curve((0.0, 1.0, 1.5, 1.0), aside)
+    ends = path.at(0.0), path.at(1.0)
+    if refused:
+        with pytest.raises(PathLostError, match="turns too sharply"):
+            _between(path, *ends)
+    else:
+        assert _between(path, *ends).y[0] == pytest.approx(0.5 + aside)
+
+
+def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypatch):
+    """Buckling loads (pi / 2)^2 (1, 9, 25) of a thin column; only parts shorter than 0.3 of the step can be solved."""
+    _, model = cantilever(1000, (0.0, -1.0))
+    system = System(model, static=True)
+    line, start = begin(system, system.reference, 0.0, Newton())
+    far = start.y + 70.0 * start.tangent / start.tangent[-1]
+    far = line.correct(far, line.stresses(start.y, far - start.y), start.tangent).y
+    segment = Segment(line, start, line.linearised(far, start.tangent))
+    together, parts = found_by._together, []
+
+    def singular(segment, start, end, change):
+        parts.append((start, end))
+        if end - start > 0.3:
+            raise LinAlgError
+        return together(segment, start, end, change)
+
+    monkeypatch.setattr(found_by, "_together", singular)
+    loads = [found.y[-1] for found in found_by.bifurcations(segment, [])]
+    assert loads == pytest.approx(np.pi**2 / 4 * np.array([1.0, 9.0, 25.0]), rel=3e-5)
+    assert parts[:3] == [(0.0, 1.0), (0.0, 0.5), (0.0, 0.25)]
+
+
+def test_bifurcations_around_a_limit_point_are_listed_in_the_order_of_the_path():
+    """Two bars that snap together, and beside them a column that buckles just before and comes back behind."""
+    section = bf.Section(area=1.0, second_moment=10.0)
+    bars = [bf.Beam(bf.Line((0, 0), (1.0, 0.4)), 1, bf.CRBF(1), section, SOFT) for _ in range(2)]
+    limit = bar_force(0.4 - LIMIT_HEIGHT)
+    critical = 0.97 * limit
+    aside, way = column(stiffness=critical / buckling_load(0.5 * np.pi))
+    supports = [support for one in bars for support in (bf.Pin(one.start), bf.Roller(one.end, (1.0, 0.0)))]
+    loads = [*(bf.PointForce(one.end, (0.0, -1.0)) for one in bars), bf.PointForce(aside.end, tuple(-way))]
+    model = bf.Model([*bars, aside], [*supports, bf.Clamp(aside.start)], loads)
+    path = trace_equilibrium(model, lambda state: state.displacement(bars[0].end)[1] < -0.3)
+    assert [found.load_factor for found in path.limit_points] == pytest.approx([limit], rel=1e-7)
+    assert loads_of(path)[:3] == pytest.approx([critical, limit, critical], rel=1e-6)

@@ -5,17 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.linalg import LinAlgError
-from test_bifurcations import buckling_load, column, loads_of
-from test_path import LIMIT_HEIGHT, SOFT, bar_force, cantilever
+from test_path import cantilever
 
-import beamfem as bf
 from beamfem.analysis import bifurcations as found_by
 from beamfem.analysis.continuation import PathPoint, begin
 from beamfem.analysis.critical import _between
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.iteration import Newton
 from beamfem.analysis.loading_path import PathLostError
-from beamfem.analysis.trace import trace_equilibrium
 from beamfem.model.system import System
 
 
@@ -85,16 +82,14 @@ def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypa
     assert parts[:3] == [(0.0, 1.0), (0.0, 0.5), (0.0, 0.25)]
 
 
-def test_bifurcations_around_a_limit_point_are_listed_in_the_order_of_the_path():
-    """Two bars that snap together, and beside them a column that buckles just before and comes back behind."""
-    section = bf.Section(area=1.0, second_moment=10.0)
-    bars = [bf.Beam(bf.Line((0, 0), (1.0, 0.4)), 1, bf.CRBF(1), section, SOFT) for _ in range(2)]
-    limit = bar_force(0.4 - LIMIT_HEIGHT)
-    critical = 0.97 * limit
-    aside, way = column(stiffness=critical / buckling_load(0.5 * np.pi))
-    supports = [support for one in bars for support in (bf.Pin(one.start), bf.Roller(one.end, (1.0, 0.0)))]
-    loads = [*(bf.PointForce(one.end, (0.0, -1.0)) for one in bars), bf.PointForce(aside.end, tuple(-way))]
-    model = bf.Model([*bars, aside], [*supports, bf.Clamp(aside.start)], loads)
-    path = trace_equilibrium(model, lambda state: state.displacement(bars[0].end)[1] < -0.3)
-    assert [found.load_factor for found in path.limit_points] == pytest.approx([limit], rel=1e-7)
-    assert loads_of(path)[:3] == pytest.approx([critical, limit, critical], rel=1e-6)
+def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_the_path(monkeypatch):
+    """Where the load turns because a path crosses, at 0.6 of a step, and half-way along the parts beside it."""
+
+    def crossing(x):
+        return found_by.Crossing(x, np.zeros(1), np.zeros(1), np.zeros(1))
+
+    monkeypatch.setattr(found_by, "turning", lambda segment, x: crossing(x))
+    monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
+    segment = SimpleNamespace(turned=[0.6], change=lambda start, end: 0)
+    shares = [found.share for found in found_by.bifurcations(segment, [])]
+    assert shares == pytest.approx([0.3, 0.6, 0.8], abs=1e-3)

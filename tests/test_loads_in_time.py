@@ -151,11 +151,15 @@ def test_a_pulse_gives_its_impulse_in_any_unit_of_time(unit):
 
 @pytest.mark.parametrize("unit", [1e-12, 1e12])
 def test_steps_are_divided_at_the_same_kinks_in_any_unit_of_time(unit):
-    """A jump at the end of a step, a hump that bulges inside one, and a kink in the middle of another."""
+    """A jump at the end of a step, a hump that bulges inside one, and a kink in the middle of another.
+
+    The ramp that they stand on is there during the motion only: nothing is asked before or after it.
+    """
 
     def amplitude(time):
         share = time / unit
-        return 1.0 + (share >= 3.0) + max(0.0, 1.0 - abs(share - 5.5)) + 4.0 * max(0.0, 0.25 - (share - 7.5) ** 2)
+        ramp = share * (0.0 <= share <= 10.0)
+        return ramp + (share >= 3.0) + max(0.0, 1.0 - abs(share - 5.5)) + 16.0 * max(0.0, 0.25 - (share - 7.5) ** 2)
 
     found = []
     for own in (1.0, unit):

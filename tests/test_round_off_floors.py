@@ -29,15 +29,23 @@ def test_no_row_feels_more_of_errors_of_positions_than_is_foreseen(kind, forces)
     assert foreseen.max() < 10.0 * worst.max()
 
 
-def test_digits_are_those_of_the_moment_where_what_is_left_turns_the_model():
-    """Forces f up before the middle and down behind it: a couple of f (0.75 + 0.5 + 0.25) 2 under a load P at 2 m."""
+@pytest.mark.parametrize(
+    ("label", "shares", "worst"),
+    [
+        ("r^x", (1, 1, 1, 1, 1, 1, 1), 7.0 * 2.0),
+        ("r^y", (1, 1, 1, 1, 1, 1, 1), 7.0 * 2.0),
+        ("r^y", (1, 1, 1, 0, -1, -1, -1), 2.0 * (0.75 + 0.5 + 0.25)),
+    ],
+    ids=["along", "across", "turning"],
+)
+def test_digits_are_those_of_the_balance_of_the_whole(label, shares, worst):
+    """A load P on a model of 2 m, forces f left at inner nodes: their sum times 2 m, or their moment, beside P 2 m."""
     beam = bf.Beam(bf.Line((-1, 0), (1, 0)), 8, bf.CRBF(1), SECTION, SOFT)
     load, left = 40.0, 1e-3
     system = System(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, load))]), static=True)
     assert system.extent == pytest.approx(2.0)
-    unbalanced = np.zeros(system.model.size)
-    (mesh,) = system.model.meshes
-    for node, force in ((1, left), (2, left), (3, left), (5, -left), (6, -left), (7, -left)):
-        unbalanced[mesh.coordinates_of(node)["r^y"]] = force
+    (mesh,), unbalanced = system.model.meshes, np.zeros(system.model.size)
+    for node, share in enumerate(shares, start=1):
+        unbalanced[mesh.coordinates_of(node)[label]] = share * left
     found = _digits(system, system.reference, unbalanced, 1.0)
-    assert found == pytest.approx(np.log10(2.0 * load / (3.0 * left)), abs=1e-9)
+    assert found == pytest.approx(np.log10(2.0 * load / (worst * left)), abs=1e-9)

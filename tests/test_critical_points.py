@@ -8,18 +8,20 @@ from numpy.linalg import LinAlgError
 from test_path import cantilever
 
 from beamfem.analysis import bifurcations as found_by
+from beamfem.analysis import critical
 from beamfem.analysis.continuation import PathPoint, begin
-from beamfem.analysis.critical import _between
+from beamfem.analysis.critical import BIFURCATION, Critical, Search, _between
 from beamfem.analysis.critical_points import Segment
 from beamfem.analysis.iteration import Newton
 from beamfem.analysis.loading_path import PathLostError
+from beamfem.analysis.window import Zero
 from beamfem.model.system import System
 
 
 class Curve:
     """A load factor given over one coordinate, as a loading path; `aside`: by how much its inside lies elsewhere."""
 
-    line = SimpleNamespace(dot=np.dot, length=np.linalg.norm)
+    line, start = SimpleNamespace(dot=np.dot, length=np.linalg.norm), None
 
     def __init__(self, coefficients, aside=0.0):
         self.load, self.aside = np.polynomial.Polynomial(coefficients), aside
@@ -58,6 +60,51 @@ def test_a_step_whose_inside_is_not_what_its_ends_foretell_is_refused(aside, ref
             _between(path, *ends)
     else:
         assert _between(path, *ends).y[0] == pytest.approx(0.5 + aside)
+
+
+class Interpolated:
+    """A window in which stiffness vanishes at known places (k,)."""
+
+    def __init__(self, centre, radius, places):
+        self.centre, self.radius, self.places = centre, radius, places
+        self.alike, self.points = True, [None]
+
+    def zeros(self, reach):
+        return [Zero(at, 0) for at in self.places if abs(at - self.centre) <= reach]
+
+
+@pytest.fixture
+def searched(monkeypatch):
+    """Return a function that makes the search in a step from 0 to 1 with stiffness that vanishes at places (k,)."""
+
+    def make(*places):
+        path = Curve((0.0, 2.0))
+        about = SimpleNamespace(about=lambda path, normal, ends, centre, radius: Interpolated(centre, radius, places))
+        monkeypatch.setattr(critical, "Window", about)
+        return Search(path, path.at(0.0), path.at(1.0))
+
+    return make
+
+
+@pytest.mark.parametrize("place", [0.4, 0.5, 0.51, 0.6])
+def test_a_window_is_moved_to_the_critical_point_on_either_side_of_it(searched, place):
+    window, zeros = searched(0.5)._centred(place, 0.2)
+    assert abs(window.centre - 0.5) <= 0.03
+    assert [zero.at for zero in zeros] == [0.5]
+
+
+def test_a_critical_point_far_from_the_centre_is_left_to_a_window_of_its_own(searched, monkeypatch):
+    """At 0.5 and 0.6 of a step: in the widest window of 0.2 the second lies too far out to be interpolated well."""
+    read = []
+
+    def reads(search, window, zeros):
+        read.append([zero.at for zero in zeros])
+        return [Critical(BIFURCATION, zero.at, np.zeros(1), np.zeros(1), np.inf) for zero in zeros]
+
+    monkeypatch.setattr(Search, "_read", reads)
+    found, _, _ = searched(0.5, 0.6).located(0.49)
+    assert [one.load_factor for one in found] == [0.5]
+    assert all(zeros == [0.5] for zeros in read)
 
 
 def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypatch):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.analysis import snap
 
 
 def toggle(load, element=None, turn=0.0):
@@ -145,3 +146,19 @@ def test_standing_loads_that_had_to_grow_leave_the_state_as_unstable_as_it_is():
         solution = bf.solve_static(model)
     assert solution.position(wavy.end)[0] == pytest.approx([-0.00684, 1.71669], abs=2e-5)
     assert not solution.stable.any()
+
+
+def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
+    """Beside a frame that snaps at a third of its load, a straight column is past its buckling load by then."""
+    monkeypatch.setattr(snap, "_STEPS", 60)
+    _, frame = toggle(95.2)
+    column = bf.Beam(bf.Line((3, 0), (4, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    critical = np.pi**2 / 4.0 * 2e11 * 0.01**4 / 12.0
+    model = bf.Model(
+        [*frame.beams, column],
+        [*frame.supports, bf.Clamp(column.start)],
+        [*frame.loads, bf.PointForce(column.end, (-5.0 * critical, 0.0))],
+        frame.joints,
+    )
+    with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it"):
+        bf.solve_static(model, 10, snap="jump")

@@ -288,9 +288,9 @@ def test_arrows_of_a_pressure_stand_normal_to_the_deformed_axis():
         assert vector == pytest.approx(share * np.linalg.norm(vectors[-1]) * np.array([-r_x[1], r_x[0]]), rel=1e-3)
 
 
-@pytest.mark.parametrize(("begin", "end", "gap"), [(2.0, 4.6, True), (1.0, 4.6, False)])
+@pytest.mark.parametrize(("begin", "end", "gap"), [(2.0, 4.2, True), (1.0, 4.6, False)])
 def test_a_slow_load_step_looks_half_way_under_the_pressure_there(begin, end, gap):
-    """A ring under p R^3 / EI buckles at 3, and at 4 if pressure did not turn with it: 3.3 is beyond, 2.8 is not."""
+    """A ring under p R^3 / EI buckles at 3, later if pressure did not turn with it: 3.1 is beyond, 2.8 is not."""
     section = bf.Section.from_stiffness(1e7, 1e7, 1.0, 1.0, 1.0)
     arcs, supports, joints = ring_of(8, bf.CRBF(4), section)
     system = System(bf.Model(arcs, supports, [bf.Pressure(arc, end) for arc in arcs], joints), static=True)

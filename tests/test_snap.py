@@ -5,6 +5,8 @@ import pytest
 
 import beamfem as bf
 from beamfem.analysis import snap
+from beamfem.analysis.iteration import Ended, NewtonResult
+from beamfem.model.system import System
 
 
 def toggle(load, element=None, turn=0.0):
@@ -162,3 +164,26 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
     )
     with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it"):
         bf.solve_static(model, 10, snap="jump")
+
+
+def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):
+    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on."""
+    _, model = toggle(1.0)
+    system = System(model, static=True)
+    limit = np.append(system.reference, 0.3)
+    beyond = limit.copy()
+    beyond[system.free_dofs] += 1e-4 * system.scale[system.free_dofs]
+    far = system.reference + 0.5 * system.scale
+    ends = iter([(Ended.EXHAUSTED, 0, None), (Ended.CONVERGED, 1, None), (Ended.CONVERGED, 0, far)])
+    found = NewtonResult(system.reference, 3, Ended.CONVERGED)
+
+    def solved(system, p, *given, **named):
+        end = next(ends, None)
+        return found if end is None else NewtonResult(p if end[2] is None else end[2], 3, end[0], end[1])
+
+    monkeypatch.setattr(snap, "_step", lambda system, p, load_factor, time: (p + 1e-5 * system.scale, 1))
+    monkeypatch.setattr(snap, "solve_equilibrium", solved)
+    rest = snap.rest_state(system, limit, beyond, bf.Newton())
+    assert rest.ended is Ended.CONVERGED
+    assert rest.state is found.state
+    assert rest.iterations == 4 * (1 + 3)

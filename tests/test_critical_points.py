@@ -12,9 +12,10 @@ from beamfem.analysis import critical
 from beamfem.analysis.continuation import PathPoint, begin
 from beamfem.analysis.critical import BIFURCATION, Critical, Search, _between
 from beamfem.analysis.critical_points import Segment
+from beamfem.analysis.equations import STATICS, linearise
 from beamfem.analysis.iteration import Newton
 from beamfem.analysis.loading_path import PathLostError
-from beamfem.analysis.window import Zero
+from beamfem.analysis.window import Zero, smooth
 from beamfem.model.system import System
 
 
@@ -60,6 +61,27 @@ def test_a_step_whose_inside_is_not_what_its_ends_foretell_is_refused(aside, ref
             _between(path, *ends)
     else:
         assert _between(path, *ends).y[0] == pytest.approx(0.5 + aside)
+
+
+@pytest.mark.parametrize("x", [-0.3, 0.0, 0.4, 1.0, 1.2])
+def test_a_path_is_foretold_by_the_cubic_through_its_ends_and_by_its_tangents_beyond(x):
+    path = Curve((0.2, 2.0, 1.5, 1.0))
+    ends = path.at(0.0), path.at(1.0)
+    beside = np.clip(x, 0.0, 1.0)
+    expected = [x, path.load(beside) + (x - beside) * path.load.deriv()(beside)]
+    assert smooth(path, path.normal(*ends), ends, x) == pytest.approx(expected, abs=1e-12)
+
+
+def test_softness_of_a_change_is_its_product_with_the_inverse_of_the_tangent():
+    """w . K^-1 w by a dense solution, w the change by the weights that its length is measured with."""
+    _, model = cantilever(10, (0.0, -1.0), elements=2)
+    system = System(model, static=True)
+    line, start = begin(system, system.reference, 0.0, Newton())
+    rest = np.zeros(system.model.size)
+    tangent = linearise(system, start.y[:-1], rest, rest, 0.0, STATICS)[1].sparse(system.turned).toarray()
+    change = np.random.default_rng(3).standard_normal(len(start.y))
+    right = (line.weights * change)[system.free_dofs]
+    assert line.softness(start.factors, change) == pytest.approx(right @ np.linalg.solve(tangent, right), rel=1e-9)
 
 
 class Interpolated:

@@ -200,7 +200,7 @@ def _stiffness(at: bf.Solution, shape: np.ndarray) -> tuple[np.ndarray, np.ndarr
     tangent = linearise(system, at.p[0], rest, rest, float(at.at[0]), STATICS)[1].sparse(system.turned)
     cut_off = np.zeros(len(shape))  # the difference is of fourth order, of each part of a row that may cancel
     cut_off[system.free_dofs] = _STRAIN**4 * (abs(tangent) @ np.abs(shape[system.free_dofs]))
-    noise = (floor_of(at.model, at.p[0]) / width + cut_off) * system.scale
+    noise = (floor_of(at) / width + cut_off) * system.scale
     return result, noise[system.free_dofs] + float(np.max(noise[system.free_dofs], initial=0.0))
 
 

@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.linalg import ldl
 from shooting import Member, solved
 
 import beamfem as bf
@@ -185,5 +184,4 @@ def test_negative_pivots_of_a_mixed_tangent_are_counted_block_by_block():
     for size in (1, 2, 5, 40):
         random = rng.standard_normal((size, size))
         matrix = random + random.T - 0.9 * np.diag(np.diag(random + random.T))  # such ones need pivots of two rows
-        _, blocks, _ = ldl(matrix)
-        assert negative_eigenvalues(blocks) == np.sum(np.linalg.eigvalsh(matrix) < 0.0)
+        assert negative_eigenvalues(matrix) == np.sum(np.linalg.eigvalsh(matrix) < 0.0)

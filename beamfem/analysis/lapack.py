@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dsytrf, dsytrf_lwork
 
 __all__ = [
     "LinAlgError",
     "cholesky",
     "eig",
     "eigh",
-    "ldl",
     "null_space",
     "qr",
     "solve_banded",
     "solve_triangular",
     "svd",
+    "symmetric_factors",
 ]
 
 
@@ -46,9 +47,20 @@ def _told_apart(function: Callable[..., Any]) -> Callable[..., Any]:
 cholesky = _told_apart(scipy.linalg.cholesky)
 eig = _told_apart(scipy.linalg.eig)
 eigh = _told_apart(scipy.linalg.eigh)
-ldl = _told_apart(scipy.linalg.ldl)
 null_space = _told_apart(scipy.linalg.null_space)
 qr = _told_apart(scipy.linalg.qr)
 solve_banded = _told_apart(scipy.linalg.solve_banded)
 solve_triangular = _told_apart(scipy.linalg.solve_triangular)
 svd = _told_apart(scipy.linalg.svd)
+
+
+def symmetric_factors(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the factors L D L^T (n, n) of a symmetric matrix in its lower half, and its row exchanges (n,).
+
+    Exchanges are negative in both rows of a block of two in D. Raises LinAlgError for numbers that are not finite.
+    """
+    if not np.isfinite(matrix).all():
+        raise LinAlgError("a matrix has numbers that are not finite")
+    work, _ = dsytrf_lwork(len(matrix), lower=1)
+    factored, exchanged, _ = dsytrf(matrix, lower=1, lwork=int(work))
+    return factored, exchanged

@@ -10,7 +10,7 @@ from beamfem.analysis.equations import STATICS, linearise, predicted_stresses
 from beamfem.analysis.iteration import Ended, Newton, NewtonResult
 from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
 from beamfem.analysis.newton import solve_equilibrium
-from beamfem.analysis.snap import rest_state
+from beamfem.analysis.snap import rest_state, same_point
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.model.system import System
@@ -124,9 +124,7 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
         done.iterations += lost.iterations
         done.cuts += lost.cuts
         raise ConvergenceError(
-            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}, with load steps and "
-            "steps along the path cut to round-off",
-            done.solution(),
+            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}", done.solution()
         ) from lost
 
 
@@ -141,6 +139,11 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             load_factor,
             done.solution(),
         )
+    if follower.left is not None and same_point(follower.system, follower.left, turn.limit):
+        raise LimitPointError(
+            f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()
+        )
+    follower.left = turn.limit
     found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += found.iterations
     if not found.ended.good:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.analysis.lapack import LinAlgError, ldl
+from beamfem.analysis.lapack import LinAlgError, symmetric_factors
 from beamfem.analysis.tangent import Stresses, Tangent, Turned, turning
 from beamfem.kernels.block import Block
 from beamfem.kernels.form import Form
@@ -44,8 +44,7 @@ class MixedFactors:
         """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
         if self.matrix.shape[0] > _COUNTED:
             return self.tangent.plain.factorised(self.turned).negative_pivots
-        _, blocks, _ = ldl(self.matrix.toarray())
-        return negative_eigenvalues(blocks) - (self.matrix.shape[0] - int(self.kept.sum()))
+        return negative_eigenvalues(self.matrix.toarray()) - (self.matrix.shape[0] - int(self.kept.sum()))
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
@@ -106,15 +105,15 @@ class MixedTangent:
         rest = (turn @ self.rest @ turn.T)[kept][:, kept]
         couples = dia_array((self.weight[None], [0]), shape=(len(self.weight),) * 2) @ self.slopes @ turn.T
         couples = csr_array(couples)[:, kept]
-        matrix = csc_array(block_array([[rest, couples.T], [couples, -self.flexibility]]))
-        scale = np.ones(matrix.shape[0])
+        placed = coo_array(block_array([[rest, couples.T], [couples, -self.flexibility]]))
+        (row, column), sizes = placed.coords, np.abs(placed.data)
+        scale = np.ones(placed.shape[0])
         for _ in range(3):
-            scaled = dia_array((scale[None], [0]), shape=matrix.shape) @ abs(matrix)
-            largest = (scaled @ dia_array((scale[None], [0]), shape=matrix.shape)).max(axis=1).toarray().ravel()
+            largest = np.zeros(len(scale))
+            np.maximum.at(largest, row, scale[row] * sizes * scale[column])
             # powers of two round nothing
             scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
-        diagonal = dia_array((scale[None], [0]), shape=matrix.shape)
-        matrix = csc_array(diagonal @ matrix @ diagonal)
+        matrix = csc_array(coo_array((scale[row] * placed.data * scale[column], (row, column)), shape=placed.shape))
         try:
             return MixedFactors(splu(matrix), scale, matrix, kept, self, turned)
         except RuntimeError as error:
@@ -139,10 +138,11 @@ class MixedTangent:
         return self.plain.sparse(turned)
 
 
-def negative_eigenvalues(blocks: np.ndarray) -> int:
-    """Return how many eigenvalues of a symmetric matrix (n, n) of blocks of one or two rows are negative."""
-    pivots, beside = np.diagonal(blocks).copy(), np.append(np.diagonal(blocks, 1), 0.0)
-    first = np.flatnonzero(beside)
+def negative_eigenvalues(matrix: np.ndarray) -> int:
+    """Return how many eigenvalues of a symmetric matrix (n, n) are negative (Bunch and Kaufman 1977)."""
+    factored, exchanged = symmetric_factors(matrix)
+    pivots, beside = np.diagonal(factored).copy(), np.diagonal(factored, -1)
+    first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a block of two are marked
     mean, half = 0.5 * (pivots[first] + pivots[first + 1]), 0.5 * (pivots[first] - pivots[first + 1])
     away = np.hypot(half, beside[first])
     pivots[first], pivots[first + 1] = mean - away, mean + away

@@ -1,16 +1,18 @@
 """Where a structure comes to rest that snaps at a limit point under a load that stays.
 
 Slow loading and damping: the motion is the overdamped one, M q' = -r(q), in implicit Euler steps that grow as it comes
-to rest. It loses potential energy in every step, so it ends in a stable equilibrium.
+to rest. Loads that keep their direction lose potential energy in every step, so it ends in a stable equilibrium, as
+long as a step does not leave the valley it is in: M / dt + K must be positive on the way.
 """
 
 import numpy as np
-from scipy.linalg import LinAlgError
 
 from beamfem.analysis.equations import INERTIA, linearise, residual
 from beamfem.analysis.iteration import Ended, Newton, NewtonResult
+from beamfem.analysis.lapack import LinAlgError
 from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.pencil import UNTURNED
+from beamfem.kernels.reduce import place_nodes
 from beamfem.model.system import System
 
 _STEPS = 2000
@@ -18,6 +20,8 @@ _ITERATIONS = 8  # of Newton's method in a step
 _LARGEST_MOVE = 0.1  # in a step: lengths of the model, radians
 _NEAR = 1e-3  # a step that moves less than this, however long, is close to rest
 _CLOSE = 1e-9  # of the move: the last correction of a step
+_SAME_LOAD = 1e-6  # limit points are located to about 1e-8
+_SAME_PLACE = 1e-3  # of the model, or of a gradient: by 1e-6 loads beside a limit point, states differ by the root
 
 
 def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Newton) -> NewtonResult:
@@ -51,15 +55,42 @@ def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Ne
     return NewtonResult(p, iterations, Ended.EXHAUSTED)
 
 
+def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
+    """Tell whether two limit points (n + 1,) are the same but for whole turns, which loads that follow may add.
+
+    Slow loading never lowers the load factor, so that a limit point met again at the same one is where a cycle closes.
+    """
+    if abs(one[-1] - other[-1]) > _SAME_LOAD * abs(one[-1]):
+        return False
+    nodes = [nodal_vectors(system, y[:-1]) for y in (one, other)]
+    changes = [np.abs(a - b) for a, b in zip(*nodes, strict=True)]
+    positions = max(float(change[:, :2].max()) for change in changes) / system.extent
+    return max(positions, *(float(change[:, 2:].max()) for change in changes)) < _SAME_PLACE
+
+
+def nodal_vectors(system: System, p: np.ndarray) -> list[np.ndarray]:
+    """Return r and the gradients of the nodes (N, per_node) of each block."""
+    work, rest = system.workspaces(), np.zeros(len(p))
+    for block, own in zip(system.blocks, work, strict=True):
+        place_nodes(block, p, rest, rest, own.nodes[0], own.nodes[1])
+    return [own.nodes[0] for own in work]
+
+
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
-    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations."""
+    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations.
+
+    It fails as well where the step is so long that more than one state is at its end: some lie in other valleys.
+    """
     free, moved, rest = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)
     for iteration in range(1, _ITERATIONS + 1):
         unbalanced, tangent = linearise(system, moved, rest, rest, load_factor, (1.0, 0.0, 1.0 / time))
         right = -unbalanced[free] - mass @ (moved - p)[free] / time
         try:
-            change = tangent.solve(right, system.turned)
+            factors = tangent.factorised(system.turned)
+            if system.symmetric and factors.negative_pivots > 0:
+                return None, iteration
+            change = factors.solve(right)
         except LinAlgError:
             return None, iteration
         moved[free] += change

@@ -11,6 +11,7 @@ from beamfem.analysis.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
 _LARGEST = 0.5
+_LEAST_SHARE = 0.1  # of a movement that is not translation: of less, that much is taken to bound it
 _LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
@@ -44,16 +45,28 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
     """Return the longest step from a point.
 
     It bounds the movement, the change of the load factor and the turn of a support, of which gradients elsewhere on the
-    beam cannot tell a full one from none.
+    beam cannot tell a full one from none. A structure on soft springs that drifts as a whole may go as far as its load
+    grows: translations are no other path, however long.
     """
     load_share = abs(float(point.tangent[-1])) / line.load_scale
-    moving = np.sqrt(max(1.0 - load_share**2, 0.0))
+    moving = np.sqrt(max(1.0 - load_share**2, 0.0)) * _deforming(line, point.tangent)
     load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
     size = float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
     before, slope = point.load_factor, float(point.tangent[-1])
     while line.system.largest_turn(before, before + size * slope) > _LARGEST_HELD_TURN and size > _SMALLEST:
         size *= 0.5
     return size
+
+
+def _deforming(line: Continuation, tangent: np.ndarray) -> float:
+    """Return how much of the movement along a tangent bounds a step: all, but where nearly all of it is translation."""
+    system = line.system
+    change = tangent[:-1] / system.scale
+    beside = np.max(np.abs(change[~system.positions]), initial=0.0)
+    largest = max(float(np.max(np.abs(change), initial=0.0)), np.finfo(float).tiny)
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    spread = 0.5 * float(np.ptp(change[nodes], axis=0).max())
+    return float(min(max(beside, spread) / (_LEAST_SHARE * largest), 1.0))
 
 
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:

@@ -41,6 +41,13 @@ def test_a_beam_that_drifts_on_soft_springs_goes_as_far_as_its_load_grows():
     assert path.displacement(beam.at(0.5))[-1] == pytest.approx(force / stiffness, rel=1e-9)
 
 
+def test_a_moment_that_would_wind_a_beam_150_000_times_is_said_to_be_out_of_reach():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(3), SECTION, STEEL)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e6 * BENDING)])
+    with pytest.raises(bf.ConvergenceError, match="at that pace load factor 1 is out of reach"):
+        bf.solve_static(model, snap="jump")
+
+
 def test_a_step_of_a_jump_so_long_that_it_could_end_in_another_valley_is_refused():
     """K + M / dt is positive up to dt = 1 / |lambda|, with the only negative lambda of K phi = lambda M phi."""
     top, model = toggle(1.0)

@@ -1,5 +1,6 @@
 """Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +16,10 @@ from beamfem.errors import BeamfemError
 from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
+_PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
+_SLOWER = 0.8  # likewise where it slows down, as towards a limit point
+_FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
+_MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +60,7 @@ class PathFollower:
         self.start = p, load_factor
         self.size = _FIRST_STEP
         self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
+        self.passed: deque[float] = deque(maxlen=_PACE)
 
     @cached_property
     def line(self) -> Continuation:
@@ -65,7 +71,7 @@ class PathFollower:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
         end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
-        along the path is accepted.
+        along the path is accepted, or where load factor 1 is out of reach at the pace of the last steps.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -74,7 +80,9 @@ class PathFollower:
         except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
         while point.load_factor < beyond:
+            self._require_pace(point.load_factor)
             step, iterations, cuts = _step(line, point, self.size)
+            self.passed.extend((cuts + 1) * [point.load_factor])
             self.size = step.next_size
             point = step.segment.after
             if step.limits:
@@ -85,6 +93,19 @@ class PathFollower:
             if point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
+
+    def _require_pace(self, load_factor: float) -> None:
+        """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
+        if len(self.passed) == _PACE:
+            half = _PACE // 2
+            before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
+            if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
+                raise PathLostError(
+                    f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
+                    "out of reach: the loads are far too large for what bears them",
+                    0,
+                    0,
+                )
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

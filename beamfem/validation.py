@@ -139,7 +139,16 @@ def number_table(name: str, values: Any, columns: int) -> np.ndarray:
         found = np.empty(0)
     if found.dtype.kind not in "iuf" or found.ndim != 2 or found.shape[1] != columns or not np.isfinite(found).all():
         raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got {shown(values)}")
+    if holds_truth_values(values):
+        raise InputError(f"{name} must hold numbers only, got truth values among them")
     return found
+
+
+def holds_truth_values(values: Any) -> bool:
+    """Tell whether there is True or False in nested lists or arrays, which NumPy takes for 1 and 0 beside numbers."""
+    if isinstance(values, list | tuple):
+        return any(map(holds_truth_values, values))
+    return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
 def flag(name: str, value: Any) -> bool:

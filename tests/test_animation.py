@@ -11,6 +11,9 @@ from drawn import cantilever, frame, pendulum, share_of_ink
 from PIL import Image, ImageSequence
 
 import beamfem as bf
+from beamfem.view.acting import FORCE
+from beamfem.view.animation import _palette
+from beamfem.view.held import PRESCRIBED
 
 
 @pytest.fixture(scope="module")
@@ -99,3 +102,14 @@ def test_mp4_of_ffmpeg(falling, tmp_path):
     frames, seconds = library.count_frames_and_secs(str(path))
     assert frames == 20
     assert seconds == pytest.approx(2.0, abs=0.1)
+
+
+def test_an_animation_has_the_colours_of_drawings_and_shades_close_to_their_edges():
+    """Edges are drawn with shares of a colour over white; the colour itself must be there as it is."""
+    palette = _palette().astype(float)
+    for name in (FORCE, PRESCRIBED):
+        colour = np.array([int(name[i : i + 2], 16) for i in (1, 3, 5)])
+        for share in np.linspace(0.0, 1.0, 30):
+            wanted = share * colour + (1.0 - share) * 255.0
+            apart = np.abs(palette - wanted).max(axis=1).min()
+            assert apart < 20.0 if share < 1.0 else apart == 0.0

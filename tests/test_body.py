@@ -46,6 +46,21 @@ def test_picture_of_the_body(bent, tmp_path):
 
 
 @renders
+def test_a_picture_leaves_no_window_behind(bent, tmp_path, monkeypatch):
+    pyvista = pytest.importorskip("pyvista")
+    made, begin = [], pyvista.Plotter.__init__
+
+    def noted(plotter, *given, **named):
+        made.append(plotter)
+        begin(plotter, *given, **named)
+
+    monkeypatch.setattr(pyvista.Plotter, "__init__", noted)
+    bent.picture(tmp_path / "body.png", size=(60, 40))
+    (plotter,) = made
+    assert plotter.render_window is None
+
+
+@renders
 def test_slider_moves_the_body():
     solution = pendulum()
     plotter = body.slider_scene(solution, "moment", (300, 200), off_screen=True)

@@ -5,6 +5,8 @@ import pytest
 from test_sparse import MATERIAL, SECTION, grid
 
 import beamfem as bf
+from beamfem.analysis import entangled_motion
+from beamfem.analysis.equations import linearise
 from beamfem.model.system import system_of
 
 
@@ -84,3 +86,21 @@ def test_a_step_that_fails_hands_back_the_states_before(widest_band):
         bf.simulate(model, 0.1, 0.01)
     assert len(caught.value.solution) == 6
     assert np.isfinite(caught.value.solution.p).all()
+
+
+@pytest.mark.parametrize("force", [1e-9, 1e-6, 1e-3])
+def test_a_small_motion_needs_one_tangent_and_two_corrections_a_step(widest_band, monkeypatch, force):
+    """Its equations are linear: one correction solves a step, a second proves it, however small the motion is."""
+    widest_band(-1)
+    tangents = []
+
+    def counted(*given):
+        tangents.append(given)
+        return linearise(*given)
+
+    monkeypatch.setattr(entangled_motion, "linearise", counted)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), SECTION, MATERIAL)
+    push = bf.PointForce(beam.end, (0.0, force), amplitude=lambda t: np.sin(20.0 * t))
+    solution = bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], [push]), 0.4, 0.01)
+    assert solution.iterations == 2 * 40
+    assert len(tangents) == 1

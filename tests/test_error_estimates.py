@@ -299,3 +299,12 @@ def test_errors_at_round_off_are_no_chance():
     error = np.array([1e-2, 4e-5, 1.5e-7, 6e-10, 2e-16, 0.0])
     assert not chance_hits(h, error, 8.0).any()
     assert fit_order(h, error, 8.0).last == 3
+
+
+def test_large_values_of_coarse_levels_do_not_hide_the_changes_of_fine_ones_in_round_off():
+    """1000 on the coarsest level, then 1 + 1e-12 (h / h_last)^2, less than the round-off of 1000."""
+    h = np.array([1.0, 0.5, 0.25, 0.125])
+    q = np.array([1000.0, *(1.0 + 1e-12 * np.array([16.0, 4.0, 1.0]))])
+    found = extrapolate(h, q)
+    assert not found.settled
+    assert "round-off" not in found.note

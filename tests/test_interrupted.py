@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -72,3 +74,39 @@ def test_the_command_line_saves_what_was_found_and_says_so(third_time, tmp_path)
     assert done.stderr.startswith("error: interrupted\n")
     assert f"are saved in {out}" in done.stderr
     assert 1 < len(bf.load(out)) < 100_000
+
+
+IMPORTING = """
+import os, signal, sys
+
+class Interrupt:
+    def find_spec(self, name, path=None, target=None):
+        if name == at:
+            os.kill(os.getpid(), signal.SIGINT)
+
+at, handler = sys.argv[1:]
+sys.meta_path.insert(0, Interrupt())
+signal.signal(signal.SIGINT, getattr(signal, handler))
+from beamfem_command import main
+sys.argv = ["beamfem", "--version"]
+main()
+"""
+
+
+def version_interrupted(at, handler):
+    """Run `beamfem --version` with Ctrl-C where a module is looked for."""
+    command = [sys.executable, "-c", IMPORTING, at, handler]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+
+
+@pytest.mark.parametrize("at", ["beamfem", "numpy._core._multiarray_umath", "scipy.spatial", "numba.core", "typer"])
+def test_the_command_line_ends_quietly_while_it_is_imported(at):
+    done = version_interrupted(at, "default_int_handler")
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "error: interrupted\n")
+
+
+def test_the_command_line_leaves_an_interrupt_ignored_that_was():
+    """As under nohup."""
+    done = version_interrupted("numba.core", "SIG_IGN")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("beamfem ")

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.analysis.time_steps import stretches
+from beamfem.analysis.unresolved import Course
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 
@@ -145,3 +147,41 @@ def test_a_pulse_gives_its_impulse_in_any_unit_of_time(unit):
     force = bf.PointForce(one.end, (100.0 * unit**2, 0.0), amplitude=pulse)
     solution = bf.simulate(bf.Model([one], loads=[force]), 0.02 / unit, 2e-3 / unit)
     assert solution.linear_momentum()[-1, 0] == pytest.approx(100.0 * 1e-3 * unit, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1e12])
+def test_steps_are_divided_at_the_same_kinks_in_any_unit_of_time(unit):
+    """A jump at the end of a step, a hump that bulges inside one, and a kink in the middle of another.
+
+    The ramp that they stand on is there during the motion only: nothing is asked before or after it.
+    """
+
+    def amplitude(time):
+        share = time / unit
+        ramp = share * (0.0 <= share <= 10.0)
+        return ramp + (share >= 3.0) + max(0.0, 1.0 - abs(share - 5.5)) + 16.0 * max(0.0, 0.25 - (share - 7.5) ** 2)
+
+    found = []
+    for own in (1.0, unit):
+        function = bf.Piecewise(lambda t, own=own: amplitude(t * unit / own), tuple(own * np.array([3.0, 5.5])))
+        found.append(stretches(own * np.arange(11.0), [Course("amplitude", function, True)]))
+    plain, scaled = found
+    assert [len(one.times) for one in scaled] == [len(one.times) for one in plain]
+    for one, other in zip(plain, scaled, strict=True):
+        np.testing.assert_allclose(other.times, unit * one.times, rtol=1e-12)
+        assert (one.whole, one.begins_whole, one.ends_whole) == (other.whole, other.begins_whole, other.ends_whole)
+        assert [other.loads_from, other.loads_to] == pytest.approx([unit * one.loads_from, unit * one.loads_to])
+    assert [one.times[0] for one in plain] == [0.0, 3.0, 5.0, 5.5, 6.0, 7.0, 8.0]
+
+
+@pytest.mark.parametrize("save_every", [1, 2, 3])
+def test_a_motion_that_fails_behind_a_kink_ends_with_its_last_whole_step(save_every):
+    """It flies at 3 m/s; the load that tears it begins at 0.055 s, inside the step from 0.05 s to 0.06 s."""
+    one = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.ANCF(), bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1e3))
+    tearing = bf.Piecewise(lambda t: float(t > 0.055), (0.055,))
+    model = bf.Model([one], loads=[bf.PointForce(one.end, (1e15, 0.0), amplitude=tearing)])
+    with pytest.raises(bf.ConvergenceError, match=r"from 0\.055 s to 0\.06 s") as caught:
+        bf.simulate(model, 0.1, 0.01, velocity=bf.RigidVelocity((3.0, 0.0)), save_every=save_every)
+    found = caught.value.solution
+    assert found.time[-1] == pytest.approx(0.05)
+    assert found.displacement(one.start)[:, 0] == pytest.approx(3.0 * found.time, abs=1e-9)

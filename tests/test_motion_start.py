@@ -236,3 +236,18 @@ def test_a_start_from_gradients_that_thinned_keeps_the_stretch_of_the_axis():
         r_x = np.hypot(*(bent.p[-1][other[name]] for name in ("r_x^x", "r_x^y")))
         assert r_x > 1.01
         assert started.p[0][own["s"]] == pytest.approx(r_x, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_a_start_whose_nodes_are_elsewhere_is_refused_in_any_unit_of_length(unit):
+    """A millionth of the length is another place, whatever the length; a copy of the beam has the same places."""
+
+    def model(middle):
+        line, section = bf.Line((0, 0), (unit, 0)), bf.Rectangle(0.01 * unit, 0.01 * unit)
+        own = bf.Beam(line, [0.0, middle, 1.0], bf.CRBF(2), section, STEEL)
+        return bf.Model([own])
+
+    state = bf.simulate(model(0.5), 1e-6, 1e-6)[-1]
+    bf.simulate(model(0.5), 1e-6, 1e-6, start=state)
+    with pytest.raises(bf.InputError, match="nodes elsewhere"):
+        bf.simulate(model(0.5 + 1e-6), 1e-6, 1e-6, start=state)

@@ -187,6 +187,16 @@ def test_a_force_is_drawn_at_its_point_along_its_direction(bent):
     assert arrow.V[0] > 0.0
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e5])
+def test_arrows_are_as_long_as_the_root_of_their_force_whatever_its_unit(unit):
+    """The largest is 30 points long; of forces 9 and 4 the shorter has two thirds of that."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Section.from_stiffness(1e9, 1e9, 1e9, 1.0, 1.0))
+    loads = [bf.PointForce(beam.at(at), (0.0, size * unit)) for at, size in ((0.25, 9.0), (0.75, 4.0))]
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads))
+    (drawn,) = arrows(solution, np.array([1]))
+    assert np.hypot(drawn.U, drawn.V) == pytest.approx([30.0 / 72.0, 20.0 / 72.0], rel=1e-6)
+
+
 def test_a_follower_turns_with_the_section():
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SECTION, STEEL)
     model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 2 * EI), follower=True)])

@@ -8,6 +8,10 @@ from scipy.optimize import fsolve
 
 import beamfem as bf
 from beamfem.analysis.equations import STATICS, linearise, residual
+from beamfem.analysis.iteration import NewtonResult
+from beamfem.analysis.load_steps import _over_a_gap
+from beamfem.analysis.newton import solve_equilibrium
+from beamfem.analysis.static_record import StaticRecord
 from beamfem.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.model.system import System
 from beamfem.postprocess import nodal_vectors, nodal_velocities
@@ -282,3 +286,17 @@ def test_arrows_of_a_pressure_stand_normal_to_the_deformed_axis():
     for share, vector in zip(np.linspace(0.0, 1.0, len(vectors)), vectors, strict=True):
         r_x = solution.fields(beam.at(share)).r_x[-1]
         assert vector == pytest.approx(share * np.linalg.norm(vectors[-1]) * np.array([-r_x[1], r_x[0]]), rel=1e-3)
+
+
+@pytest.mark.parametrize(("begin", "end", "gap"), [(2.0, 4.2, True), (1.0, 4.6, False)])
+def test_a_slow_load_step_looks_half_way_under_the_pressure_there(begin, end, gap):
+    """A ring under p R^3 / EI buckles at 3, later if pressure did not turn with it: 3.1 is beyond, 2.8 is not."""
+    section = bf.Section.from_stiffness(1e7, 1e7, 1.0, 1.0, 1.0)
+    arcs, supports, joints = ring_of(8, bf.CRBF(4), section)
+    system = System(bf.Model(arcs, supports, [bf.Pressure(arc, end) for arc in arcs], joints), static=True)
+    newton, share = bf.Newton(), begin / end
+    ends = [solve_equilibrium(system, system.reference, factor, newton) for factor in (share, 1.0)]
+    done = StaticRecord(system.model, system.symmetric)
+    done.add(share, ends[0].state, 0, ends[0].ended)
+    slow = NewtonResult(ends[1].state, 12, ends[1].ended, 0, first=0.0)
+    assert _over_a_gap(system, done, 1.0, slow, newton) == gap

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.analysis import snap
+from beamfem.analysis.iteration import Ended, NewtonResult
+from beamfem.model.system import System
 
 
 def toggle(load, element=None, turn=0.0):
@@ -128,3 +131,59 @@ def test_a_structure_that_comes_to_rest_nowhere_says_so():
     with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it") as caught:
         bf.solve_static(bf.Model([bar], supports, [push]), snap="jump")
     assert caught.value.load_factor == pytest.approx(0.8, rel=1e-6)
+
+
+def test_standing_loads_that_had_to_grow_leave_the_state_as_unstable_as_it_is():
+    """A wavy cantilever that one step does not reach, and beside it a column under twice its buckling load."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    stiffness = 2e11 * section.second_moment
+    wavy = bf.Beam(bf.Parametric(lambda u: (u, 0.3 * np.sin(3 * u)), 0, 1.5), 40, bf.ShearRigid(), section, steel)
+    column = bf.Beam(bf.Line((5, 0), (6, 0)), 4, bf.ShearRigid(), section, steel)
+    loads = [
+        bf.PointForce(wavy.end, tuple(stiffness * np.array([-2.0, 3.0])), scale=False),
+        bf.PointForce(column.end, (-0.5 * np.pi**2 * stiffness, 0.0), scale=False),
+    ]
+    model = bf.Model([wavy, column], [bf.Clamp(wavy.start), bf.Clamp(column.start)], loads)
+    with pytest.warns(bf.UnstableWarning):
+        solution = bf.solve_static(model)
+    assert solution.position(wavy.end)[0] == pytest.approx([-0.00684, 1.71669], abs=2e-5)
+    assert not solution.stable.any()
+
+
+def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
+    """Beside a frame that snaps at a third of its load, a straight column is past its buckling load by then."""
+    monkeypatch.setattr(snap, "_STEPS", 60)
+    _, frame = toggle(95.2)
+    column = bf.Beam(bf.Line((3, 0), (4, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    critical = np.pi**2 / 4.0 * 2e11 * 0.01**4 / 12.0
+    model = bf.Model(
+        [*frame.beams, column],
+        [*frame.supports, bf.Clamp(column.start)],
+        [*frame.loads, bf.PointForce(column.end, (-5.0 * critical, 0.0))],
+        frame.joints,
+    )
+    with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it"):
+        bf.solve_static(model, 10, snap="jump")
+
+
+def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):
+    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on."""
+    _, model = toggle(1.0)
+    system = System(model, static=True)
+    limit = np.append(system.reference, 0.3)
+    beyond = limit.copy()
+    beyond[system.free_dofs] += 1e-4 * system.scale[system.free_dofs]
+    far = system.reference + 0.5 * system.scale
+    ends = iter([(Ended.EXHAUSTED, 0, None), (Ended.CONVERGED, 1, None), (Ended.CONVERGED, 0, far)])
+    found = NewtonResult(system.reference, 3, Ended.CONVERGED)
+
+    def solved(system, p, *given, **named):
+        end = next(ends, None)
+        return found if end is None else NewtonResult(p if end[2] is None else end[2], 3, end[0], end[1])
+
+    monkeypatch.setattr(snap, "_step", lambda system, p, load_factor, time: (p + 1e-5 * system.scale, 1))
+    monkeypatch.setattr(snap, "solve_equilibrium", solved)
+    rest = snap.rest_state(system, limit, beyond, bf.Newton())
+    assert rest.ended is Ended.CONVERGED
+    assert rest.state is found.state
+    assert rest.iterations == 4 * (1 + 3)

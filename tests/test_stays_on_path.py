@@ -10,6 +10,10 @@ from scipy.integrate import solve_ivp
 from shooting import Member, solved
 
 import beamfem as bf
+from beamfem.analysis.iteration import Ended, NewtonResult
+from beamfem.analysis.load_steps import _over_a_gap
+from beamfem.analysis.static_record import StaticRecord
+from beamfem.model.system import System
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STEPS = (1, 10, 100, 1000)
@@ -297,3 +301,32 @@ def test_a_prescribed_rotation_that_jumps_is_named_and_does_not_run_for_ever(ele
     with within(60.0), pytest.raises(bf.ConvergenceError, match="rotation") as caught:
         bf.solve_static(model, steps)
     assert caught.value.solution.load_factor[-1] == pytest.approx(0.3, abs=1e-3)
+
+
+@pytest.mark.parametrize("size", [1e10, 1e12, 1e14])
+def test_loads_beyond_all_stiffness_are_named_at_once(size):
+    """The path goes straight to a tip that is millions of lengths away, in steps of half a length each."""
+    section, material = bf.Rectangle(0.01, 0.01), bf.Material(2.1e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 10, bf.CRBF(3), section, material)
+    force = size * material.youngs_modulus * section.second_moment
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -force))])
+    with pytest.raises(bf.ConvergenceError, match="out of reach: the loads are far too large") as caught:
+        bf.solve_static(model)
+    found = caught.value.solution
+    assert len(found) < 200
+    assert 0.0 < found.load_factor[-1] < 1e6 / size
+    np.testing.assert_allclose(found.reaction(beam.start)[1:, 1], force * found.load_factor[1:], rtol=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_a_load_step_whose_first_correction_goes_far_beyond_its_end_is_a_gap_in_any_unit(unit):
+    """An end that moves by a tenth of its length: a first correction by a whole one is far, one by a fifth is not."""
+    section, material = bf.Rectangle(0.02 * unit, 0.002 * unit), bf.Material(2e11 / unit**2, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (unit, 0)), 1, bf.CRBF(1), section, material)
+    system = System(bf.Model([beam], [bf.Clamp(beam.start)]), static=True)
+    (mesh,), moved = system.model.meshes, system.reference.copy()
+    moved[mesh.coordinates_of(1)["r^y"]] += 0.1 * unit
+    done = StaticRecord(system.model, system.symmetric)
+    done.add(0.5, system.reference, 0, Ended.CONVERGED)
+    for first, gap in ((1.0, True), (0.2, False)):
+        assert _over_a_gap(system, done, 1.0, NewtonResult(moved, 3, Ended.CONVERGED, first=first), bf.Newton()) == gap

@@ -17,6 +17,7 @@ from beamfem.model.system import System
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
+_SLOWER = 0.8  # likewise where it slows down, as towards a limit point
 _FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
@@ -98,7 +99,7 @@ class PathFollower:
         if len(self.passed) == _PACE:
             half = _PACE // 2
             before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
-            if gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
+            if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise PathLostError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
                     "out of reach: the loads are far too large for what bears them",

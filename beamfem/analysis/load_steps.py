@@ -43,7 +43,7 @@ def reach(
             step = _within_a_turn(system, done, step)
             stop = next((stop for stop in ahead if stop > done.reached + _SAME), 1.0)
             target = stop if done.reached + step > stop - _SAME else done.reached + step
-            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots[-1])
+            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not _over_a_gap(system, done, target, result, newton):
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
@@ -87,7 +87,7 @@ def _over_a_gap(system: System, done: StaticRecord, target: float, result: Newto
     half_way = 0.5 * (done.state + result.state)
     _, tangent = linearise(system, half_way, rest, rest, 0.5 * (done.reached + target), STATICS, mean)
     try:
-        return tangent.factorised(system.turned).negative_pivots != done.negative_pivots[-1]
+        return tangent.factorised(system.turned).negative_pivots != done.negative_pivots
     except LinAlgError:
         return True
 

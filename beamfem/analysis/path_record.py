@@ -14,15 +14,16 @@ from beamfem.turns import first_turns
 
 
 class PathRecord:
-    """What has been found so far."""
+    """What has been found so far; rows: points y (n + 1,), whether they are stable, and turns (m,) [rad].
+
+    One call adds a row, so that an interruption finds it whole.
+    """
 
     def __init__(self, model: Model) -> None:
         self.model = model
         # of other tangents the signs of pivots do not tell what is stable
         self.symmetric = system_of(model, static=True).symmetric
-        self.points: list[np.ndarray] = []
-        self.stable: list[bool] = []
-        self.turned: list[np.ndarray] = []
+        self.rows: list[tuple[np.ndarray, bool, np.ndarray]] = []
         self.limit_points: list[PathState] = []
         self.bifurcations: list[Bifurcation] = []
         self.iterations = 0
@@ -32,9 +33,7 @@ class PathRecord:
 
     def add(self, y: np.ndarray, stable: bool, turned: np.ndarray | None = None) -> None:
         """Add a point y (n + 1,); turned (m,) [rad]: see `PathState`, by default continued from the last point."""
-        self.turned.append(self._turned(y) if turned is None else turned)
-        self.points.append(y)
-        self.stable.append(stable)
+        self.rows.append((y, stable, self._turned(y) if turned is None else turned))
 
     def end(self, why: str) -> None:
         """Note that the path is complete, and why it ends where it does."""
@@ -42,7 +41,8 @@ class PathRecord:
 
     @property
     def last(self) -> PathState:
-        return self.state(self.points[-1], self.stable[-1] if self.symmetric else None)
+        y, stable, _ = self.rows[-1]
+        return self.state(y, stable if self.symmetric else None)
 
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
@@ -64,17 +64,17 @@ class PathRecord:
 
     def _turned(self, y: np.ndarray) -> np.ndarray:
         """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
-        last = self.turned[-1] if self.turned else np.zeros(len(uncounted(self.model)))
+        last = self.rows[-1][2] if self.rows else np.zeros(len(uncounted(self.model)))
         return first_turns(self.model, y[:-1], last)
 
     def path(self) -> Path:
-        rows = np.array(self.points).reshape(len(self.points), -1)
+        rows, stable, turned = map(np.array, zip(*self.rows, strict=True))
         system = system_of(self.model, static=True)
-        digits = remainder(system, rows[-1, :-1], float(rows[-1, -1])).digits if len(rows) else np.nan
+        digits = remainder(system, rows[-1, :-1], float(rows[-1, -1])).digits
         ended = self.ended
         if digits < FEW_DIGITS:
             ended += f"; round-off leaves {digits:.0f} digits of the forces"
-        statistics = Statistics(self.iterations, max(len(rows) - 1, 0), self.cuts, ended, self.status, digits=digits)
+        statistics = Statistics(self.iterations, len(rows) - 1, self.cuts, ended, self.status, digits=digits)
         rest = np.zeros((len(rows), self.model.size))
         states = rows[:, :-1], rest, rest.copy()
         return Path(
@@ -83,8 +83,8 @@ class PathRecord:
             rows[:, -1],
             *states,
             statistics,
-            stability=np.array(self.stable, dtype=bool) if self.symmetric else None,
-            turned=np.array(self.turned),
+            stability=stable if self.symmetric else None,
+            turned=turned,
             limit_points=tuple(self.limit_points),
             bifurcations=tuple(self.bifurcations),
         )

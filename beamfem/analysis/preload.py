@@ -53,7 +53,7 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
         reach(growing, done, 1.0, newton, "error")
     except ConvergenceError:
         return replace(failed, iterations=done.iterations)
-    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots[-1], done.digits)
+    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots, done.digits)
 
 
 def _growing(model: Model) -> Model:

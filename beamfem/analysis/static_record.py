@@ -13,14 +13,15 @@ from beamfem.status import Statistics, Status
 
 
 class StaticRecord:
-    """The rows found so far: load factors, states (n,) and the negative pivots of their tangents."""
+    """The rows found so far: load factors, states (n,) and the negative pivots of their tangents.
+
+    One call adds a row, so that an interruption finds it whole.
+    """
 
     def __init__(self, model: Model, symmetric: bool) -> None:
         self.model = model
         self.symmetric = symmetric
-        self.load_factors: list[float] = []
-        self.states: list[np.ndarray] = []
-        self.negative_pivots: list[int] = []
+        self.rows: list[tuple[float, np.ndarray, int]] = []
         self.iterations = 0
         self.cuts = 0
         self.ended = Ended.CONVERGED
@@ -28,27 +29,29 @@ class StaticRecord:
 
     @property
     def reached(self) -> float:
-        return self.load_factors[-1]
+        return self.rows[-1][0]
 
     @property
     def state(self) -> np.ndarray:
-        return self.states[-1]
+        return self.rows[-1][1]
+
+    @property
+    def negative_pivots(self) -> int:
+        return self.rows[-1][2]
 
     def add(
         self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended, digits: float = np.nan
     ) -> None:
-        self.load_factors.append(load_factor)
-        self.states.append(state)
-        self.negative_pivots.append(negative_pivots)
         self.ended = ended
         self.digits = digits
+        self.rows.append((load_factor, state, negative_pivots))
 
     def solution(self, complete: bool = False) -> Solution:
         """Return the rows as a solution; complete: the solve came to its end.
 
         Warns of few digits and, where the solve is complete, of unstable rows: where it is not, an error is on its way.
         """
-        states, counts = np.array(self.states), np.array(self.negative_pivots)
+        load_factors, states, counts = map(np.array, zip(*self.rows, strict=True))
         # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
         unstable = counts > 0 if self.symmetric else counts % 2 == 1
         status = Status.STOPPED if not complete else Status.COMPLETED
@@ -58,7 +61,7 @@ class StaticRecord:
         said: tuple[str, ...] = ()
         if unstable.any():
             status = Status.UNSTABLE if complete else status
-            said = (_describe(unstable, np.array(self.load_factors)),)
+            said = (_describe(unstable, load_factors),)
             if unstable[-1] and self.symmetric:
                 ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
             elif unstable[-1]:
@@ -70,11 +73,11 @@ class StaticRecord:
             ended += f"; {few}"
             said += (few,)
             warnings.warn(few, RoundOffWarning, stacklevel=3)
-        statistics = Statistics(self.iterations, len(self.states) - 1, self.cuts, ended, status, said, self.digits)
+        statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, said, self.digits)
         return Solution(
             self.model,
             True,
-            np.array(self.load_factors),
+            load_factors,
             states,
             np.zeros(states.shape),  # unlike zeros_like, no memory until somebody writes to it
             np.zeros(states.shape),

@@ -73,7 +73,7 @@ def trace_equilibrium(
     _require_load(system)
     _require_crossing(model, start)
     record = PathRecord(model)
-    with kept(lambda: record.path() if record.points else None), progress("points of the path", points) as report:
+    with kept(lambda: record.path() if record.rows else None), progress("points of the path", points) as report:
         line, point = _first(system, newton, record)
         size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
         if step is not None and too_small(line, point, size):
@@ -87,7 +87,7 @@ def trace_equilibrium(
                 point, size = _branch(line, start, direction, record)
         landed = False
         while not (landed or _met(until, record.last)):
-            if len(record.points) >= points:
+            if len(record.rows) >= points:
                 record.end(f"the {points} points are used up")
                 break
             taken = _step(line, point, size, record)
@@ -97,7 +97,7 @@ def trace_equilibrium(
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
-            report(len(record.points))
+            report(len(record.rows))
         else:
             record.end("the path has come to where it shall end")
     return record.path()
@@ -144,7 +144,7 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
     if isinstance(found, str):
         raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
     record.add(found.y, found.negative_pivots == 0)
-    return found, line.length(found.y - record.points[0])
+    return found, line.length(found.y - record.rows[0][0])
 
 
 def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
@@ -165,7 +165,7 @@ def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord)
         if too_small(line, point, size):
             record.ended = max(reasons, key=reasons.count)
             raise ConvergenceError(
-                f"the path ends at load factor {point.load_factor:.6g} after {len(record.points)} points: "
+                f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
                 f"{record.ended}, with steps along it down to {size:.1e}",
                 record.path(),
             )

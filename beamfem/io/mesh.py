@@ -17,7 +17,7 @@ from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.io.touching import divided, parts_of, warn_of_gaps
 from beamfem.material import Material
-from beamfem.validation import LARGEST, items, number_table, shown, text
+from beamfem.validation import LARGEST, holds_truth_values, items, number_table, shown, text
 
 # distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
@@ -208,8 +208,9 @@ def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, si
 
 
 def _set(name: str, values: Any, size: int, lowest: int) -> np.ndarray:
-    numbers = np.array(items(name, values))
-    if numbers.ndim != 1:
+    given = items(name, values)
+    numbers = np.array(given)
+    if numbers.ndim != 1 or holds_truth_values(given):
         raise InputError(f"{name} must be a list of whole numbers, got {shown(values)}")
     return _numbers_below(name, numbers, size, lowest)
 

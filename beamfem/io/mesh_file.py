@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.io.ending_file import opened
 
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
+_WITHOUT_LINES = {"off": "triangles", "tetgen": "tetrahedra", "wkt": "triangles"}  # what meshio reads of these formats
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,16 +32,23 @@ def read_through_meshio(path: Path) -> MeshFile:
     """Return what a file holds. Raises InputError where meshio cannot read it."""
     import meshio  # slow to import, and seldom needed
 
-    known = meshio.extension_to_filetypes
-    if path.suffix.lower() not in known:
-        raise InputError(f"{path}: mesh files end in {', '.join(sorted(known))}")
-    kind = "gmsh" if path.suffix.lower() == ".msh" else known[path.suffix.lower()][0]
+    known = {
+        ending: "gmsh" if ending == ".msh" else kinds[0] for ending, kinds in meshio.extension_to_filetypes.items()
+    }
+    kind = known.get(path.suffix.lower())
+    if kind is None or kind in _WITHOUT_LINES:
+        holds = f"; those of {kind} hold {_WITHOUT_LINES[kind]} only" if kind else ""
+        endings = ", ".join(sorted(ending for ending in known if known[ending] not in _WITHOUT_LINES))
+        raise InputError(f"{path}: mesh files end in {endings}{holds}")
+    silence = contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO())
     try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            mesh = meshio.read(path, file_format=kind)
+        with silence[0], silence[1], opened(path, kind) as source:
+            mesh = meshio.read(source, file_format=kind)
     except (Exception, SystemExit) as error:  # meshio raises anything for a bad file, and exits for some
         raise InputError(f"{path} cannot be read as {kind}: {error or type(error).__name__}{_advice(path)}") from error
     blocks = tuple((block.type, np.asarray(block.data)) for block in mesh.cells)
+    if any(nodes.shape[1:] == (0,) for _, nodes in blocks):
+        raise InputError(f"{path}: it is damaged: it holds cells without nodes, as a file that ends early does")
     sizes = [len(nodes) for _, nodes in blocks]
     cell_sets = _groups(mesh)
     cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}

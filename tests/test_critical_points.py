@@ -1,0 +1,164 @@
+"""Critical points within a step of a path: curves given by a formula, and columns whose buckling loads are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.linalg import LinAlgError
+from test_path import cantilever
+
+from beamfem.analysis import bifurcations as found_by
+from beamfem.analysis import critical
+from beamfem.analysis.continuation import PathPoint, begin
+from beamfem.analysis.critical import BIFURCATION, Critical, Search, _between
+from beamfem.analysis.critical_points import Segment
+from beamfem.analysis.equations import STATICS, linearise
+from beamfem.analysis.iteration import Newton
+from beamfem.analysis.loading_path import PathLostError
+from beamfem.analysis.window import Zero, smooth
+from beamfem.model.system import System
+
+
+class Curve:
+    """A load factor given over one coordinate, as a loading path; `aside`: by how much its inside lies elsewhere."""
+
+    line, start = SimpleNamespace(dot=np.dot, length=np.linalg.norm), None
+
+    def __init__(self, coefficients, aside=0.0):
+        self.load, self.aside = np.polynomial.Polynomial(coefficients), aside
+
+    def at(self, x):
+        tangent = np.array([1.0, self.load.deriv()(x)])
+        return PathPoint(np.array([x, self.load(x)]), tangent / np.linalg.norm(tangent), None)
+
+    def normal(self, before, after):
+        return np.array([1.0, 0.0])
+
+    def corrected(self, start, base, normal, like):
+        return self.at(start[0] + self.aside)
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "inside"),
+    [
+        ((0.0, 1.0, -0.9, 1.0), 0.3),  # the slope is least where 6 x = 1.8
+        ((0.0, 1.0, -2.91, 1.0), 0.5),  # at 0.97, next to the end
+        ((0.0, 1.0, 1.5, 1.0), 0.5),  # at -0.5, outside
+        ((0.0, 2.0), 0.5),
+    ],
+)
+def test_a_step_is_looked_at_where_its_slope_differs_most_or_half_way(coefficients, inside):
+    path = Curve(coefficients)
+    assert _between(path, path.at(0.0), path.at(1.0)).y[0] == pytest.approx(inside, abs=1e-12)
+
+
+@pytest.mark.parametrize(("aside", "refused"), [(0.01, False), (0.2, True)])
+def test_a_step_whose_inside_is_not_what_its_ends_foretell_is_refused(aside, refused):
+    path = Curve((0.0, 1.0, 1.5, 1.0), aside)
+    ends = path.at(0.0), path.at(1.0)
+    if refused:
+        with pytest.raises(PathLostError, match="turns too sharply"):
+            _between(path, *ends)
+    else:
+        assert _between(path, *ends).y[0] == pytest.approx(0.5 + aside)
+
+
+@pytest.mark.parametrize("x", [-0.3, 0.0, 0.4, 1.0, 1.2])
+def test_a_path_is_foretold_by_the_cubic_through_its_ends_and_by_its_tangents_beyond(x):
+    path = Curve((0.2, 2.0, 1.5, 1.0))
+    ends = path.at(0.0), path.at(1.0)
+    beside = np.clip(x, 0.0, 1.0)
+    expected = [x, path.load(beside) + (x - beside) * path.load.deriv()(beside)]
+    assert smooth(path, path.normal(*ends), ends, x) == pytest.approx(expected, abs=1e-12)
+
+
+def test_softness_of_a_change_is_its_product_with_the_inverse_of_the_tangent():
+    """w . K^-1 w by a dense solution, w the change by the weights that its length is measured with."""
+    _, model = cantilever(10, (0.0, -1.0), elements=2)
+    system = System(model, static=True)
+    line, start = begin(system, system.reference, 0.0, Newton())
+    rest = np.zeros(system.model.size)
+    tangent = linearise(system, start.y[:-1], rest, rest, 0.0, STATICS)[1].sparse(system.turned).toarray()
+    change = np.random.default_rng(3).standard_normal(len(start.y))
+    right = (line.weights * change)[system.free_dofs]
+    assert line.softness(start.factors, change) == pytest.approx(right @ np.linalg.solve(tangent, right), rel=1e-9)
+
+
+class Interpolated:
+    """A window in which stiffness vanishes at known places (k,)."""
+
+    def __init__(self, centre, radius, places):
+        self.centre, self.radius, self.places = centre, radius, places
+        self.alike, self.points = True, [None]
+
+    def zeros(self, reach):
+        return [Zero(at, 0) for at in self.places if abs(at - self.centre) <= reach]
+
+
+@pytest.fixture
+def searched(monkeypatch):
+    """Return a function that makes the search in a step from 0 to 1 with stiffness that vanishes at places (k,)."""
+
+    def make(*places):
+        path = Curve((0.0, 2.0))
+        about = SimpleNamespace(about=lambda path, normal, ends, centre, radius: Interpolated(centre, radius, places))
+        monkeypatch.setattr(critical, "Window", about)
+        return Search(path, path.at(0.0), path.at(1.0))
+
+    return make
+
+
+@pytest.mark.parametrize("place", [0.4, 0.5, 0.51, 0.6])
+def test_a_window_is_moved_to_the_critical_point_on_either_side_of_it(searched, place):
+    window, zeros = searched(0.5)._centred(place, 0.2)
+    assert abs(window.centre - 0.5) <= 0.03
+    assert [zero.at for zero in zeros] == [0.5]
+
+
+def test_a_critical_point_far_from_the_centre_is_left_to_a_window_of_its_own(searched, monkeypatch):
+    """At 0.5 and 0.6 of a step: in the widest window of 0.2 the second lies too far out to be interpolated well."""
+    read = []
+
+    def reads(search, window, zeros):
+        read.append([zero.at for zero in zeros])
+        return [Critical(BIFURCATION, zero.at, np.zeros(1), np.zeros(1), np.inf) for zero in zeros]
+
+    monkeypatch.setattr(Search, "_read", reads)
+    found, _, _ = searched(0.5, 0.6).located(0.49)
+    assert [one.load_factor for one in found] == [0.5]
+    assert all(zeros == [0.5] for zeros in read)
+
+
+def test_a_part_of_a_step_whose_tangent_is_singular_at_an_end_is_halved(monkeypatch):
+    """Buckling loads (pi / 2)^2 (1, 9, 25) of a thin column; only parts shorter than 0.3 of the step can be solved."""
+    _, model = cantilever(1000, (0.0, -1.0))
+    system = System(model, static=True)
+    line, start = begin(system, system.reference, 0.0, Newton())
+    far = start.y + 70.0 * start.tangent / start.tangent[-1]
+    far = line.correct(far, line.stresses(start.y, far - start.y), start.tangent).y
+    segment = Segment(line, start, line.linearised(far, start.tangent))
+    together, parts = found_by._together, []
+
+    def singular(segment, start, end, change):
+        parts.append((start, end))
+        if end - start > 0.3:
+            raise LinAlgError
+        return together(segment, start, end, change)
+
+    monkeypatch.setattr(found_by, "_together", singular)
+    loads = [found.y[-1] for found in found_by.bifurcations(segment, [])]
+    assert loads == pytest.approx(np.pi**2 / 4 * np.array([1.0, 9.0, 25.0]), rel=3e-5)
+    assert parts[:3] == [(0.0, 1.0), (0.0, 0.5), (0.0, 0.25)]
+
+
+def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_the_path(monkeypatch):
+    """Where the load turns because a path crosses, at 0.6 of a step, and half-way along the parts beside it."""
+
+    def crossing(x):
+        return found_by.Crossing(x, np.zeros(1), np.zeros(1), np.zeros(1))
+
+    monkeypatch.setattr(found_by, "turning", lambda segment, x: crossing(x))
+    monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
+    segment = SimpleNamespace(turned=[0.6], change=lambda start, end: 0)
+    shares = [found.share for found in found_by.bifurcations(segment, [])]
+    assert shares == pytest.approx([0.3, 0.6, 0.8], abs=1e-3)

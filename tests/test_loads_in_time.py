@@ -101,7 +101,8 @@ def test_a_load_that_varies_within_a_step_is_named():
     with pytest.warns(UserWarning, match=r"amplitude of PointForce at \(1, 0\).* within the step from 0 s to 0\.002 s"):
         solution = pushed(half_sine)
     assert "varies within steps" in solution.statistics.ended
-    assert solution.linear_momentum()[-1, 0] == 0.0
+    # nothing but round-off of what 100 N would give, 0.06 N s
+    assert abs(solution.linear_momentum()[-1, 0]) < 1e-20
 
 
 def test_the_weight_follows_its_amplitude():

@@ -23,7 +23,7 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Kept states (rows, 3, n) of every so many-th whole step, and of the last, which goes to the row after them.
 
-    statistics (8,): see `kernels.advance.advance`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    statistics (8,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
     the kept states.
     """
 

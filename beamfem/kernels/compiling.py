@@ -168,5 +168,5 @@ class _KernelCache(FunctionCache):
             except Exception:  # a damaged index is written anew
                 self.flush()
                 super().save_overload(sig, data)
-        except OSError:
+        except Exception:  # of the disk, or of a compilation that was interrupted
             self.disable()

@@ -121,7 +121,7 @@ def test_a_slice_of_a_solution_is_a_solution_of_these_rows():
         with pytest.raises(bf.InputError, match=r"holds no row; this solution has the rows 0 to 10"):
             whole[rows]
     for row in ("last", 1.0, None, (0, 1), [0, 1]):
-        with pytest.raises(bf.InputError, match="a number or a slice"):
+        with pytest.raises(bf.InputError, match="a slice such as solution"):
             whole[row]
     with pytest.raises(IndexError):
         whole[11]

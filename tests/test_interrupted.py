@@ -21,8 +21,9 @@ MODEL = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, 
 
 @pytest.fixture
 def third_time(monkeypatch):
-    """Send this process Ctrl-C in the third stretch of steps of a motion."""
+    """Send this process Ctrl-C in the third stretch of steps of a motion; whoever runs the tests may ignore it."""
     advance, calls = BandMotion.advance, []
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def interrupted(self, *arguments):
         calls.append(None)
@@ -33,6 +34,8 @@ def third_time(monkeypatch):
 
     monkeypatch.setattr(BandMotion, "advance", interrupted)
     monkeypatch.setattr("beamfem.analysis.march._FIRST_CHUNK", 1000)
+    yield
+    signal.signal(signal.SIGINT, handler)
 
 
 @pytest.mark.parametrize("save_every", [1, 7])

@@ -51,6 +51,8 @@ def test_an_interruption_reaches_through_any_executor():
 
 
 SCRIPT = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever runs the tests may ignore it
 import os, sys, time
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial

@@ -26,4 +26,4 @@ def tell_of_compilation() -> None:
         how_often = "again in each process, since no folder can be written (NUMBA_CACHE_DIR names one)"
     else:
         how_often = "once on this computer"
-    print(f"compiling kernels, {how_often}: some ten seconds ...", file=sys.stderr)
+    print(f"compiling kernels, {how_often}: some twenty seconds ...", file=sys.stderr)

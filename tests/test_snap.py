@@ -189,9 +189,7 @@ def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_moti
     assert rest.iterations == 4 * (1 + 3)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="load steps that end beyond a snap are not seen to have gone over it"
-)
+@pytest.mark.xfail(strict=True, reason="load steps that end beyond a snap are not seen to have gone over it")
 @pytest.mark.parametrize(("load", "steps"), [(100.0, 10), (900.0, 2), (1e4, 1)])
 def test_a_load_step_over_a_limit_point_is_refused_whatever_its_length(load, steps):
     """The toggle gives way at 31.74 N; steps from below to far above it end in its other valley without a word."""

@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-# What carries the nodal vectors of a node, see `coordinates`.
+# What carries the nodal vectors of a node, see `physics.kinematics`.
 GRADIENTS = 0
 ROTATION = 1
 STRETCH = 2
 SHEAR_RIGID = 3
 TURNED_GRADIENTS = 4
 
-# Strain measures, see `measures`.
+# Strain measures, see `physics.measures`.
 GREEN_LAGRANGE = 0
 STRUCTURAL = 1
 ELASTIC_LINE = 2

@@ -17,6 +17,7 @@ _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
 _predict, _correct = caller("iidrrrnrr"), caller("iirrnrr", types.float64)
 _judge, _complete = caller("iiddddr", types.int64), caller("iirrrrnrr", types.float64)
 _count, _all = caller("inrrr"), caller("iiii")
+_keep, _solve_turned = caller("iir"), caller("iii")
 
 
 @routine("iiii")
@@ -27,13 +28,13 @@ def turn_all(system, solver, calls, keep):
     first = 0
     for group in range(s[r.GROUPS]):
         if keep != 0:
-            _turns(call[r.KEEP_DIRECTIONS], groups[group], first, kept, kept)
+            _keep(call[r.KEEP_DIRECTIONS], groups[group], first, kept)
         _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
         first += wholes(groups[group])[r.NODES]
 
 
-@routine("iiii")
-def solve_turned(system, solver, calls, turn):
+@routine("iii")
+def solve_turned(system, solver, calls):
     """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     unknown, half, rollers, residual, right = (
@@ -133,7 +134,7 @@ def march(system, solver, calls):
                 statistics[5] += 1.0
             if iteration == 0 or renew:
                 _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
-            _all(call[r.SOLVE_TURNED], system, solver, calls, 0)
+            _solve_turned(call[r.SOLVE_TURNED], system, solver, calls)
             last, size = size, _correct(call[r.CORRECT], n, unknown, state, right, free, scale, factors)
             fresh = False
             iteration += 1

@@ -116,8 +116,8 @@ def count_turns(pairs, table, before, now, turned):
         turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
-@routine("iirr")
-def keep_directions(group, first, kept, unused):
+@routine("iir")
+def keep_directions(group, first, kept):
     """Store the vectors d (N, 2) of the nodes of a group, which are numbered from `first` on."""
     b = wholes(group)
     chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]

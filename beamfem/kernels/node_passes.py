@@ -1,11 +1,10 @@
 """All nodes of a group: from the coordinates of the model to nodal vectors, and from nodal forces to the residual."""
 
 from beamfem.kernels import record as r
+from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 from beamfem.kernels.record import LANES, ROW
-
-GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID, TURNED_GRADIENTS = range(5)
 
 _take, _turn, _rotate = caller("iiiinrr"), caller("irrrr"), caller("irrr")
 _copy, _clear, _place, _convect = caller("iirr"), caller("iir"), caller("ir"), caller("iddr")

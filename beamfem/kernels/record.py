@@ -68,7 +68,6 @@ SPRING = 50  # (2, loads)
 ANCHOR = 51  # (2, loads)
 LOAD_PLACE = 52  # (nodes of an element, loads)
 LOAD_NUMBER = 53  # (nodes * coordinates, loads)
-LOADS_STIFFEN = 54
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
 BLOCK_FIELDS = 57
@@ -127,7 +126,6 @@ SYSTEM_FIELDS = 21
     HESSIAN,
     LAW,
     LOAD_FORCES,
-    LOAD_STIFFNESS,
     PLACE_NODES,
     ADD_ELEMENTS,
     ADD_LOADS,
@@ -140,9 +138,9 @@ SYSTEM_FIELDS = 21
     ADD_SCALED,
     FORM_MATRICES,
     ADD_MATRICES,
-) = range(41)
-PLACE_KIND = 41  # place, convect and curve of each kind of node that turns
-ROUTINE_COUNT = 50
+) = range(40)
+PLACE_KIND = 40  # place, convect and curve of each kind of node that turns
+ROUTINE_COUNT = 49
 
 # ------------------------------------------------------------------ the unknown coordinates and how to solve for them
 UNKNOWN = 0

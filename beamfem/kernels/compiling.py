@@ -23,6 +23,8 @@ from numpy import ndarray
 from beamfem.kernels.pointers import KINDS
 
 _HERE = Path(__file__).parent
+# of arrays by kind of argument; a table of whole numbers may stand for its address
+_TYPES = {"r": "float64", "n": "int64", "s": "int32", "i": "int64"}
 
 
 class Routine:
@@ -71,9 +73,15 @@ class Routine:
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, with arrays of the right type or addresses for pointers; other threads run meanwhile."""
-        return self._callable(
-            *(each.__array_interface__["data"][0] if isinstance(each, ndarray) else each for each in arguments)
-        )
+        both = zip(self.kinds, arguments, strict=True)
+        return self._callable(*(_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both))
+
+
+def _address(kind: str, array: ndarray) -> int:
+    """Return where an array begins; compiled code reads whatever is there, so that its type is looked at here."""
+    if array.dtype != _TYPES[kind] or not array.flags.c_contiguous:
+        raise TypeError(f"compiled code takes contiguous {_TYPES[kind]}, got {array.dtype} {array.strides}")
+    return int(array.__array_interface__["data"][0])
 
 
 def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:

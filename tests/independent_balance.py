@@ -11,7 +11,7 @@ from beamfem.analysis.equations import linearise
 from beamfem.model.system import system_of
 from beamfem.postprocess import axis, nodal_vectors
 
-# of all that acts; solvers are content with 1e-9 of the largest force. A load that is wrong by 1e-6 of that is noticed
+# of all that acts; solvers are content with 1e-9 of the largest force
 TOLERANCE = 2e-9
 # the same of sums over all rows: each may leave its own, and a model of the fuzz has some thousands
 TOLERANCE_OF_SUMS = 1e-7

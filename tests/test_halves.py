@@ -172,3 +172,24 @@ def test_a_chain_of_20_000_elements_takes_both_threads_and_is_right(monkeypatch)
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))]))
     assert solution.position(beam.end)[-1] == pytest.approx((1.0 - 0.38764432832607, 0.71385896416489), abs=1e-10)
     assert len(calls) == solution.statistics.steps == 1
+
+
+def test_pivots_cost_no_iteration(monkeypatch):
+    """What a band cannot hold takes the same corrections, prescribed motions or not."""
+    beam = bf.Beam(LINE, 6, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    force = bf.PointForce(beam.at(0.5), (0.0, 500.0))
+    for lift in (0.0, 0.1):
+        model = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, uy=lift)], [force])
+        system = system_of(model, static=True)
+        compiled, general = (
+            newton.solve_equilibrium(system, system.reference, 1.0, bf.Newton(), 0),
+            solved_in_general(system, monkeypatch),
+        )
+        assert general.first == pytest.approx(compiled.first, rel=1e-6)
+        assert general.iterations == compiled.iterations
+
+
+def solved_in_general(system, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(newton, "_solve_band", lambda *given: None)
+        return newton.solve_equilibrium(system, system.reference, 1.0, bf.Newton(), 0)

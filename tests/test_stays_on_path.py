@@ -11,7 +11,7 @@ from shooting import Member, solved
 
 import beamfem as bf
 from beamfem.analysis.iteration import Ended, NewtonResult
-from beamfem.analysis.load_steps import _over_a_gap
+from beamfem.analysis.skipped import skips_limit_points
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.model.system import System
 
@@ -329,4 +329,7 @@ def test_a_load_step_whose_first_correction_goes_far_beyond_its_end_is_a_gap_in_
     done = StaticRecord(system.model, system.symmetric)
     done.add(0.5, system.reference, 0, Ended.CONVERGED)
     for first, gap in ((1.0, True), (0.2, False)):
-        assert _over_a_gap(system, done, 1.0, NewtonResult(moved, 3, Ended.CONVERGED, first=first), bf.Newton()) == gap
+        assert (
+            skips_limit_points(system, done, 1.0, NewtonResult(moved, 3, Ended.CONVERGED, first=first), bf.Newton())
+            == gap
+        )

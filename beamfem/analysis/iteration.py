@@ -31,7 +31,8 @@ class NewtonResult:
     """The last state (n,) of an iteration, how many iterations it took and why it ended.
 
     negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
-    digits: how many of the forces are sure at least; first: size of the first correction [-].
+    digits: how many of the forces are sure at least; first: size of the first correction [-]; linear: the state
+    (n,) after it where the tangent there, with the stresses of this linear step, has another count than asked for.
     """
 
     state: np.ndarray
@@ -40,6 +41,7 @@ class NewtonResult:
     negative_pivots: int = 0
     digits: float = np.nan
     first: float = np.nan
+    linear: np.ndarray | None = None
 
 
 @dataclass(frozen=True)

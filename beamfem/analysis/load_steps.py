@@ -3,13 +3,10 @@
 from collections.abc import Sequence
 from typing import Literal
 
-import numpy as np
-from scipy.linalg import LinAlgError
-
-from beamfem.analysis.equations import STATICS, linearise, predicted_stresses
-from beamfem.analysis.iteration import Ended, Newton, NewtonResult
+from beamfem.analysis.iteration import Ended, Newton
 from beamfem.analysis.load_path import PathFollower, PathLostError, TurnsBackError
 from beamfem.analysis.newton import solve_equilibrium
+from beamfem.analysis.skipped import skips_limit_points
 from beamfem.analysis.snap import rest_state, same_point
 from beamfem.analysis.static_record import StaticRecord
 from beamfem.errors import ConvergenceError, LimitPointError
@@ -18,8 +15,6 @@ from beamfem.progress import progress
 
 Snap = Literal["error", "jump"]
 
-_OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
-_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models are at rest first and go all the way in one long step
 _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
@@ -45,7 +40,7 @@ def reach(
             target = stop if done.reached + step > stop - _SAME else done.reached + step
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
-            if result.ended.good and not _over_a_gap(system, done, target, result, newton):
+            if result.ended.good and not skips_limit_points(system, done, target, result, newton):
                 done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -65,31 +60,6 @@ def reach(
                 refused = 1.0
                 step *= 2.0
             report(done.reached)
-
-
-def _over_a_gap(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
-    """Tell whether a load step may have gone over limit points to a state of the same count of negative pivots.
-
-    Either the tangent at its start goes far beyond its end, as beside a limit point; from the reference a straight
-    beam does so where its own tension stiffens it. Or, looked at where the iteration was slow, the state half-way has
-    another count; it takes the mean stress resultants of both ends, for its own would be those of a chord.
-    """
-    if done.reached > 0.0:
-        moved = float(np.max(np.abs(result.state - done.state) / system.scale))
-        if result.first > _OVERSHOOT * moved + newton.tolerance:
-            return True
-    if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
-        return False
-    done.iterations += 1
-    rest = np.zeros(len(done.state))
-    ends = (predicted_stresses(system, p, rest) for p in (done.state, result.state))
-    mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
-    half_way = 0.5 * (done.state + result.state)
-    _, tangent = linearise(system, half_way, rest, rest, 0.5 * (done.reached + target), STATICS, mean)
-    try:
-        return tangent.factorised(system.turned).negative_pivots != done.negative_pivots
-    except LinAlgError:
-        return True
 
 
 def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:

@@ -36,8 +36,8 @@ def solve_equilibrium(
 ) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,).
 
-    keep: stop where the tangent has another count of negative pivots, from the third iteration on: the second tangent
-    takes the stresses of a linear step, which may be far too large.
+    keep: stop where the tangent has another count of negative pivots, from the third iteration on; of the second, which
+    takes the stresses of a linear step, the result only tells it.
     """
     mixed = MIXED in system.proven
     result = _judged(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
@@ -63,34 +63,36 @@ def _judged(system: System, load_factor: float, newton: Newton, result: NewtonRe
 
 
 def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None) -> NewtonResult:
-    held_step = np.zeros(len(start))
-    held_step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
+    prescribed = np.zeros(len(start))
+    prescribed[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
     if system.unknowns.pattern is None and MIXED not in system.proven:
         solve = _solve_halves if worth_cutting(system) else _solve_band
-        result = solve(system, start, load_factor, newton, held_step, keep)
+        result = solve(system, start, load_factor, newton, prescribed, keep)
         if result is not None:
             return result
     p, rest = start.copy(), np.zeros(len(start))
     scale = system.scale
     free = system.free_dofs
-    stresses = None
+    stresses = linear = swung = None
     last = first = np.inf
     for iteration in range(1, newton.iterations + 1):
         unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
-        step = held_step if iteration == 1 else np.zeros(len(p))
+        step = prescribed.copy() if iteration == 1 else np.zeros(len(p))
         try:
             factors = tangent.factorised(system.turned)
             step[free], after = factors.correction(unbalanced[free])
-            if iteration == 1 and np.any(held_step):
-                step[free] -= factors.solve(_held_force(system, p, held_step, load_factor)[free])
+            if iteration == 1 and np.any(prescribed):
+                step[free] -= factors.solve(_held_force(system, p, prescribed, load_factor)[free])
                 after = None
         except LinAlgError:
             return NewtonResult(p, iteration, Ended.SINGULAR)
         if iteration > 2 and keep not in (None, factors.negative_pivots):
             return NewtonResult(start, iteration, Ended.LOST, factors.negative_pivots)
+        swung = linear if iteration == 2 and keep not in (None, factors.negative_pivots) else swung
         if newton.independent_stresses:
             stresses = after or predicted_stresses(system, p, step)
         p = p + step
+        linear = p if iteration == 1 else linear
         size = float(np.max(np.abs(step) / scale, initial=0.0))
         first = size if iteration == 1 else first
         ended = verdict(system, p, load_factor, newton, iteration, (size, last))
@@ -98,13 +100,13 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
             if keep not in (None, factors.negative_pivots):
                 ended = Ended.LOST
             state = p if ended.good else start
-            return NewtonResult(state, iteration, ended, factors.negative_pivots, first=first)
+            return NewtonResult(state, iteration, ended, factors.negative_pivots, first=first, linear=swung)
         last = size
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
 
 
 def _solve_band(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, prescribed: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same in one compiled call where the tangent is a band; None where it needs pivots."""
     n, unknown, half = len(start), len(system.free_dofs), system.layouts[0].half_width
@@ -123,17 +125,19 @@ def _solve_band(
             record.RIGHT: (unknown,),
             record.ROWS: (unknown, 2 * half + 1),
             record.LIMITS: (7,),
-            record.FOUND: (8,),
+            record.FOUND: (9,),
+            record.LINEAR: (n,),
         }
     )
-    p, unbalanced, step, *held, _, rows, limits, found = room.arrays.values()
+    p, unbalanced, step, *held, _, rows, limits, found, linear = room.arrays.values()
     place = room.addresses
     states = place.pop("p"), place[record.STEP], place[record.STEP]
     assembler.place_at(states, place.pop("residual"), place[record.ROWS], rows.size)
     solver, routines = system.solver_table.filled(place), system.solver_table.routines(moving=False)
-    p[:], step[:], held[0][:] = start, 0.0, held_step
-    held[1][:] = _held_force(system, start, held_step, load_factor) if held_step.any() else 0.0
-    found[:] = 0.0, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
+    p[:], step[:], held[0][:] = start, 0.0, prescribed
+    held[1][:] = _held_force(system, start, prescribed, load_factor) if prescribed.any() else 0.0
+    found[:] = 0.0
+    found[1:3] = np.inf
     limits[:4] = newton.tolerance, _STAGNANT, _LARGEST, SMALLEST_PIVOT
     limits[4:] = newton.iterations, newton.independent_stresses, -1 if keep is None else keep
     load = load_size(system, values)
@@ -150,21 +154,23 @@ def _solve_band(
             left = _Left(unbalanced, found[3], max(found[4], load))
             ended = _judge(system, p, newton, (size, before, iterations), left, found[5] <= 0.0)
             if ended is not None:
-                return NewtonResult(p.copy(), iterations, ended, negative, left.digits, found[7])
+                swung = linear.copy() if found[8] > 0.0 else None
+                return NewtonResult(p.copy(), iterations, ended, negative, left.digits, found[7], swung)
         held[0][:] = held[1][:] = 0.0
     return NewtonResult(p.copy(), newton.iterations, Ended.EXHAUSTED)
 
 
 def _solve_halves(
-    system: System, start: np.ndarray, load_factor: float, newton: Newton, held_step: np.ndarray, keep: int | None
+    system: System, start: np.ndarray, load_factor: float, newton: Newton, prescribed: np.ndarray, keep: int | None
 ) -> NewtonResult | None:
     """Return the same of a long chain, on two threads; None where it needs pivots."""
-    held_force = _held_force(system, start, held_step, load_factor) if held_step.any() else np.zeros(len(start))
+    force = _held_force(system, start, prescribed, load_factor) if prescribed.any() else np.zeros(len(start))
     halves = halves_of(system, start, load_factor)
     load, before, first = load_size(system, system.point_values(load_factor)), np.inf, np.inf
+    swung = None
     with ThreadPoolExecutor(1) as pool:
         for iteration in range(1, newton.iterations + 1):
-            change = (held_step, held_force) if iteration == 1 else None
+            change = (prescribed, force) if iteration == 1 else None
             try:
                 size, pivots = correct(halves, pool, newton.independent_stresses, change)
             except LinAlgError:
@@ -173,6 +179,8 @@ def _solve_halves(
             negative = negative_pivots(halves, pivots) if keep is not None or _grown(size) else 0
             if iteration > 2 and keep not in (None, negative):
                 return NewtonResult(start, iteration, Ended.LOST, negative)
+            if iteration == 2 and keep not in (None, negative):
+                swung = _linear_state(system, start, load_factor, prescribed, force)
             if _grown(size):
                 return NewtonResult(start, iteration, Ended.DIVERGED, negative)
             if _small(size, before, iteration, newton):
@@ -183,10 +191,21 @@ def _solve_halves(
                     negative = negative_pivots(halves, pivots)
                     lost = keep not in (None, negative)
                     reached, ended = (start, Ended.LOST) if lost else (p, ended)
-                    return NewtonResult(reached, iteration, ended, negative, left.digits, first)
+                    return NewtonResult(reached, iteration, ended, negative, left.digits, first, swung)
             before = size
         p, *_ = joined(halves, pool)
     return NewtonResult(p, newton.iterations, Ended.EXHAUSTED)
+
+
+def _linear_state(
+    system: System, start: np.ndarray, load_factor: float, prescribed: np.ndarray, force: np.ndarray
+) -> np.ndarray:
+    """Return the state (n,) after the first correction."""
+    rest = np.zeros(len(start))
+    unbalanced, tangent = linearise(system, start, rest, rest, load_factor, STATICS)
+    step, free = prescribed.copy(), system.free_dofs
+    step[free] = tangent.solve(-(unbalanced + force)[free], system.turned)
+    return start + step
 
 
 def verdict(
@@ -277,7 +296,7 @@ def inverted(system: System, p: np.ndarray) -> bool:
 
 
 def _held_force(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
-    """Change of the residual with a step (n,) of the held coordinates, by a central difference."""
+    """Return the change of the residual with a step (n,) of the held coordinates, by a central difference."""
     rest = np.zeros(len(p))
     size = 1e-6 / max(float(np.max(np.abs(step))), 1e-300)
     ahead = residual(system, p + size * step, rest, rest, load_factor)

@@ -30,11 +30,11 @@ def iterate(system, solver, calls):
     `HELD_STEP`, `HELD_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the residual (n,),
     zero to go on. `LIMITS`: tolerance, correction below which it may be stagnant, one beyond which it diverges,
     smallest pivot ratio, iterations, 1 to take predicted resultants for the geometric tangent, and the count of
-    negative pivots where it stops if the third tangent or a later one has another (the resultants of the second are
-    those of a linear step), or -1. `FOUND` (8,): iterations so far, last correction and the one before; then largest
-    residual of the unknown and of all coordinates, times their scales, and the smallest r0' x d of the state reached,
-    whose residual (n,) is filled; negative pivots of the last tangent; size of the first correction. Stops where
-    corrections are small or stagnant, or have grown.
+    negative pivots where it stops if the third tangent or a later one has another, or -1. `FOUND` (9,): iterations so
+    far, last correction and the one before; then largest residual of the unknown and of all coordinates, times their
+    scales, and the smallest r0' x d of the state reached, whose residual (n,) is filled; negative pivots of the last
+    tangent; size of the first correction; 1 where the second tangent, with the resultants of a linear step, has another
+    count: `LINEAR` (n,) then is the state after this step. Stops where corrections are small or stagnant, or grow.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
@@ -51,6 +51,7 @@ def iterate(system, solver, calls):
         reals(b[r.HELD_STEP]),
         reals(b[r.HELD_FORCE]),
     )
+    linear = reals(b[r.LINEAR])
     residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
     first, done = True, False
     while True:
@@ -70,9 +71,14 @@ def iterate(system, solver, calls):
         for i in range(unknown):
             negative += rows[i * (2 * half + 1) + half] < 0.0
         found[6] = negative
-        if limits[6] >= 0.0 and found[6] != limits[6] and found[0] > 1.0:
-            found[0] += 1.0
-            return 1
+        if limits[6] >= 0.0 and found[6] != limits[6]:
+            if found[0] > 1.0:
+                found[0] += 1.0
+                return 1
+            if found[0] == 1.0:
+                found[8] = 1.0
+                for i in range(n):
+                    linear[i] = p[i]
         _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
         if rollers > 0:
             _turn(call[r.TURN_BACK], rollers, first_of, normal, right)

@@ -284,3 +284,22 @@ def test_an_iteration_that_fails_on_too_many_unknowns_to_find_all_of_them_is_nam
     with pytest.raises(bf.ConvergenceError, match="the iteration for 3 eigenvalues of 5000 unknowns did not converge"):
         first_that_works(lambda: pytest.fail("all pairs of 5000 unknowns"), fails, 5000, 3)
     assert first_that_works(lambda: "all of them", fails, 4000, 3) == "all of them"
+
+
+def test_what_round_off_leaves_of_a_free_turn_is_no_mode():
+    """Two joined bars, E 1 : 2e5, on a soft spring about which they turn freely: else they vibrate as without it."""
+    soft, stiff = (
+        bf.Beam(bf.Line(start, end), 3, bf.BilinearCRBF(), section, material)
+        for start, end, section, material in (
+            ((0, 0), (0.44, 0), bf.Rectangle(0.042, 0.0087), bf.Material(1.3e5, 0.3, 12.0)),
+            ((0.44, 0), (1.4, 0.3), bf.Rectangle(0.014, 0.019), bf.Material(2.9e10, 0.3, 31e3)),
+        )
+    )
+    joints = [bf.Rigid(soft.end, stiff.start)]
+    free = bf.solve_modes(bf.Model([soft, stiff], [], [], joints), 11).elastic
+    held = bf.Model([soft, stiff], [bf.Spring(stiff.at(1.0 / 3.0), (0.03, 0.016))], [], joints)
+    for count in range(4, 12):
+        found = bf.solve_modes(held, count)
+        assert len(found.rigid) == 1
+        # the spring adds 0.01 Hz squared to the square of each
+        assert found.elastic[2:] == pytest.approx(free[: count - 3], rel=2e-6)

@@ -42,28 +42,32 @@ def nothing_known(n: int) -> Pairs:
     return np.empty(0), np.empty((n, 0))
 
 
-def largest_pairs(mass: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
     """Return the largest mu (m,), descending, and x (n, m) with S mass x = mu x, x^T mass x = 1, S the inverse.
 
     mass: positive definite; factors: of a symmetric matrix, positive definite along the free directions; count: how
-    many to find besides the `known` ones, which the result does not hold. m is smaller where there are no more.
-    Raises ConvergenceError.
+    many to find besides the vectors (n, k) that are `known`, with x^T mass x = 1. They are projected out of the inverse
+    on both sides: taking their mu away instead leaves what round-off makes of it, which may pass for a mode. m is
+    smaller where there are no more. Raises ConvergenceError.
     """
     n = mass.shape[0]
-    carried = mass @ known[1]
+    carried = mass @ known
 
     def dense() -> Pairs:
         root = cholesky(mass.toarray(), lower=True)
         inverse = root.T @ np.column_stack([factors.solve(column) for column in root.T])
         inverse = 0.5 * (inverse + inverse.T)
-        old = root.T @ known[1]
-        values, y = eigh(inverse - old @ (known[0][:, None] * old.T))
+        old = root.T @ known
+        others = np.eye(n) - old @ old.T
+        values, y = eigh(others @ inverse @ others)
         return values[::-1], solve_triangular(root.T, y[:, ::-1])
 
     def few(vectors: int) -> Pairs:
-        inverse = LinearOperator(
-            (n, n), matvec=lambda b: factors.solve(b) - known[1] @ (known[0] * (known[1].T @ b)), dtype=float
-        )
+        def projected(b: np.ndarray) -> np.ndarray:
+            solved = factors.solve(b - carried @ (known.T @ b))
+            return np.asarray(solved - known @ (carried.T @ solved))
+
+        inverse = LinearOperator((n, n), matvec=projected, dtype=float)
         # ARPACK asks the matrix itself nothing where it is given the inverse
         reciprocal, x = eigsh(
             LinearOperator((n, n), matvec=np.asarray, dtype=float),
@@ -80,7 +84,7 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: Pairs) ->
 
     mu, x = first_that_works(dense, few, n, count)
     for _ in range(2):
-        x = x - known[1] @ (carried.T @ x)
+        x = x - known @ (carried.T @ x)
     return mu[:count], x[:, :count]
 
 
@@ -95,12 +99,10 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
 
     def dense() -> Pairs:
         inverse = np.column_stack([factors.solve(column) for column in mass.toarray().T])
-        return eig(inverse - known[1] @ (known[0][:, None] * carried.T))
+        return eig(inverse - (inverse @ known[1]) @ carried.T)
 
     def few(vectors: int) -> Pairs:
-        inverse = LinearOperator(
-            (n, n), matvec=lambda b: factors.solve(b) - known[1] @ (known[0] * (known[1].T @ b)), dtype=float
-        )
+        inverse = LinearOperator((n, n), matvec=lambda b: factors.solve(b - carried @ (known[1].T @ b)), dtype=float)
         # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
         options = {"ncv": lanczos_vectors(vectors, count, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
         reciprocal, x = eigs(stiffness, count, M=mass, sigma=0.0, OPinv=inverse, **options)

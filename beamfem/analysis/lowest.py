@@ -28,7 +28,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
         shift = pencil.shift(rigid.shape[1])
     factors = pencil.shifted(shift).factorised(pencil.system.turned)
     wanted = min(count + _SPARE, available)
-    known = np.full(rigid.shape[1], -1.0 / shift if shift else 0.0), rigid
+    known = rigid
     correction = np.zeros_like(pencil.p)
     correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
     found, missing = nothing_known(n), wanted
@@ -47,7 +47,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
             if missing == 0:
                 return squares[:below], vectors[:, :below]
             missing = max(missing, _SPARE)
-        known = np.append(known[0], more[0]), np.column_stack([known[1], more[1]])
+        known = np.column_stack([known, more[1]])
     raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
 
 

@@ -303,3 +303,14 @@ def test_what_round_off_leaves_of_a_free_turn_is_no_mode():
         assert len(found.rigid) == 1
         # the spring adds 0.01 Hz squared to the square of each
         assert found.elastic[2:] == pytest.approx(free[: count - 3], rel=2e-6)
+
+
+def test_shapes_far_above_the_lowest_keep_their_digits():
+    """A thin arc on a spring so soft that its elastic modes, 1e11 times as high squared, are those of a free one."""
+    thin = bf.Section(area=9.4e-8, second_moment=3.3e-15)
+    arc = bf.Beam(bf.Arc((0, 0), 0.75, 2.0, 1.2), 4, bf.ANCFCRBF(), thin, bf.Material(7.7e13, 0.3, 15.0))
+    free = bf.solve_modes(bf.Model([arc]), 6)
+    held = bf.solve_modes(bf.Model([arc], [bf.Spring(arc.at(0.5), (2e-4, 1e-4), 1e-4)]), 6)
+    for shape, other in zip(free.modes[3:], held.modes[3:], strict=True):
+        same = shape * np.sign(shape @ other)
+        assert np.abs(same - other).max() <= 2e-8 * np.abs(shape).max()

@@ -12,6 +12,7 @@ _CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be c
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
 _SPREAD = 1e6  # of the sizes of eigenvalues that are found together from their stiffness
 _SEARCHES = 8
+_SOLVES = 2  # for vectors far above the lowest: each leaves some hundredth of what is wrong of them
 
 
 def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
@@ -35,7 +36,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     for _ in range(_SEARCHES):
         more = largest_pairs(pencil.mass, factors, min(missing, available - len(found[0])), known)
         found = _sorted(np.append(found[0], shift + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
-        squares, vectors = _refined(pencil, *found, correction)
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *found), correction)
         if len(squares) == available:
             return squares, vectors
         below = count + int(np.argmax(np.diff(squares[count - 1 :])))
@@ -49,6 +50,29 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
             missing = max(missing, _SPARE)
         known = np.column_stack([known, more[1]])
     raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
+
+
+def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray) -> Pairs:
+    """Return the vectors (unknown, m) of values far above the lowest after further solves, at a shift below them.
+
+    The factors that found them bring the round-off of the lowest, which for them is as large as the values lie apart.
+    """
+    first, *others = _alike(squares)
+    sharp = vectors[:, first]
+    for part in others:
+        factors = pencil.shifted(0.5 * squares[part.start]).factorised(pencil.system.turned)
+        own = _besides(pencil, sharp, vectors[:, part])
+        for _ in range(_SOLVES):
+            own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
+            own = _besides(pencil, sharp, own)
+        sharp = np.column_stack([sharp, own])
+    return squares, sharp
+
+
+def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) without their shares of known ones (n, k), and with x^T M x = 1."""
+    vectors = vectors - known @ (known.T @ (pencil.mass @ vectors))
+    return np.asarray(vectors / np.sqrt((vectors * (pencil.mass @ vectors)).sum(axis=0)))
 
 
 def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correction: np.ndarray) -> Pairs:

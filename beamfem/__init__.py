@@ -1,13 +1,7 @@
 """Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
 
-from beamfem.analysis.buckling import Buckling, solve_buckling
-from beamfem.analysis.dynamics import simulate
-from beamfem.analysis.initial import RigidVelocity
-from beamfem.analysis.integrators import GeneralizedAlpha
-from beamfem.analysis.iteration import Newton
-from beamfem.analysis.modes import Modes, solve_modes
-from beamfem.analysis.statics import solve_static
-from beamfem.analysis.trace import trace_equilibrium
+from beamfem import view as view  # offers plot() and the like on results, and imports what draws at the first call
+from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.convergence.study import converge
 from beamfem.curves import (
     Arc,
@@ -52,11 +46,18 @@ from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMomen
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise
-from beamfem.path import Bifurcation, Path, PathState
-from beamfem.postprocess import Fields, SectionForces
+from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.postprocess import Fields, SectionForces
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Status
 from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
-from beamfem.solution import Solution, State
-from beamfem.status import Status
+from beamfem.solve.modes.modes import Modes, solve_modes
+from beamfem.solve.motion.dynamics import simulate
+from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.paths.trace import trace_equilibrium
+from beamfem.solve.stability.buckling import Buckling, solve_buckling
+from beamfem.solve.statics.statics import solve_static
 from beamfem.sweeps.sweep import sweep
 
 __all__ = [

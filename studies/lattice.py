@@ -15,7 +15,7 @@ import numpy as np
 
 import beamfem as bf
 from beamfem.io.mesh import read_mesh
-from beamfem.postprocess import nodal_vectors
+from beamfem.results.postprocess import nodal_vectors
 from beamfem.view.plots import new_figure, save_figure
 
 MESHES = Path(__file__).parents[1] / "meshes"

@@ -13,7 +13,7 @@ from scipy.integrate import simpson
 from terminal import show
 
 import beamfem as bf
-from beamfem import postprocess
+from beamfem.results import postprocess
 from beamfem.view.page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 

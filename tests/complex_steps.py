@@ -21,7 +21,7 @@ from beamfem.model.reference import (
     reference_position,
     scales,
 )
-from beamfem.postprocess import axis, nodal_vectors
+from beamfem.results.postprocess import axis, nodal_vectors
 
 _STEP = 1e-40
 

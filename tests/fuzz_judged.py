@@ -11,10 +11,10 @@ from independent_balance import balance, floor_of
 from scipy.linalg import LinAlgError
 
 import beamfem as bf
-from beamfem.analysis.equations import STATICS, linearise
-from beamfem.model.system import system_of
-from beamfem.postprocess import nodal_vectors
-from beamfem.solution import Statistics
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import system_of
+from beamfem.results.postprocess import nodal_vectors
+from beamfem.results.solution import Statistics
 
 MOST_WARNINGS = 5
 UNEXPLAINED = (

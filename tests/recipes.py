@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import beamfem as bf
-from beamfem import postprocess
+from beamfem.results import postprocess
 
 KINDS = {
     "ANCF": bf.ANCF(),

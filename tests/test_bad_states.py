@@ -7,8 +7,8 @@ import pytest
 from bad_inputs import BEAM, CANTILEVER, END, INF, NAN, a_beam, require_named
 
 import beamfem as bf
-from beamfem.analysis.eigenpairs import digits_for
-from beamfem.analysis.lapack import LinAlgError, eigh, solve_banded
+from beamfem.linalg.eigenpairs import digits_for
+from beamfem.linalg.lapack import LinAlgError, eigh, solve_banded
 
 BAD = bf.InputError
 OTHER = bf.Model([a_beam(elements=5)])

@@ -7,10 +7,10 @@ from scipy.special import ellipk
 from test_path import LIMIT_HEIGHT, SOFT, bar_force
 
 import beamfem as bf
-from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.pencil import UNTURNED
-from beamfem.analysis.trace import trace_equilibrium
-from beamfem.model.system import system_of
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import system_of
+from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.paths.trace import trace_equilibrium
 
 FOUNDATION = 4.0 * np.pi**4  # where the first two modes of a hinged column with E I = L = 1 buckle together
 

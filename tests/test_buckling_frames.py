@@ -8,9 +8,9 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.analysis import eigenpairs, linearised
-from beamfem.analysis.pencil import Pencil
-from beamfem.model.system import system_of
+from beamfem.assembly.system import system_of
+from beamfem.linalg import eigenpairs, linearised
+from beamfem.solve.modes.pencil import Pencil
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)

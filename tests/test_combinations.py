@@ -8,10 +8,10 @@ from conftest import ELEMENTS, identify
 from integrated import Cantilever
 
 import beamfem as bf
-from beamfem.analysis.equations import residual
-from beamfem.model.system import System, coordinate_columns
-from beamfem.postprocess import nodal_vectors
-from beamfem.solution import Solution, Statistics
+from beamfem.assembly.equations import residual
+from beamfem.assembly.system import System, coordinate_columns
+from beamfem.results.postprocess import nodal_vectors
+from beamfem.results.solution import Solution, Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 THICK = bf.Rectangle(0.1, 0.1)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.analysis.equations import residual
-from beamfem.analysis.round_off import round_off_floor
-from beamfem.model.system import System
+from beamfem.assembly.equations import residual
+from beamfem.assembly.round_off import round_off_floor
+from beamfem.assembly.system import System
 
 
 @pytest.mark.parametrize(

@@ -7,16 +7,16 @@ import pytest
 from numpy.linalg import LinAlgError
 from test_path import cantilever
 
-from beamfem.analysis import bifurcations as found_by
-from beamfem.analysis import critical
-from beamfem.analysis.continuation import PathPoint, begin
-from beamfem.analysis.critical import BIFURCATION, Critical, Search, _between
-from beamfem.analysis.critical_points import Segment
-from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.iteration import Newton
-from beamfem.analysis.loading_path import PathLostError
-from beamfem.analysis.window import Zero, smooth
-from beamfem.model.system import System
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import System
+from beamfem.solve.continuation import bifurcations as found_by
+from beamfem.solve.continuation.continuation import PathPoint, begin
+from beamfem.solve.continuation.critical_points import Segment
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.stability import critical
+from beamfem.solve.stability.critical import BIFURCATION, Critical, Search, _between
+from beamfem.solve.stability.loading_path import PathLostError
+from beamfem.solve.stability.window import Zero, smooth
 
 
 class Curve:

@@ -6,10 +6,10 @@ from conftest import ELEMENTS, identify
 from test_kernels import dense
 
 import beamfem as bf
-from beamfem.analysis.equations import linearise, residual
+from beamfem.assembly.equations import linearise, residual
+from beamfem.assembly.system import System, coordinate_columns
 from beamfem.model.reference import energy_points, reference_axis
-from beamfem.model.system import System, coordinate_columns
-from beamfem.postprocess import axis, nodal_vectors, strain_energy
+from beamfem.results.postprocess import axis, nodal_vectors, strain_energy
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SOFT = bf.Material(2e5, 0.3, 1000.0)

@@ -5,15 +5,15 @@ import pytest
 from test_sparse import MATERIAL, SECTION, grid
 
 import beamfem as bf
-from beamfem.analysis import entangled_motion
-from beamfem.analysis.equations import linearise
-from beamfem.model.system import system_of
+from beamfem.assembly.equations import linearise
+from beamfem.assembly.system import system_of
+from beamfem.solve.motion import entangled_motion
 
 
 @pytest.fixture
 def widest_band(monkeypatch):
     """Return a function that sets the widest half width for which a model gets a band."""
-    return lambda half_width: monkeypatch.setattr("beamfem.model.layout._WIDEST_BAND", half_width)
+    return lambda half_width: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", half_width)
 
 
 def arcade(bays=3):

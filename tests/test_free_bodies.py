@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.analysis import body_motions
-from beamfem.analysis.body_motions import Conditions, bodies_of, free_motions
-from beamfem.model.system import System
+from beamfem.assembly.system import System
+from beamfem.solve.start import body_motions
+from beamfem.solve.start.body_motions import Conditions, bodies_of, free_motions
 
 
 @pytest.mark.parametrize("dense_up_to", [300, 3], ids=["dense", "sparse"])

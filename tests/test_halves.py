@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.analysis import cut_chain, newton
-from beamfem.analysis.iteration import Ended, Newton
-from beamfem.model.system import system_of
+from beamfem.assembly.system import system_of
+from beamfem.solve.newton import cut_chain, newton
+from beamfem.solve.newton.iteration import Ended, Newton
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
 EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0

@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 import beamfem as bf
-from beamfem.analysis.band_motion import BandMotion
 from beamfem.cli.app import app
+from beamfem.solve.motion.band_motion import BandMotion
 
 ROOT = Path(__file__).parents[1]
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
@@ -33,7 +33,7 @@ def third_time(monkeypatch):
         return done
 
     monkeypatch.setattr(BandMotion, "advance", interrupted)
-    monkeypatch.setattr("beamfem.analysis.march._FIRST_CHUNK", 1000)
+    monkeypatch.setattr("beamfem.solve.motion.march._FIRST_CHUNK", 1000)
     yield
     signal.signal(signal.SIGINT, handler)
 

@@ -6,10 +6,10 @@ from scipy.linalg import eigh
 from test_snap import toggle
 
 import beamfem as bf
-from beamfem.analysis import snap
-from beamfem.analysis.equations import INERTIA, STATICS, linearise
-from beamfem.analysis.pencil import UNTURNED
-from beamfem.model.system import system_of
+from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.system import system_of
+from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.statics import snap
 
 SECTION, STEEL = bf.Rectangle(0.05, 0.05), bf.Material(2e11, 0.3, 7800.0)
 BENDING = 2e11 * SECTION.second_moment

@@ -6,11 +6,11 @@ from conftest import ELEMENTS, beam, identify
 from scipy.linalg import solve_banded
 
 import beamfem as bf
-from beamfem.analysis.equations import linearise, predicted_stresses
-from beamfem.analysis.tangent import BandTangent, _solve_pivoted
+from beamfem.assembly.equations import linearise, predicted_stresses
+from beamfem.assembly.system import System, coordinate_columns
+from beamfem.linalg.tangent import BandTangent, _solve_pivoted
 from beamfem.model.reference import stations
-from beamfem.model.system import System, coordinate_columns
-from beamfem.postprocess import axis, nodal_vectors
+from beamfem.results.postprocess import axis, nodal_vectors
 
 NONE_TURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 

@@ -6,10 +6,10 @@ from scipy.sparse.linalg import splu
 from test_sparse import MATERIAL, SECTION, grid, tangent_at
 
 import beamfem as bf
+from beamfem.assembly.system import System
 from beamfem.model.beam import reference_positions
 from beamfem.model.grid import Grid, make_grid
 from beamfem.model.grids import make_grids
-from beamfem.model.system import System
 
 
 def mixed_beams():

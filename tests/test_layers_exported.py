@@ -5,7 +5,7 @@ import pytest
 import pyvista
 
 import beamfem as bf
-from beamfem.along import AxisPoints
+from beamfem.results.along import AxisPoints
 from beamfem.view import body
 from beamfem.view.shapes import Shapes
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.analysis.time_steps import stretches
-from beamfem.analysis.unresolved import Course
+from beamfem.solve.motion.time_steps import stretches
+from beamfem.solve.motion.unresolved import Course
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

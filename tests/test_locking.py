@@ -8,11 +8,11 @@ from conftest import COORDINATES, ELEMENTS, FORCES, identify
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.analysis.equations import linearise
+from beamfem.assembly.equations import linearise
+from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Cubic
-from beamfem.model.system import System
-from beamfem.postprocess import axis, nodal_vectors, strain_energy
+from beamfem.results.postprocess import axis, nodal_vectors, strain_energy
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 LINES = (bf.Structural(), bf.ElasticLine())

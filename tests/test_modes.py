@@ -6,11 +6,11 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.analysis.eigenpairs import first_that_works, general_pairs, nothing_known
-from beamfem.analysis.equations import INERTIA, STATICS, linearise
-from beamfem.analysis.modes import _rates
-from beamfem.analysis.pencil import UNTURNED, Pencil
-from beamfem.model.system import System, system_of
+from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.system import System, system_of
+from beamfem.linalg.eigenpairs import first_that_works, general_pairs, nothing_known
+from beamfem.solve.modes.modes import _rates
+from beamfem.solve.modes.pencil import UNTURNED, Pencil
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 # 9.timoshenko.clamped-free.L/h=10.ks=5/6 [Hz]

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
-from beamfem.analysis.equations import INERTIA, STATICS, linearise, residual
-from beamfem.element.coordinates import Gradients, Rotation, labels
-from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.forms import (
+from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
+from beamfem.assembly.forms import (
     beam_basis,
     elastic_force,
     elastic_tangent,
@@ -19,10 +17,12 @@ from beamfem.forms import (
     nodal_numbers,
     strain_energy,
 )
+from beamfem.assembly.system import System
+from beamfem.element.coordinates import Gradients, Rotation, labels
+from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.kernels.block import ROTATION
 from beamfem.model.beam import Beam
-from beamfem.model.system import System
-from beamfem.postprocess import strain_energy as kernel_strain_energy
+from beamfem.results.postprocess import strain_energy as kernel_strain_energy
 
 GRAVITY = (1.3, -9.81)
 FIELDS = [Cubic(), Lagrange(1), Lagrange(2), Lagrange(3)]

@@ -5,12 +5,12 @@ import pytest
 from scipy.special import ellipk
 
 import beamfem as bf
-from beamfem.analysis.bifurcations import bifurcations
-from beamfem.analysis.continuation import begin
-from beamfem.analysis.critical_points import Segment
-from beamfem.analysis.iteration import Newton
-from beamfem.analysis.trace import trace_equilibrium
-from beamfem.model.system import System
+from beamfem.assembly.system import System
+from beamfem.solve.continuation.bifurcations import bifurcations
+from beamfem.solve.continuation.continuation import begin
+from beamfem.solve.continuation.critical_points import Segment
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.paths.trace import trace_equilibrium
 
 SOFT = bf.Material(1.0, 0.0, 1.0)
 

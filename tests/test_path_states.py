@@ -5,7 +5,7 @@ import pytest
 from test_path import LIMIT_HEIGHT, WILLIAMS, bar, bar_force, cantilever, toggle
 
 import beamfem as bf
-from beamfem.analysis.trace import trace_equilibrium
+from beamfem.solve.paths.trace import trace_equilibrium
 
 
 def test_a_path_to_a_negative_load_factor_goes_downward():

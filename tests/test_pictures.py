@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.quiver import Quiver
 
 import beamfem as bf
-from beamfem.along import AxisPoints, section_forces
+from beamfem.results.along import AxisPoints, section_forces
 from beamfem.view import symbols
 from beamfem.view.acting import FORCE, draw_loads
 from beamfem.view.drawing import equal_axes

@@ -7,14 +7,14 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 import beamfem as bf
-from beamfem.analysis.equations import STATICS, linearise, residual
-from beamfem.analysis.iteration import NewtonResult
-from beamfem.analysis.newton import solve_equilibrium
-from beamfem.analysis.skipped import skips_limit_points
-from beamfem.analysis.static_record import StaticRecord
-from beamfem.forms import axis_basis, nodal_numbers, pressure_load
-from beamfem.model.system import System
-from beamfem.postprocess import nodal_vectors, nodal_velocities
+from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.forms import axis_basis, nodal_numbers, pressure_load
+from beamfem.assembly.system import System
+from beamfem.results.postprocess import nodal_vectors, nodal_velocities
+from beamfem.solve.newton.iteration import NewtonResult
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.statics.skipped import skips_limit_points
+from beamfem.solve.statics.static_record import StaticRecord
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1e3, 1.0, 1.0)
 FORMS = [

@@ -8,9 +8,9 @@ from recipes import View
 from strategies import CONSERVATIVE, SHARING, between, recipes, views
 
 import beamfem as bf
-from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.statics import solve_through
-from beamfem.model.system import system_of
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import system_of
+from beamfem.solve.statics.statics import solve_through
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*unstable equilibria:beamfem.errors.UnstableWarning")
 SAME = 1e-7  # of the model: corrections end below 1e-10 of it, and its softest way is far softer than its stiffest

@@ -12,7 +12,7 @@ import beamfem as bf
 from beamfem.io import description, results
 from beamfem.io.results import load, save
 from beamfem.model.sampled import Sampled
-from beamfem.solution import Solution
+from beamfem.results.solution import Solution
 
 
 def beam(element: bf.Element, start: tuple[float, float] = (0.0, 0.0), length: float = 1.0) -> bf.Beam:
@@ -164,7 +164,7 @@ import os, sys
 import numpy as np
 import beamfem as bf
 from beamfem.io import results
-from beamfem.solution import Statistics
+from beamfem.results.solution import Statistics
 
 rows, blocks = 40, int(sys.argv[2])
 one = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.ANCF(), bf.Rectangle(0.1, 0.1), bf.Material(1e7, 0.3, 1e3))

@@ -9,8 +9,8 @@ from drawn import EI as DRAWN
 from drawn import cantilever
 
 import beamfem as bf
-from beamfem.along import AxisPoints
-from beamfem.along import section_forces as along_axis
+from beamfem.results.along import AxisPoints
+from beamfem.results.along import section_forces as along_axis
 from beamfem.view.shapes import Shapes
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)

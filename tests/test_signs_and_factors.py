@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.assembly.system import System, coordinate_columns
 from beamfem.model.reference import reference_axis
-from beamfem.model.system import System, coordinate_columns
-from beamfem.postprocess import axis, green_strain, nodal_vectors
+from beamfem.results.postprocess import axis, green_strain, nodal_vectors
 
 STIFF = bf.Section.from_stiffness(1e9, 1e9, 1.0, 1.0, 1.0)
 KINDS = [

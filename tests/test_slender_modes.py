@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
-from beamfem.analysis import eigenpairs
+from beamfem.linalg import eigenpairs
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 CLAMPED_FREE = np.array([1.8751040687119611, 4.694091132974175, 7.854757438237613])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.analysis import snap
-from beamfem.analysis.iteration import Ended, NewtonResult
-from beamfem.model.system import System
+from beamfem.assembly.system import System
+from beamfem.solve.newton.iteration import Ended, NewtonResult
+from beamfem.solve.statics import snap
 
 
 def toggle(load, element=None, turn=0.0):

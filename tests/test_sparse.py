@@ -7,13 +7,13 @@ import pytest
 from conftest import beam as small_beam
 
 import beamfem as bf
-from beamfem.analysis.equations import STATICS, linearise
-from beamfem.analysis.newton import inverted
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.layout import Unknowns
+from beamfem.assembly.system import System
 from beamfem.element.axis import cross
-from beamfem.model.layout import Unknowns
 from beamfem.model.reference import energy_points
-from beamfem.model.system import System
-from beamfem.postprocess import axis, nodal_vectors
+from beamfem.results.postprocess import axis, nodal_vectors
+from beamfem.solve.newton.newton import inverted
 
 SECTION = bf.Rectangle(0.05, 0.05)
 MATERIAL = bf.Material(1e7, 0.3, 1000.0)
@@ -22,7 +22,7 @@ MATERIAL = bf.Material(1e7, 0.3, 1000.0)
 @pytest.fixture
 def force_sparse(monkeypatch):
     """Return a function that makes every model from now on sparse."""
-    return lambda: monkeypatch.setattr("beamfem.model.layout._WIDEST_BAND", -1)
+    return lambda: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", -1)
 
 
 def portal(loads=True):

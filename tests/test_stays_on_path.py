@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.analysis.iteration import Ended, NewtonResult
-from beamfem.analysis.skipped import skips_limit_points
-from beamfem.analysis.static_record import StaticRecord
-from beamfem.model.system import System
+from beamfem.assembly.system import System
+from beamfem.solve.newton.iteration import Ended, NewtonResult
+from beamfem.solve.statics.skipped import skips_limit_points
+from beamfem.solve.statics.static_record import StaticRecord
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STEPS = (1, 10, 100, 1000)

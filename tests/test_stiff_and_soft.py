@@ -7,7 +7,7 @@ import pytest
 from shooting import Member, solved
 
 import beamfem as bf
-from beamfem.analysis.mixed_tangent import negative_eigenvalues
+from beamfem.assembly.mixed_tangent import negative_eigenvalues
 
 EI, EA = 115.0, 5.5e6
 STRUCTURAL_ANCF = bf.Element(bf.Cubic(), bf.Gradients(), bf.Structural())

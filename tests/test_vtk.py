@@ -15,9 +15,9 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 import beamfem as bf
-from beamfem import postprocess
 from beamfem.io import samples as cells
 from beamfem.io import vtk
+from beamfem.results import postprocess
 
 HEIGHT = 0.02
 # Degree (3, 2): xi and side of the twelve points of a cell, from vtkHigherOrderQuadrilateral.PointIndexFromIJK.

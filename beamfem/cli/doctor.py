@@ -24,7 +24,7 @@ def doctor(as_json: AsJson = False) -> None:
     """Show versions, compiled kernels, a first solve, whether pictures of bodies work and which extras are missing."""
     with reported(as_json):
         begun = time.perf_counter()
-        from beamfem import compiled
+        from beamfem.assembly import compiled
         from beamfem.cli import targets
         from beamfem.kernels.compiling import cache_folder
 
@@ -65,8 +65,7 @@ def first_solve() -> dict[str, Any]:
 
     P L^2 / (E I) = 5 of the geometrically exact beam with L / h = 100: tip deflection 0.71385896416 L.
     """
-    from beamfem.analysis.statics import solve_static
-    from beamfem.compiled import compiled_here
+    from beamfem.assembly.compiled import compiled_here
     from beamfem.curves import Line
     from beamfem.element.element import CRBF
     from beamfem.material import Material
@@ -75,6 +74,7 @@ def first_solve() -> dict[str, Any]:
     from beamfem.model.model import Model
     from beamfem.model.supports import Clamp
     from beamfem.section import Rectangle
+    from beamfem.solve.statics.statics import solve_static
 
     section, material = Rectangle(0.01, 0.01), Material(2e11, 0.3, 7800.0)
     beam = Beam(Line((0, 0), (1, 0)), 4, CRBF(4), section, material)

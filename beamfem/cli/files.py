@@ -8,7 +8,7 @@ import typer
 from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 Results = Annotated[Path, typer.Argument(help="A results file (.h5).", show_default=False)]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.solution import Solution
+from beamfem.results.solution import Solution
 
 
 def plain(value: Any) -> Any:

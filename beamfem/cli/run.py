@@ -11,7 +11,7 @@ from beamfem.cli.report import AsJson, Quiet, print_json, print_table, reported
 if TYPE_CHECKING:
     from beamfem.cli.modelfile.analyses import Found
     from beamfem.cli.modelfile.read import Job
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 _TITLES = {
     "load_factors": "Critical load factors",
@@ -35,9 +35,9 @@ def run(
 ) -> None:
     """Solve a model file, print what it asks for and write the files that are asked for here."""
     with reported(as_json, quiet):
+        from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
         from beamfem.cli.targets import require_target
-        from beamfem.compiled import tell_of_compilation
         from beamfem.errors import ConvergenceError
 
         job = read_model_file(model)
@@ -79,7 +79,7 @@ def _result(file: Path, job: "Job", found: "Found", seconds: float, written: lis
     """Return all that is printed."""
     from beamfem.cli.modelfile.outputs import critical
     from beamfem.cli.plain import summary
-    from beamfem.path import Path as EquilibriumPath
+    from beamfem.results.path import Path as EquilibriumPath
 
     outputs = []
     for output in job.outputs:

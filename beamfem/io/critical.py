@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from beamfem.io.hdf5 import read_checked, write_checked
-from beamfem.path import Bifurcation, Path, PathState
-from beamfem.solution import Solution
+from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.solution import Solution
 
 _STATE = ("at", "p")
 _CROSSING = ("at", "p", "mode", "tangent")

@@ -13,9 +13,9 @@ from beamfem.files import readable
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
-from beamfem.path import Path as EquilibriumPath
-from beamfem.solution import Solution
-from beamfem.status import Statistics, Status
+from beamfem.results.path import Path as EquilibriumPath
+from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics, Status
 
 _FORMAT = "beamfem solution"
 _FORMAT_VERSION = 1

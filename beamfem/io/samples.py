@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem import postprocess
-from beamfem.along import AxisPoints, rotation, section_forces
 from beamfem.errors import UnknownStressWarning
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
-from beamfem.stresses import in_the_plane, von_mises
+from beamfem.results import postprocess
+from beamfem.results.along import AxisPoints, rotation, section_forces
+from beamfem.results.stresses import in_the_plane, von_mises
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 _LINES_PER_ELEMENT = 12
 _NAMED = 10  # beams that a warning names

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.along import QUANTITIES, AxisPoints
 from beamfem.errors import BeamfemError, InputError
 from beamfem.model.beam import Beam
+from beamfem.results.along import QUANTITIES, AxisPoints
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 _PIECES = 4  # of an element between neighbouring points
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]

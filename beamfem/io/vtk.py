@@ -18,7 +18,7 @@ from beamfem.files import make_folder, path_of, whole
 from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 VALUES_IN_MEMORY = 100_000
 _STEPS_BETWEEN_PUBLISHING = 50

@@ -13,7 +13,7 @@ from beamfem.io.hdf5 import written_hdf5
 from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 # numbers of cell types, from vtkCellType.h
 _LAGRANGE_QUADRILATERAL, _POLY_LINE = 70, 4

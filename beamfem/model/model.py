@@ -21,6 +21,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
 from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
+from beamfem.registry import offered
 from beamfem.validation import convert, items, shown
 
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
@@ -205,9 +206,7 @@ class Model:
         return tuple(support for support in self.supports if isinstance(support, Foundation))
 
     def _repr_html_(self) -> str:
-        from beamfem.view.summary import model_table
-
-        return model_table(self)
+        return offered(Model._repr_html_)(self)
 
 
 def _named(kinds: Any) -> str:

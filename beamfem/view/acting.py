@@ -5,16 +5,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.element.coordinates import across
-from beamfem.loading import loading
 from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure, along, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import length_points
+from beamfem.results.loading import loading
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 from beamfem.view.held import Stamps
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 FORCE = "#CC3311"
 _LONGEST = 30.0  # arrow of the largest force [points of print]

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
 from beamfem.files import path_of, whole
-from beamfem.solution import Solution
+from beamfem.results.solution import Solution
 from beamfem.validation import count, flag, positive
 from beamfem.view.acting import FORCE, draw_loads
 from beamfem.view.drawing import bar, equal_axes

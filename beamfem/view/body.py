@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.along import AxisPoints
 from beamfem.errors import InputError
 from beamfem.files import path_of, whole
 from beamfem.model.reference import sections_at
-from beamfem.solution import Solution
+from beamfem.results.along import AxisPoints
+from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows

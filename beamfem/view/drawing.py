@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.solution import Solution
+from beamfem.results.solution import Solution
 from beamfem.validation import count, flag
 from beamfem.view.acting import draw_loads
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from beamfem.along import AxisPoints
-from beamfem.path import Path
-from beamfem.solution import Solution
+from beamfem.results.along import AxisPoints
+from beamfem.results.path import Path
+from beamfem.results.solution import Solution
 
 _POINTS = 4000  # of all beams in a shape
 _SMOOTH = 12  # straight pieces that make an element look curved

@@ -11,7 +11,7 @@ from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 SIZE = 15.0  # of a symbol [points of print]
 INK = "0.15"

@@ -8,8 +8,8 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.path import Path, PathState
-from beamfem.solution import Solution
+from beamfem.results.path import Path, PathState
+from beamfem.results.solution import Solution
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
 from beamfem.view.plots import COLOURS, new_figure, save_figure

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.solution import Solution
+from beamfem.results.solution import Solution
 from beamfem.validation import count
 from beamfem.view.drawing import frame
 from beamfem.view.held import draw_joints, draw_supports
@@ -15,8 +15,8 @@ from beamfem.view.plots import empty_figure, save_figure
 from beamfem.view.shapes import Shapes, draw_undeformed
 
 if TYPE_CHECKING:
-    from beamfem.analysis.buckling import Buckling
-    from beamfem.analysis.modes import Modes
+    from beamfem.solve.modes.modes import Modes
+    from beamfem.solve.stability.buckling import Buckling
 
 _MOST = 6
 _WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]

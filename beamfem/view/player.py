@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.along import QUANTITIES, section_forces
 from beamfem.errors import InputError
 from beamfem.files import path_of, whole
-from beamfem.solution import Solution
+from beamfem.results.along import QUANTITIES, section_forces
+from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.held import joints_of, supports_of

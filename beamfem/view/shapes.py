@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.along import AxisPoints, Quantity, quantity
-from beamfem.solution import Solution
+from beamfem.results.along import AxisPoints, Quantity, quantity
+from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
 FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.model.model import Model
 
 if TYPE_CHECKING:
-    from beamfem.solution import Solution
+    from beamfem.results.solution import Solution
 
 _BEAMS = 12  # listed each
 
@@ -50,7 +50,7 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
 
 def largest_displacement(solution: "Solution") -> tuple[str, str]:
     """Return the largest displacement of a node in the last row, and where it is."""
-    from beamfem.along import AxisPoints
+    from beamfem.results.along import AxisPoints
 
     found = []
     for mesh in solution.model.meshes:

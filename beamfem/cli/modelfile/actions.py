@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from beamfem.assembly.system import System
 from beamfem.cli.modelfile import parts
 from beamfem.cli.modelfile.functions import Components
 from beamfem.cli.modelfile.parts import Kinds
@@ -14,7 +15,6 @@ from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring, Support
-from beamfem.model.system import System
 from beamfem.validation import nearest
 
 SUPPORTS: Kinds = {

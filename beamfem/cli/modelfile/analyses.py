@@ -6,21 +6,21 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from beamfem.analysis.buckling import solve_buckling
-from beamfem.analysis.dynamics import simulate
-from beamfem.analysis.initial import RigidVelocity
-from beamfem.analysis.integrators import GeneralizedAlpha
-from beamfem.analysis.iteration import Newton
-from beamfem.analysis.modes import solve_modes
-from beamfem.analysis.statics import solve_static, solve_through
-from beamfem.analysis.trace import trace_equilibrium
+from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.cli.modelfile.actions import Places
 from beamfem.cli.modelfile.table import Table, build, build_kind
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.model import Model
-from beamfem.path import Path, PathState
-from beamfem.solution import Solution
+from beamfem.results.path import Path, PathState
+from beamfem.results.solution import Solution
+from beamfem.solve.modes.modes import solve_modes
+from beamfem.solve.motion.dynamics import simulate
+from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.paths.trace import trace_equilibrium
+from beamfem.solve.stability.buckling import solve_buckling
+from beamfem.solve.statics.statics import solve_static, solve_through
 from beamfem.validation import count, finite, positive
 
 

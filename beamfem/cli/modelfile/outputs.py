@@ -12,8 +12,8 @@ from beamfem.cli.modelfile.table import Table, build
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
-from beamfem.path import Path, PathState
-from beamfem.solution import Solution
+from beamfem.results.path import Path, PathState
+from beamfem.results.solution import Solution
 from beamfem.validation import finite, nearest
 
 # quantity: method of a Solution and component of what it returns

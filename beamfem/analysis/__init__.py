@@ -1,1 +1,0 @@
-"""Analyses are verbs on a model; they know coordinates, not elements."""

@@ -1,0 +1,122 @@
+"""Residual and tangent of a system in a state: the only place where solvers meet the kernels."""
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from beamfem.assembly.mixed_tangent import MixedTangent, mixed, without_stiffness
+from beamfem.assembly.system import System
+from beamfem.kernels.block import Block
+from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
+
+STATICS = (1.0, 0.0, 0.0)
+INERTIA = (0.0, 0.0, 1.0)
+ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is their sum
+MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
+_EMPTY = np.empty(0)
+
+
+def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
+    """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
+    result, assembler = np.empty(len(p)), system.assembler()
+    assembler.load(system.body(time), system.point_values(time))
+    assembler.weigh((1.0, 1.0, 1.0))
+    assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
+    return result
+
+
+def _plain(state: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(state, dtype=float)
+
+
+def linearise(
+    system: System,
+    p: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None = None,
+    blocks: tuple[Block, ...] | None = None,
+) -> tuple[np.ndarray, Tangent]:
+    """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
+
+    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); blocks: to take instead of
+    those of the system.
+    """
+    unknowns = system.unknowns
+    unknown, pattern = len(unknowns.dofs), unknowns.pattern
+    width = 2 * system.layouts[0].half_width + 1
+    matrix = np.empty(unknown * width if pattern is None else len(pattern.data))
+    result, assembler = np.empty(len(p)), system.assembler(stresses, blocks)
+    assembler.load(system.body(time), system.point_values(time))
+    assembler.weigh(coefficients)
+    assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
+    tangent: Tangent
+    if pattern is None:
+        tangent = BandTangent(matrix.reshape(unknown, width))
+    else:
+        tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
+        tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
+    return result, tangent
+
+
+def with_stresses(
+    system: System,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    coefficients: tuple[float, float, float],
+    stresses: tuple[np.ndarray, ...] | None,
+    plain: Tangent,
+) -> MixedTangent:
+    """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
+    p = state[0]
+    known = stresses or _sure_stresses(system, p)
+    loads, rest = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
+    return mixed(system, p, coefficients[0], loads, rest, plain)
+
+
+def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants of a state, of each block (ne, nq, ns), zero where they may be round-off only.
+
+    That of a stiff part would buckle, or hold, what is soft beside it.
+    """
+    result = predicted_stresses(system, p, np.zeros(len(p)))
+    reach, turn = sizes(system, p)
+    for block, errors, stress in zip(system.blocks, system.stress_errors, result, strict=True):
+        round_off = ROUND_OFF * (reach * errors[0] + turn * errors[1])
+        stress[np.abs(stress) <= round_off[block.kind]] = 0.0
+    return result
+
+
+def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
+    """Return the largest position [m], or the size of the model, and the largest of all other coordinates, or 1."""
+    reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
+    return reach, max(float(np.max(np.abs(p[~system.positions]), initial=0.0)), 1.0)
+
+
+def predicted_stresses(
+    system: System, p: np.ndarray, step: np.ndarray, blocks: tuple[Block, ...] | None = None
+) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
+
+    blocks: to take instead of those of the system.
+    """
+    assembler = system.assembler(blocks=blocks)
+    assembler.predict(_plain(p), _plain(step))
+    return assembler.stresses
+
+
+def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
+    """Return the change of the residual (n,) [N, N m] with the load factor, prescribed motions included.
+
+    A central difference of the given width, exact to round-off where loads are proportional to the load factor.
+    """
+    rest = np.zeros(len(p))
+    held, slopes = system.held_dofs, []
+    for side in (1.0, -1.0):
+        at = load_factor + side * width
+        moved = p.copy()
+        moved[held] += system.held_values(at) - system.held_values(load_factor)
+        slopes.append(side * residual(system, moved, rest, rest, at))
+    return np.asarray(sum(slopes) / (2.0 * width))

@@ -1,0 +1,46 @@
+"""The velocity of a rigid motion, and the rates that the coordinates of a model have in it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.system import System, coordinate_columns
+from beamfem.model.mesh import BeamMesh
+from beamfem.validation import convert, finite, squared, vector
+
+
+@dataclass(frozen=True)
+class RigidVelocity:
+    """Velocity of a rigid motion: vector (vx, vy) [m/s], angular [rad/s] about a point (x, y) [m]."""
+
+    vector: tuple[float, float] = (0.0, 0.0)
+    angular: float = 0.0
+    about: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        convert(self, squared(vector), "vector", "about")
+        convert(self, squared(finite), "angular")
+
+
+def rigid_rates(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.ndarray:
+    """Return the rates (n,) of the coordinates of a model that moves rigidly from the state p (n,)."""
+    result = np.zeros(len(p))
+    for mesh in system.model.meshes:
+        set_rigid_rates(mesh, velocity, p, result)
+    return result
+
+
+def set_rigid_rates(mesh: BeamMesh, velocity: RigidVelocity, p: np.ndarray, rates: np.ndarray) -> None:
+    """Write the rates of the coordinates of a beam that moves rigidly from the state p (n,) into `rates` (n,)."""
+    columns = coordinate_columns(mesh)
+    for place, (label, _, dofs) in enumerate(columns):
+        if label == "theta":
+            rates[dofs] = velocity.angular
+        elif label != "s":
+            name, axis = label.split("^")
+            component = "xy".index(axis)
+            other = columns[place + 1 - 2 * component][2]
+            lever = p[other] - (velocity.about[1 - component] if name == "r" else 0.0)
+            rates[dofs] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
+            if name == "r":
+                rates[dofs] += velocity.vector[component]

@@ -1,0 +1,179 @@
+"""What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.equations import MIXED, ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
+from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
+from beamfem.assembly.system import System
+
+_CORRECTIONS = 12
+_LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
+_STRAIN = 1e-3
+_DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
+ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
+_PLENTY = 12.0  # digits that no further correction improves on
+_LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
+_KEEPS = "the tangent keeps its digits"
+MOST_DIGITS = 15.0
+_NOTHING = 1e-10  # of the round-off of a state as it stands: forces below are none
+FEW_DIGITS = 4.0  # of the forces: users are told
+
+
+def row_floors(system: System, p: np.ndarray) -> np.ndarray:
+    """Return the residual (n,) [N, N m] that rounded coordinates leave in each row, see `model.round_off`."""
+    reach, turn = sizes(system, p)
+    positions, directions = system.residual_errors
+    return np.asarray(ROUND_OFF * (reach * positions + turn * directions))
+
+
+def round_off_floor(system: System, p: np.ndarray) -> float:
+    """Return the largest residual [N, N m] that is left by rounded coordinates, of all rows."""
+    return float(row_floors(system, p).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """What a state lacks to be balanced beyond its last digit.
+
+    step (n,): to be added to p; digits: of the forces, once it is. 0 where not even the first is sure.
+    """
+
+    step: np.ndarray
+    digits: float
+
+
+def differentiated(
+    system: System, values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray
+) -> np.ndarray:
+    """Return the change of a function of p (..., n) with a step (..., n) that may be below the last digit of p.
+
+    A central difference of fourth order, so wide that the strains it gives are of size 1e-3.
+    """
+    size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
+    width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
+    result = np.zeros(1)
+    for at, weight in _DIFFERENCE:
+        found = values(p + at * width[..., None] * step)
+        result = result + weight * found / width.reshape(width.shape + (1,) * (found.ndim - width.ndim))
+    return result
+
+
+def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
+    """Return the change of the residual (n,) with a step (n,) that may be below the last digit of p."""
+    rest = np.zeros(len(p))
+    return differentiated(system, lambda q: residual(system, q, rest, rest, load_factor), p, step)
+
+
+def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return how many digits of the forces are sure in a state p (n,) as it stands; all where nothing acts."""
+    rest = np.zeros(len(p))
+    found = residual(system, p, rest, rest, load_factor)
+    return _digits(system, p, found, load_factor)
+
+
+def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
+    """Return what balances a state p (n,) that is an equilibrium but for its last digits.
+
+    Newton's method goes on with p in two parts: steps below its last digit are added up apart, and what they change is
+    taken from wider differences. Elements balance themselves whatever their strains, so that the balance regains all
+    digits as long as the tangent has some.
+    """
+    best = _refined(system, p, load_factor)
+    if best.digits < ENOUGH and loses_digits(system, p, load_factor):
+        again = _refined(system, p, load_factor)
+        return again if again.digits > best.digits else best
+    return best
+
+
+def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
+    """Return the best that further corrections by the present kind of tangent give."""
+    rest, free = np.zeros(len(p)), system.free_dofs
+    found = residual(system, p, rest, rest, load_factor)
+    best = Remainder(np.zeros(len(p)), _digits(system, p, found, load_factor))
+    step, unbalanced = np.zeros(len(p)), found
+    try:
+        factors = linearise(system, p, rest, rest, load_factor, STATICS)[1].factorised(system.turned)
+        _, stresses = factors.correction(found[free])
+        if stresses is not None:
+            # those of the state itself are as wrong as its last digits are
+            factors = linearise(system, p, rest, rest, load_factor, STATICS, stresses)[1].factorised(system.turned)
+        for _ in range(_CORRECTIONS):
+            step[free] += factors.solve(-unbalanced[free])
+            if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
+                break
+            unbalanced = found + change(system, p, step, load_factor)
+            digits = _digits(system, p, unbalanced, load_factor)
+            if digits <= best.digits:
+                break
+            best = Remainder(step.copy(), digits)
+            if digits > _PLENTY:
+                break
+    except LinAlgError:
+        pass
+    return best
+
+
+def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
+    if MIXED in system.proven or _KEEPS in system.proven:
+        return False
+    state, rest = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
+    try:
+        plain = linearise(system, p, rest, rest, load_factor, STATICS)[1]
+        lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.turned)
+    except LinAlgError:
+        return False
+    system.proven.add(_KEEPS if lost <= _LOSES else MIXED)
+    return bool(lost > _LOSES)
+
+
+def load_size(system: System, values: Sequence[np.ndarray]) -> float:
+    """Return the largest of forces and moments (..., 3) at points, forces times the size of the model [N m]."""
+    largest = 0.0
+    for own in values:
+        if own.size:
+            size = np.abs(own)
+            largest = max(largest, system.extent * float(size[..., :2].max()), float(size[..., 2].max()))
+    return largest
+
+
+def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
+    """Return the largest force, times the size of the model, or moment [N m] of loads, supports and springs."""
+    held, springs = system.held_dofs, system.springs
+    reactions = float(np.max(np.abs(unbalanced[held] * system.scale[held]), initial=0.0))
+    for dof, normal in system.inclined:
+        reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))
+    sprung = np.abs(springs.stiffness * (p[springs.dof] - springs.rest)) * system.scale[springs.dof]
+    return max(load_size(system, system.point_values(load_factor)), reactions, float(sprung.max(initial=0.0)))
+
+
+def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
+    """Return how many digits of the largest force that acts are sure, by each row and by the balance of the whole.
+
+    All, where nothing acts.
+    """
+    free, acting = system.free_dofs, _acting(system, p, unbalanced, load_factor)
+    left = np.zeros(len(p))
+    left[free] = system.along_free(unbalanced)
+    worst = float(np.max(np.abs(left) * system.scale, initial=0.0))
+    centre = _centre(system, p)
+    for motion in (RigidVelocity((1.0, 0.0)), RigidVelocity((0.0, 1.0)), RigidVelocity((0.0, 0.0), 1.0, centre)):
+        size = 1.0 if motion.angular else system.extent
+        worst = max(worst, size * abs(float(rigid_rates(system, motion, p) @ left)))
+    if worst == 0.0:
+        return MOST_DIGITS
+    loaded = load_size(system, system.point_values(load_factor)) > 0.0 or bool(system.body(load_factor).any())
+    if not loaded and acting <= _NOTHING * float(np.max(row_floors(system, p) * system.scale)):
+        return MOST_DIGITS
+    return min(max(float(np.log10(acting / worst)), 0.0), MOST_DIGITS) if acting > 0.0 else 0.0
+
+
+def _centre(system: System, p: np.ndarray) -> tuple[float, float]:
+    """Mean position of the nodes [m]."""
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    x, y = p[nodes].mean(axis=0)
+    return float(x), float(y)

@@ -1,0 +1,310 @@
+"""A model in numbers: coordinates, blocks of elements, held coordinates and loads at a time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.assembly.actions import Actions, build_actions
+from beamfem.assembly.assembler import Assembler, Equations
+from beamfem.assembly.blocks import build_block
+from beamfem.assembly.held import Held, held_coordinates, inclined_rollers
+from beamfem.assembly.layout import Unknowns, order_unknowns
+from beamfem.assembly.pressures import pressures_have_potential
+from beamfem.assembly.row_errors import residual_errors, stress_errors
+from beamfem.assembly.sheet import make_sheet
+from beamfem.assembly.solver_table import SolverTable
+from beamfem.element.coordinates import across, labels
+from beamfem.errors import InputError
+from beamfem.kernels.block import (
+    GRADIENTS,
+    ROTATION,
+    SHEAR_RIGID,
+    STRETCH,
+    TURNED_GRADIENTS,
+    Block,
+    Layout,
+    PointLoads,
+    Springs,
+)
+from beamfem.model.loads import factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.supports import Spring
+from beamfem.validation import shown
+
+# which carriers have r, the derivatives of r and r_y themselves as coordinates
+_GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+_TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Everything a solver needs of a model; `system_of` makes it once.
+
+    proven: names of what has been checked of it, once and for all.
+    """
+
+    model: Model
+    static: bool
+    proven: set[str] = field(default_factory=set)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Travel to other processes as a model only."""
+        return system_of, (self.model, self.static)
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Coordinates of the stress-free state (n,)."""
+        p = np.zeros(self.model.size)
+        for number, (element, block) in enumerate(zip(self.model.groups, self.blocks, strict=True)):
+            own = [mesh for mesh in self.model.meshes if mesh.block == number]
+            position, tangent, speed = (
+                np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
+            )
+            values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
+            for label, nodes, dofs in _columns(block.carrier, block.dof, element.field.vectors):
+                if label == "s":
+                    p[dofs] = speed[nodes]
+                elif label != "theta":
+                    name, axis = label.split("^")
+                    p[dofs] = values[name][nodes, "xy".index(axis)]
+        return p
+
+    @cached_property
+    def blocks(self) -> tuple[Block, ...]:
+        numbered = list(enumerate(self.model.meshes))
+        return tuple(
+            build_block(element, [(i, mesh) for i, mesh in numbered if mesh.block == number])
+            for number, element in enumerate(self.model.groups)
+        )
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The equations as compiled code takes them."""
+        return self._equations(self.blocks)
+
+    def _equations(self, blocks: Sequence[Block]) -> Equations:
+        sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
+        return Equations(sheets, self.springs, self.model.size)
+
+    def assembler(
+        self, stresses: Sequence[np.ndarray] | None = None, blocks: Sequence[Block] | None = None
+    ) -> Assembler:
+        """Return the equations with new work space.
+
+        stresses (ne, nq, ns): of each block, for the geometric tangent; blocks: to take instead of those of the system.
+        """
+        return Assembler(self.equations if blocks is None else self._equations(blocks), stresses)
+
+    @cached_property
+    def solver_table(self) -> SolverTable:
+        """The unknowns of a band, as compiled drivers take them."""
+        return SolverTable(self.free_dofs, self.layouts[0].half_width, self.turned, self.scale)
+
+    @cached_property
+    def residual_errors(self) -> np.ndarray:
+        """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
+        vectors = [element.field.vectors for element in self.model.groups]
+        return residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+
+    @cached_property
+    def stress_errors(self) -> tuple[np.ndarray, ...]:
+        """Stress resultants (2, nc, nq, ns) of each block that a relative error of one leaves, likewise."""
+        vectors = [element.field.vectors for element in self.model.groups]
+        return tuple(
+            np.array([stress_errors(block, names, part) for part in (True, False)])
+            for block, names in zip(self.blocks, vectors, strict=True)
+        )
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """Which coordinates are positions [m] (n,)."""
+        result = np.zeros(self.model.size, dtype=bool)
+        for block in self.blocks:
+            result[block.dof[:, :2]] = True
+        return result
+
+    @cached_property
+    def actions(self) -> tuple[Actions, ...]:
+        """What acts at points of each block."""
+        return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
+
+    @cached_property
+    def point_loads(self) -> tuple[PointLoads, ...]:
+        """Loads and springs at points of each block, in the order of `point_values`."""
+        return tuple(actions.points for actions in self.actions)
+
+    def point_values(self, time: float) -> tuple[np.ndarray, ...]:
+        """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
+        return tuple(actions.values(time, self.static) for actions in self.actions)
+
+    @cached_property
+    def varying(self) -> bool:
+        """Whether a load has an amplitude, a function of time."""
+        return any(load.amplitude is not None for load in self.model.loads)
+
+    @cached_property
+    def springs(self) -> Springs:
+        """Springs of single coordinates to the ground."""
+        dofs, stiffness = [], []
+        for support in self.model.supports:
+            if isinstance(support, Spring):
+                mesh = self.model.mesh_of(support.point)
+                known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+                for name, value in support.by_coordinate.items():
+                    if value > 0.0:
+                        dofs.append(known[name])
+                        stiffness.append(value)
+        where = np.array(dofs, dtype=np.int64)
+        free = self.unknowns.free[where]
+        place = free.copy()
+        place[free >= 0] = self.unknowns.diagonal(free[free >= 0])
+        return Springs(where, np.array(stiffness, dtype=float), self.reference[where], place)
+
+    def body(self, time: float) -> np.ndarray:
+        """Acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
+        result = np.zeros((len(self.model.beams), 4))
+        for load in self.model.gravity:
+            result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
+        for spread in self.model.distributed:
+            if not spread.follower and not callable(spread.vector):
+                row = self.model.number_of(spread.beam)
+                result[row, 2:] += np.array(spread.vector) * factor(spread, time, self.static)
+        return result
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric: no load follows the sections, and every pressure has a potential."""
+        following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
+        directed = [dof for dof, _ in self.inclined]
+        return not following and pressures_have_potential(self.model, {*self.held_dofs.tolist(), *directed})
+
+    @cached_property
+    def held(self) -> tuple[Held, ...]:
+        """Held coordinates, ordered by number. Raises InputError where two supports hold the same one."""
+        return held_coordinates(self.model)
+
+    @cached_property
+    def held_dofs(self) -> np.ndarray:
+        return np.array([item.dof for item in self.held], dtype=np.int64)
+
+    def held_values(self, time: float) -> np.ndarray:
+        """Values of the held coordinates at a time, in statics at a load factor."""
+        return self.reference[self.held_dofs] + self.held_changes(time)
+
+    def held_changes(self, time: float) -> np.ndarray:
+        """Changes of the held coordinates from the reference (nh,) at a time, in statics at a load factor."""
+        return np.array([item.change(time, self.static) for item in self.held], dtype=float)
+
+    def largest_turn(self, before: float, after: float) -> float:
+        """Return the largest change [rad] of a prescribed rotation between two times.
+
+        Gradients elsewhere on the beam cannot tell a full turn from none, so it must be followed in parts.
+        """
+        turning = [item for item in self.held if item.turns]
+        return max(
+            (abs(item.change(after, self.static) - item.change(before, self.static)) for item in turning), default=0.0
+        )
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """The order of the coordinates that are not held."""
+        return order_unknowns(self.blocks, self.model.size, self.held_dofs, bool(self.model.joints))
+
+    @property
+    def layouts(self) -> tuple[Layout, ...]:
+        """Where the element matrices of each block go."""
+        return self.unknowns.layouts
+
+    @cached_property
+    def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
+        """First coordinate of r and unit normal of each roller that neither x nor y describes."""
+        return inclined_rollers(self.model, set(self.held_dofs.tolist()))
+
+    @cached_property
+    def turned(self) -> tuple[np.ndarray, np.ndarray]:
+        """Numbers among the unknown (nt,) and unit normals (nt, 2) of inclined rollers."""
+        first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
+        return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
+
+    @cached_property
+    def turning(self) -> np.ndarray:
+        """Numbers among the unknown of x and y of each vector that turns with its section, and its node (np, 3).
+
+        Nodes of all blocks are numbered one after the other; vectors of which a part is held do not turn.
+        """
+        free, found, first = self.unknowns.free, [], 0
+        for block in self.blocks:
+            vectors = block.scale.shape[1] // block.node.shape[1]
+            for slot in range(vectors):
+                turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
+                nodes = np.flatnonzero(np.isin(block.carrier, turning))
+                x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
+                known = (x >= 0) & (y >= 0)
+                found.append(np.column_stack([x, y, first + nodes])[known])
+            first += len(block.dof)
+        pairs = np.concatenate(found)
+        _, once = np.unique(pairs[:, 0], return_index=True)
+        inclined = np.isin(pairs[once, 0], self.turned[0])
+        return np.ascontiguousarray(pairs[once[~inclined]])
+
+    def along_free(self, residual: np.ndarray) -> np.ndarray:
+        """Return the residual of the unknown directions: reactions of inclined rollers are taken out."""
+        result = residual[self.free_dofs]
+        for first, normal in zip(*self.turned, strict=True):
+            result[first : first + 2] -= normal * (normal @ result[first : first + 2])
+        return result
+
+    @property
+    def free_dofs(self) -> np.ndarray:
+        """The unknown coordinates in the order of the solver (unknown,)."""
+        return self.unknowns.dofs
+
+    @cached_property
+    def extent(self) -> float:
+        """Size of the model [m]: its longest beam, or the largest distance of its points along x or y."""
+        position = np.concatenate([mesh.position for mesh in self.model.meshes])
+        return float(max(*np.ptp(position, axis=0), max(beam.curve.length for beam in self.model.beams)))
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest."""
+        return np.where(self.positions, self.extent, 1.0)
+
+    @cached_property
+    def strain_scale(self) -> np.ndarray:
+        """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
+        length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)
+        return np.where(self.positions, length, 1.0)
+
+
+def system_of(model: Model, static: bool) -> System:
+    """Return the system of a model, the same one every time: a model does not change. Raises InputError."""
+    if not isinstance(model, Model):
+        raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {shown(model)}")
+    known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
+    if static not in known:
+        known[static] = System(model, static)
+    return known[static]
+
+
+def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
+
+    A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
+    """
+    return _columns(mesh.carried.carrier, mesh.carried.dof, mesh.vectors)
+
+
+def _columns(
+    carriers: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
+) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    result = []
+    for carrier in np.unique(carriers).tolist():
+        nodes = np.flatnonzero(carriers == carrier)
+        for column, label in enumerate(labels(carrier, vectors)):
+            if carrier != TURNED_GRADIENTS or not label.startswith("r_y"):
+                result.append((label, nodes, dof[nodes, column]))
+    return result

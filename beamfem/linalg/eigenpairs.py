@@ -1,0 +1,139 @@
+"""Eigenpairs next to a shift, by the factors of a shifted matrix."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
+
+from beamfem.errors import ConvergenceError
+from beamfem.linalg.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
+
+_DENSE = 200  # unknowns up to which all eigenpairs are as quick as a few
+_LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are found where the iteration for a few fails
+MOST_RESTARTS = 100  # of an iteration, which takes some ten where round-off leaves it digits
+_LANCZOS_VECTORS = (1, 3)  # times the usual number
+
+
+class Solver(Protocol):
+    """The factors of a matrix; `solve` leaves directions that are held at zero."""
+
+    def solve(self, right: np.ndarray) -> np.ndarray: ...
+
+
+Pairs = tuple[np.ndarray, np.ndarray]
+
+
+@contextmanager
+def digits_for(what: str) -> Iterator[None]:
+    """Raise ConvergenceError where LAPACK or ARPACK give up, or numbers leave double precision; what: is looked for."""
+    try:
+        yield
+    except (LinAlgError, ArpackError, ZeroDivisionError, OverflowError) as error:
+        raise ConvergenceError(
+            f"{what} of this model cannot be found, round-off leaves its tangent no digits: stiffnesses, lengths and "
+            f"loads of its parts are too far apart ({error})"
+        ) from error
+
+
+def nothing_known(n: int) -> Pairs:
+    return np.empty(0), np.empty((n, 0))
+
+
+def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
+    """Return the largest mu (m,), descending, and x (n, m) with S mass x = mu x, x^T mass x = 1, S the inverse.
+
+    mass: positive definite; factors: of a symmetric matrix, positive definite along the free directions; count: how
+    many to find besides the vectors (n, k) that are `known`, with x^T mass x = 1. They are projected out of the inverse
+    on both sides: taking their mu away instead leaves what round-off makes of it, which may pass for a mode. m is
+    smaller where there are no more. Raises ConvergenceError.
+    """
+    n = mass.shape[0]
+    carried = mass @ known
+
+    def dense() -> Pairs:
+        root = cholesky(mass.toarray(), lower=True)
+        inverse = root.T @ np.column_stack([factors.solve(column) for column in root.T])
+        inverse = 0.5 * (inverse + inverse.T)
+        old = root.T @ known
+        others = np.eye(n) - old @ old.T
+        values, y = eigh(others @ inverse @ others)
+        return values[::-1], solve_triangular(root.T, y[:, ::-1])
+
+    def few(vectors: int) -> Pairs:
+        def projected(b: np.ndarray) -> np.ndarray:
+            solved = factors.solve(b - carried @ (known.T @ b))
+            return np.asarray(solved - known @ (carried.T @ solved))
+
+        inverse = LinearOperator((n, n), matvec=projected, dtype=float)
+        # ARPACK asks the matrix itself nothing where it is given the inverse
+        reciprocal, x = eigsh(
+            LinearOperator((n, n), matvec=np.asarray, dtype=float),
+            count,
+            M=mass,
+            sigma=0.0,
+            OPinv=inverse,
+            ncv=lanczos_vectors(vectors, count, n),
+            maxiter=MOST_RESTARTS,
+            v0=first_vector(n),
+        )
+        order = np.argsort(reciprocal, kind="stable")
+        return 1.0 / reciprocal[order], x[:, order]
+
+    mu, x = first_that_works(dense, few, n, count)
+    for _ in range(2):
+        x = x - known @ (carried.T @ x)
+    return mu[:count], x[:, :count]
+
+
+def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
+    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
+
+    mass: symmetric, positive definite; stiffness: any matrix, with its factors; known: pairs that the result does not
+    hold, with x^T mass x = 1. Raises ConvergenceError.
+    """
+    n = mass.shape[0]
+    carried = mass @ known[1]
+
+    def dense() -> Pairs:
+        inverse = np.column_stack([factors.solve(column) for column in mass.toarray().T])
+        return eig(inverse - (inverse @ known[1]) @ carried.T)
+
+    def few(vectors: int) -> Pairs:
+        inverse = LinearOperator((n, n), matvec=lambda b: factors.solve(b - carried @ (known[1].T @ b)), dtype=float)
+        # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
+        options = {"ncv": lanczos_vectors(vectors, count, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
+        reciprocal, x = eigs(stiffness, count, M=mass, sigma=0.0, OPinv=inverse, **options)
+        return 1.0 / reciprocal, x
+
+    values, x = first_that_works(dense, few, n, count + 1)
+    order = np.argsort(-np.abs(values), kind="stable")[:count]
+    values, x = values[order], x[:, order]
+    # Wielandt: deflation leaves the other values, and adds a share of the known directions to their vectors
+    shares = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
+    return values, x + known[1] @ shares
+
+
+def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:
+    """Return what finds a `few` eigenpairs of n unknowns, or what finds all where these are not many or that fails."""
+    if n > _DENSE and 2 * count < n:
+        for vectors in _LANCZOS_VECTORS:
+            try:
+                return few(vectors)
+            except ArpackError:
+                continue
+        if n > _LARGEST_DENSE:
+            raise ConvergenceError(f"the iteration for {count} eigenvalues of {n} unknowns did not converge")
+    return dense()
+
+
+def lanczos_vectors(times: int, count: int, n: int) -> int:
+    """Return how many vectors an iteration for `count` eigenpairs works with."""
+    return min(n, times * max(2 * count + 1, 20))
+
+
+def first_vector(n: int) -> np.ndarray:
+    """Return a start of the iteration that is the same in every run and has a share of every mode."""
+    return np.random.default_rng(0).standard_normal(n)

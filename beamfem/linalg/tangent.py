@@ -1,0 +1,232 @@
+"""The matrix of the unknown coordinates: how it is solved with, and what its pivots tell."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, dia_array, eye_array
+from scipy.sparse.linalg import SuperLU, splu
+
+from beamfem.kernels.band import band
+from beamfem.kernels.compiling import Routine
+from beamfem.kernels.rollers import hold_normals, turn_back, turn_in
+from beamfem.linalg.lapack import LinAlgError, solve_banded
+
+SMALLEST_PIVOT = 1e-13
+_NOTHING = np.empty(0)
+
+# numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
+Turned = tuple[np.ndarray, np.ndarray]
+Stresses = tuple[np.ndarray, ...]
+
+
+class Factorised(Protocol):
+    """A tangent in its factors, for any number of right-hand sides."""
+
+    @property
+    def negative_pivots(self) -> int:
+        """How many eigenvalues of a symmetric tangent are negative (Sylvester's law of inertia)."""
+        ...
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        ...
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        ...
+
+
+class Tangent(Protocol):
+    """A matrix of the unknown coordinates."""
+
+    def factorised(self, turned: Turned) -> Factorised:
+        """Return the factors. Raises LinAlgError."""
+        ...
+
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        ...
+
+    def sparse(self, turned: Turned) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+        ...
+
+
+@dataclass(frozen=True)
+class BandFactors:
+    """Factors of a band.
+
+    rows: the matrix, inclined rollers held; plain: whether lu may be used, or pivots are needed.
+    """
+
+    rows: np.ndarray
+    lu: np.ndarray
+    plain: bool
+    turned: Turned
+
+    @property
+    def negative_pivots(self) -> int:
+        """How many eigenvalues of a symmetric tangent are negative (Sylvester's law of inertia)."""
+        # the factorisation keeps the inverse of each pivot on the diagonal
+        return int((self.lu[:, self.lu.shape[1] // 2] < 0.0).sum())
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        x = right.copy()
+        _turn(turn_in, x, self.turned)
+        if self.plain:
+            balanced = x.copy()
+            n, half = len(x), self.lu.shape[1] // 2
+            own = band(half)
+            own.solve_lower(n, n, half, self.lu, x)
+            own.solve_upper(n, n, half, self.lu, x)
+            if not np.isfinite(x).all():
+                x = _solve_pivoted(self.rows, balanced)
+        else:
+            x = _solve_pivoted(self.rows, x)
+        _turn(turn_back, x, self.turned)
+        return x
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
+
+
+@dataclass(frozen=True)
+class BandTangent:
+    """A band matrix, rows of 2 w + 1 entries."""
+
+    rows: np.ndarray
+
+    def factorised(self, turned: Turned) -> BandFactors:
+        """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
+        rows = _held(self.rows, turned)
+        lu = rows.copy()
+        n, half = len(lu), lu.shape[1] // 2
+        ratio = band(half).factor(n, n, half, 0, lu, _NOTHING, np.empty(n))
+        return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, turned)
+
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(turned).solve(right)
+
+    def sparse(self, turned: Turned) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+        rows = _held(self.rows, turned)
+        half = rows.shape[1] // 2
+        return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
+
+
+@dataclass(frozen=True)
+class SparseFactors:
+    """Factors of a sparse matrix."""
+
+    lu: SuperLU
+    turned: Turned
+
+    @property
+    def negative_pivots(self) -> int:
+        """How many eigenvalues of a symmetric tangent are negative, as long as no row was exchanged for another."""
+        return int((self.lu.U.diagonal() < 0.0).sum())
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        x = right.copy()
+        _turn(turn_in, x, self.turned)
+        x = self.lu.solve(x)
+        if not np.isfinite(x).all():
+            raise LinAlgError("the tangent is singular")
+        _turn(turn_back, x, self.turned)
+        return np.asarray(x)
+
+    def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
+        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+
+        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        """
+        return self.solve(-unbalanced), None
+
+
+@dataclass(frozen=True)
+class SparseTangent:
+    """A sparse matrix."""
+
+    matrix: csc_array
+
+    def factorised(self, turned: Turned) -> SparseFactors:
+        """Return the factors, with diagonal pivots unless tiny, so that their signs count. Raises LinAlgError."""
+        matrix = csc_array(self.sparse(turned)) if len(turned[0]) else self.matrix
+        # the unknowns are in an order of little fill; wide panels and relaxed supernodes cost more than they save here
+        settings = {"permc_spec": "NATURAL", "diag_pivot_thresh": 1e-10, "relax": 1, "panel_size": 1}
+        try:
+            lu = splu(matrix, **settings, options={"SymmetricMode": True})
+        except RuntimeError as error:
+            raise LinAlgError("the tangent is singular") from error
+        return SparseFactors(lu, turned)
+
+    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(turned).solve(right)
+
+    def sparse(self, turned: Turned) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+        first, _ = turned
+        if not len(first):
+            return csr_array(self.matrix)
+        turn = turning(self.matrix.shape[0], turned)
+        rotated = csr_array(turn @ self.matrix @ turn.T)
+        kept = np.ones(rotated.shape[0])
+        kept[first] = 0.0
+        keep = dia_array((kept[None], [0]), shape=rotated.shape)
+        held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
+        return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
+
+
+def _turn(routine: Routine, x: np.ndarray, turned: Turned) -> None:
+    """Turn pairs of a right-hand side, or of a solution, in place."""
+    first, normal = turned
+    if len(first):
+        routine(len(first), first, normal, x)
+
+
+def _held(rows: np.ndarray, turned: Turned) -> np.ndarray:
+    """Return a band with the normals of inclined rollers held."""
+    result, (first, normal) = rows.copy(), turned
+    if len(first):
+        hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
+    return result
+
+
+def turning(size: int, turned: Turned) -> csr_array:
+    """Return the matrix (n, n) that turns each pair of an inclined roller to (normal, tangent)."""
+    turn = eye_array(size, format="lil")
+    for i, (c, s) in zip(*turned, strict=True):
+        turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
+    return csr_array(turn)
+
+
+def _diagonals(rows: np.ndarray) -> np.ndarray:
+    """Return the band (2 w + 1, n) in the storage of SciPy: entry (w + i - j, j) is A[i, j]."""
+    n, width = rows.shape
+    half = width // 2
+    diagonals = np.zeros((width, n))
+    for offset in range(-half, half + 1):
+        size = max(n - abs(offset), 0)
+        first = max(-offset, 0)
+        diagonals[half - offset, first + offset : first + offset + size] = rows[first : first + size, half + offset]
+    return diagonals
+
+
+def _solve_pivoted(rows: np.ndarray, right: np.ndarray) -> np.ndarray:
+    half = rows.shape[1] // 2
+    x = solve_banded((half, half), _diagonals(rows), right)
+    if not np.isfinite(x).all():
+        raise LinAlgError("the tangent is singular")
+    return np.asarray(x)

@@ -1,0 +1,30 @@
+"""What upper rooms offer on the objects of lower ones, such as `solution.plot()`.
+
+A lower room declares the method, with its signature and docstring, and calls `offered`; it knows nobody above it. The
+upper room says in its `__init__` with `offer` which function that is, which is imported at the first call.
+"""
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+_FUNCTIONS: dict[Callable[..., Any], str] = {}
+
+
+def offer(method: Callable[..., Any], function: str) -> None:
+    """Say which function "module:name" does what a method of a lower room declares; its docstring names it then.
+
+    The function takes the object and what the method takes.
+    """
+    _FUNCTIONS[method] = function
+    if method.__doc__:
+        method.__doc__ += f" See `{function.replace(':', '.')}`."
+
+
+def offered(method: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function that does what a method declares. Raises NotImplementedError where no room offers one."""
+    if method not in _FUNCTIONS:
+        raise NotImplementedError(f"no room above offers {method.__qualname__}")
+    module, name = _FUNCTIONS[method].split(":")
+    function: Callable[..., Any] = getattr(import_module(module), name)
+    return function

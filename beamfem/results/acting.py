@@ -1,0 +1,186 @@
+"""What acts on elements that are cut free: weight, inertia, loads and foundations, as forces at points of them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.element.axis import cross, dot
+from beamfem.element.coordinates import across
+from beamfem.element.fields import d_slots, r_slots
+from beamfem.element.gauss import gauss
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import inertia_points, length_points, scales
+from beamfem.results.loading import loading
+from beamfem.results.spread import nearest, to_more_points
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a solution and what acts in them.
+
+    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: of each block (steps, nl, 3), see `Actions`.
+    """
+
+    system: System
+    p: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    body: np.ndarray
+    values: tuple[np.ndarray, ...]
+
+
+def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
+    """Return some rows of a solution, and what acts in them."""
+    system, at = loading(solution)
+    times = at[rows].tolist()
+    body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
+    points = [system.point_values(time) for time in times]
+    values = tuple(
+        np.array([own[block] for own in points]).reshape(len(times), -1, 3) for block in range(len(system.blocks))
+    )
+    return Rows(system, solution.p[rows], solution.v[rows], solution.a[rows], body, values)
+
+
+@dataclass(frozen=True, eq=False)
+class Acting:
+    """Forces at points of elements, their virtual work f . delta r + h . delta g of a vector g that turns with them.
+
+    element (m,): place among the elements that are cut free; xi (m,); rule (m,): Gauss points of the element that share
+    what is spread over it; position, direction (m, nv): r = sum position_i e_i, and g;
+    force f (steps, m, 2) [N], turning h (steps, m, 2) [N m over the unit of g].
+    """
+
+    element: np.ndarray
+    xi: np.ndarray
+    rule: np.ndarray
+    position: np.ndarray
+    direction: np.ndarray
+    force: np.ndarray
+    turning: np.ndarray
+
+    def moments(self, e: np.ndarray, origin: np.ndarray) -> np.ndarray:
+        """Return their moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
+        arm = _at(self.position, e, self.element) - origin[:, self.element]
+        return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.turning)
+
+    def nodal(self, elements: int) -> np.ndarray:
+        """Return the forces (steps, elements, nv, 2) on the nodal vectors of each element."""
+        result = np.zeros((elements, len(self.force), self.position.shape[1], 2))
+        parts = np.einsum("smc,mi->msic", self.force, self.position)
+        parts += np.einsum("smc,mi->msic", self.turning, self.direction)
+        np.add.at(result, self.element, parts)
+        return np.moveaxis(result, 0, 1)
+
+
+def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Return what acts on elements (ne,) of a beam with nodal vectors e and e'' (steps, ne, nv, 2).
+
+    Point loads are left out: they have nodes, and act between elements.
+    """
+    parts = [
+        _of_mass(rows, mesh, elements, e, acceleration),
+        _along(rows, mesh, elements),
+        _spread(rows, mesh, elements, e),
+    ]
+    found = {
+        name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "turning") else 0)
+        for name in Acting.__dataclass_fields__
+    }
+    return Acting(**found)
+
+
+def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+    """Return the same with what is spread over elements (ne,) at as many Gauss points as its moments need.
+
+    The moment of a density that is interpolated is a polynomial of a higher degree, by that of the field.
+    """
+    field = mesh.beam.element.field
+    extra = max(field.degree, field.director_degree)
+    parts = []
+    for rule in np.unique(acting.rule).tolist():
+        own = acting.rule == rule
+        place = acting.element[own], nearest(gauss(rule)[0], acting.xi[own])
+        finer = to_more_points(rule, rule + extra)
+        spread = []
+        for values in (acting.force[:, own], acting.turning[:, own]):
+            summed = np.zeros((len(elements), rule, len(values), 2))
+            np.add.at(summed, place, np.moveaxis(values, 1, 0))
+            spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+        element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
+        # what turns where it is spread is inertia, and that turns with d
+        tables = _tables(mesh, elements[element], xi)
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
+    joined = zip(*parts, strict=True)
+    return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
+
+
+def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
+    """Weight less mass times acceleration, of r0 + y d."""
+    pull = rows.body[:, rows.system.model.number_of(mesh.beam), :2]
+    if not pull.any() and not acceleration.any():
+        return _nothing(e)
+    where, xi, inertia = inertia_points(mesh, elements)
+    element, (position, direction) = _numbers(elements, where), _tables(mesh, where, xi)
+    mass, first, rotary = inertia.T[:, None, :, None]
+    free = pull[:, None] - _at(position, acceleration, element)
+    turn = _at(direction, acceleration, element)
+    rule = np.full(len(xi), len(xi) // len(elements))
+    return Acting(element, xi, rule, position, direction, mass * free - first * turn, first * free - rotary * turn)
+
+
+def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+    """Forces per length that keep their direction."""
+    load = rows.body[:, rows.system.model.number_of(mesh.beam), 2:]
+    where, xi, weight = length_points(mesh, elements)
+    force = load[:, None] * weight[:, None]
+    rule = np.full(len(xi), len(xi) // len(elements))
+    position, direction = _tables(mesh, where, xi)
+    return Acting(_numbers(elements, where), xi, rule, position, direction, force, np.zeros_like(force))
+
+
+def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+    """Loads along beams that follow or vary and springs of foundations, as the kernels have them."""
+    actions = rows.system.actions[mesh.block]
+    points, own = actions.points, actions.points.element - mesh.first_element
+    here = np.flatnonzero(np.isin(own, elements) & (actions.rule > 0))
+    element, position, direction = _numbers(elements, own[here]), points.position[here], points.direction[here]
+    values = rows.values[mesh.block][:, here]
+    r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[here]
+    square = dot(g, g)[..., None]
+    follows = np.any(at_rest, axis=1, keepdims=True)
+    unit = np.where(points.stretches[here][:, None], 1.0, np.sqrt(square))
+    co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
+    dead = values[..., :2]
+    force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[here] * (r - points.anchor[here])
+    turning = values[..., 2:] * across(g) / square
+    return Acting(element, actions.xi[here], actions.rule[here], position, direction, force, turning)
+
+
+def _nothing(e: np.ndarray) -> Acting:
+    none, table = np.zeros(0, dtype=np.int64), np.zeros((0, e.shape[2]))
+    return Acting(none, np.zeros(0), none, table, table, *np.zeros((2, len(e), 0, 2)))
+
+
+def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """Places of elements among those that are cut free, which rise."""
+    return np.searchsorted(elements, where)
+
+
+def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Tables (m, nv) of r and of d at points (element, xi) of a beam."""
+    own = mesh.beam.element
+    scale = scales(own, mesh.lengths[element])
+    position, direction = np.zeros_like(scale), np.zeros_like(scale)
+    position[:, r_slots(own.field)] = own.field.centreline(xi)
+    direction[:, d_slots(own.field)] = own.field.director(xi)
+    return position * scale, direction * scale
+
+
+def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Return what nodal vectors (steps, ne, nv, 2) give at points (steps, m, 2)."""
+    return np.einsum("mi,smic->smc", table, vectors[:, element])

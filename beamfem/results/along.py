@@ -1,0 +1,146 @@
+"""Fields along the axes of beams at points fit for drawing and export."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.distributions import Distributions, distributions, layers
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import reference_axis
+from beamfem.results import postprocess
+from beamfem.results.free_bodies import Cuts
+from beamfem.results.section_forces import at_points
+from beamfem.results.turns import turned_of
+from beamfem.validation import require_known, shown
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class AxisPoints:
+    """Points of a beam's axis: `pieces` equal intervals an element, so that neighbours both have their common end.
+
+    element, xi (points,).
+    """
+
+    mesh: BeamMesh
+    pieces: int
+
+    @cached_property
+    def element(self) -> np.ndarray:
+        return np.repeat(np.arange(self.mesh.elements), self.pieces + 1)
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        return np.tile(np.arange(self.pieces + 1) / self.pieces, self.mesh.elements)
+
+    @cached_property
+    def arc_length(self) -> np.ndarray:
+        """Arc length in the reference (points,) [m]."""
+        return self.mesh.arc_length(self.element, self.xi)
+
+    @cached_property
+    def distributions(self) -> Distributions:
+        """The layers of the section at each point, and how they distribute forces over their height."""
+        return distributions(self.mesh, self.element, self.xi)
+
+    @cached_property
+    def layers(self) -> np.ndarray:
+        """Lower and upper y of each layer of the body (points, layers, 2) [m], from the bottom up."""
+        return layers(self.mesh, self.element, self.xi)
+
+    @cached_property
+    def faces(self) -> np.ndarray:
+        """Lower and upper y of the body (points, 2) [m]."""
+        return self.layers[:, [0, -1], [0, 1]]
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Position in the reference (points, 2) [m]."""
+        return self.mesh.position[self.mesh.node[self.element, 0]] + self._reference_axis.r
+
+    @cached_property
+    def _reference_axis(self) -> postprocess.Axis:
+        return reference_axis(self.mesh, self.element, self.xi)
+
+    def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return r and d (steps, points, 2) of the states p (steps, n)."""
+        now = self.now(p)
+        return now.r, now.d
+
+    def now(self, p: np.ndarray) -> postprocess.Axis:
+        """Return the axis at the points in the states p (steps, n)."""
+        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
+
+    def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the velocity of the axis (steps, points, 2) [m/s]."""
+        rates = postprocess.nodal_velocities(self.mesh, p, v)
+        return postprocess.axis(self.mesh, rates, self.element, self.xi).r
+
+
+def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
+    """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
+    cuts = Cuts(points.element, points.xi)
+    found = at_points(solution, points.mesh, cuts, rows)
+    return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
+
+
+def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
+    """Return the rotation of the section from the reference (rows, points) [rad]."""
+    turned, p = turned_of(solution, points.mesh), solution.p[rows]
+    counted = None if turned is None else turned[rows]
+    return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi, counted)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A field along the axis: its name for people, its unit, and values(points, solution, rows) -> (rows, points)."""
+
+    label: str
+    unit: str
+    values: Callable[[AxisPoints, "Solution", np.ndarray], np.ndarray]
+
+
+def _section_force(name: str) -> Callable[..., np.ndarray]:
+    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+        return section_forces(points, solution, rows)[name]
+
+    return values
+
+
+def _axial_strain(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
+
+
+def _shear_angle(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return postprocess.shear_angle(points.now(solution.p[rows]))
+
+
+def _displacement(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
+
+
+def _speed(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
+
+
+QUANTITIES = {
+    "moment": Quantity("bending moment", "N m", _section_force("moment")),
+    "normal": Quantity("normal force", "N", _section_force("normal")),
+    "shear": Quantity("shear force", "N", _section_force("shear")),
+    "rotation": Quantity("rotation", "rad", rotation),
+    "displacement": Quantity("displacement", "m", _displacement),
+    "speed": Quantity("speed", "m/s", _speed),
+    "axial_strain": Quantity("axial strain", "-", _axial_strain),
+    "shear_angle": Quantity("shear angle", "rad", _shear_angle),
+}
+
+
+def quantity(name: str) -> Quantity:
+    """Return a quantity by its name. Raises InputError."""
+    require_known(f"there is no quantity {shown(name)} along a beam", name, QUANTITIES)
+    return QUANTITIES[name]

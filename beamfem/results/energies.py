@@ -1,0 +1,100 @@
+"""Energies of a solution."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.beam import Beam
+from beamfem.model.loads import PointForce, Scaled, factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
+from beamfem.model.supports import Foundation
+from beamfem.results import postprocess
+from beamfem.results.loading import loading
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies (steps,) [J]; potential is that of gravity, of the other constant dead forces, springs and foundations.
+
+    Forces that follow and pressures have none.
+    """
+
+    kinetic: np.ndarray
+    strain: np.ndarray
+    potential: np.ndarray
+
+    @property
+    def total(self) -> np.ndarray:
+        return self.kinetic + self.strain + self.potential
+
+
+def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference.
+
+    first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
+    """
+    return _of_gravity(solution, first_moments) + _of_loads(solution) + _of_springs(solution)
+
+
+def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
+    result = np.zeros(len(solution))
+    for load in solution.model.gravity:
+        weights = _factors(solution, load)
+        for mesh, moment in zip(solution.model.meshes, first_moments, strict=True):
+            result -= weights * ((moment - _reference_moment(mesh)) @ np.array(load.vector))
+    return result
+
+
+def _of_loads(solution: "Solution") -> np.ndarray:
+    result = np.zeros(len(solution))
+    for acting in solution.model.point_loads:
+        if acting.follower and isinstance(acting, PointForce):
+            continue
+        weights = _factors(solution, acting)
+        fx, fy, moment = acting.value
+        result -= weights * (solution.displacement(acting.point) @ np.array([fx, fy]))
+        if moment:
+            result -= weights * moment * solution.rotation(acting.point)
+    for spread in solution.model.distributed:
+        if not spread.follower:
+            weights = _factors(solution, spread)
+            moved, weight, arc = _along(solution, spread.beam)
+            result -= weights * np.einsum("sqc,qc,q->s", moved, spread.values(arc), weight)
+    return result
+
+
+def _factors(solution: "Solution", load: Scaled) -> np.ndarray:
+    system, times = loading(solution)
+    return np.array([factor(load, at, system.static) for at in times])
+
+
+def _of_springs(solution: "Solution") -> np.ndarray:
+    springs = loading(solution)[0].springs
+    result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
+    for support in solution.model.supports:
+        if isinstance(support, Foundation):
+            moved, weight, _ = _along(solution, support.beam)
+            result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
+    return np.asarray(result)
+
+
+def _along(solution: "Solution", beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return displacements (steps, nq, 2) [m] at points along a beam, and their weights and arc lengths (nq,) [m]."""
+    mesh = solution.model.mesh_of(beam.start)
+    element, xi, weight = length_points(mesh)
+    now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, solution.p), element, xi).r
+    return now - reference_position(mesh, element, xi), weight, mesh.arc_length(element, xi)
+
+
+def _reference_moment(mesh: BeamMesh) -> np.ndarray:
+    """Integral of the reference position over the mass (2,) [kg m]."""
+    element, xi, inertia = inertia_points(mesh)
+    return np.asarray(
+        inertia[:, 0] @ reference_position(mesh, element, xi) + inertia[:, 1] @ reference_axis(mesh, element, xi).d
+    )

@@ -1,0 +1,60 @@
+"""By how much the energy of a motion changed though nothing drove it: the error of its time steps."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.system import system_of
+from beamfem.model.loads import Gravity, PointMoment, Pressure
+from beamfem.results.turns import start_rotations
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+_ROWS = 100  # at which energies are looked at, for what they are measured by
+
+
+@dataclass(frozen=True)
+class EnergyDrift:
+    """Change of the total energy from start to end of a motion, and the largest energy that it exchanges, both [J]."""
+
+    change: float
+    exchanged: float
+
+    @property
+    def digits(self) -> float:
+        """Decimal digits of the energy that are left; inf where none is lost."""
+        if self.change == 0.0:
+            return np.inf
+        return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0
+
+    def __str__(self) -> str:
+        return f"energy drifts by {self.change:.2g} J of {self.exchanged:.3g} J"
+
+
+def energy_drift(solution: "Solution") -> EnergyDrift | None:
+    """Return the drift of a motion's energy; None where something does work on it.
+
+    That is so under loads with an amplitude, loads that follow and pressures, and where supports move.
+    """
+    if solution.static or solution.loaded is not None or not _conservative(solution):
+        return None
+    rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
+    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
+    some = replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
+    energy = some.energy()
+    total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
+    return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
+
+
+def _conservative(solution: "Solution") -> bool:
+    system = system_of(solution.model, static=False)
+    moved = any(callable(item.value) for item in system.held)
+    driven = any(
+        load.amplitude is not None
+        or isinstance(load, Pressure)
+        or (not isinstance(load, Gravity | PointMoment) and load.follower)
+        for load in solution.model.loads
+    )
+    return not moved and not driven

@@ -1,0 +1,93 @@
+"""Whether the arrays of states fit their model: what a user makes by hand is asked where it is made."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.model import Model
+from beamfem.model.turns import uncounted
+from beamfem.validation import finite, flag, shown
+
+if TYPE_CHECKING:
+    from beamfem.results.path import Bifurcation
+    from beamfem.results.solution import Solution, State
+
+_REAL = "fiu"  # kinds of dtypes
+
+
+def require_state(state: "State") -> None:
+    """Raise InputError where the arrays of a state have not one number for each coordinate of its model."""
+    model = _model_of(state)
+    for name in ("p", "v", "a"):
+        _require_array(state, name, (model.size,))
+    object.__setattr__(state, "at", finite(f"at of {type(state).__name__}", state.at))
+    if state.turned is not None:
+        _require_array(state, "turned", (len(uncounted(model)),))
+
+
+def require_crossing(state: "Bifurcation") -> None:
+    """Raise InputError where the directions of a bifurcation do not fit its model, or are not finite."""
+    _require_array(state, "mode", (state.model.size,))
+    _require_array(state, "tangent", (state.model.size + 1,))
+    for name in ("mode", "tangent"):
+        _require_finite(f"{name} of {type(state).__name__}", getattr(state, name))
+
+
+def require_rows(solution: "Solution") -> None:
+    """Raise InputError where the arrays of a solution have not a row of its model's coordinates for each `at`.
+
+    Of the numbers, `at` and p must be finite; v and a of static solutions take no memory until they are read.
+    """
+    model, kind = _model_of(solution), type(solution).__name__
+    flag(f"static of {kind}", solution.static)
+    rows = np.size(solution.at) if np.ndim(solution.at) == 1 else -1
+    if rows < 0:
+        raise InputError(f"at of {kind} must be a list of load factors or times, got {shown(solution.at)}")
+    _require_array(solution, "at", (rows,))
+    for name in ("p", "v", "a"):
+        _require_array(solution, name, (rows, model.size))
+    for name in ("at", "p"):
+        _require_finite(f"{name} of {kind}", getattr(solution, name))
+    for name, shape, kinds in (
+        ("stability", (rows,), "b"),
+        ("loaded", (rows,), _REAL),
+        ("turned", (rows, len(uncounted(model))), _REAL),
+    ):
+        if getattr(solution, name) is not None:
+            _require_array(solution, name, shape, kinds)
+
+
+def require_finite(name: str, state: "State") -> None:
+    """Raise InputError where a number of a state that a user gives for `name` is not finite."""
+    for part in ("p", "v", "a"):
+        _require_finite(f"{part} of {name}", getattr(state, part))
+
+
+def _model_of(item: Any) -> Model:
+    if not isinstance(item.model, Model):
+        raise InputError(f"model of {type(item).__name__} must be the Model of its states, got {shown(item.model)}")
+    return item.model
+
+
+def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _REAL) -> None:
+    """Make an attribute an array of double precision, or of truth values, of a shape. Raises InputError."""
+    given = getattr(item, name)
+    try:
+        values = np.asarray(given)
+    except ValueError:  # rows of different lengths
+        values = np.empty(0, dtype=object)
+    if values.dtype.kind not in kinds or values.shape != shape:
+        what = "truth values" if kinds == "b" else "numbers"
+        got = f"shape {values.shape} of {values.dtype}" if isinstance(given, np.ndarray) else shown(given)
+        raise InputError(
+            f"{name} of {type(item).__name__} must be an array {shape} of {what}, as its model has "
+            f"{item.model.size} coordinates, got {got}"
+        )
+    if values is not given or values.dtype.kind in "iu" or values.dtype.itemsize < 8:
+        object.__setattr__(item, name, values if kinds == "b" else values.astype(float))
+
+
+def _require_finite(name: str, values: np.ndarray) -> None:
+    if not np.isfinite(values).all():
+        raise InputError(f"{name} must be finite, but holds nan or infinity; take a state that a solve has found")

@@ -1,0 +1,126 @@
+"""Elements cut free of their neighbours in rows of a solution: the forces at their two ends, and at cuts between.
+
+The nodal forces of an element, elastic ones and inertia less its loads, are what its neighbours do to it. Rigid motions
+are among those of its nodes, so that these forces balance its loads exactly, however coarse the mesh is.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from beamfem.assembly.points import elastic_forces
+from beamfem.element.axis import cross, dot
+from beamfem.kernels.block import Block
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import interpolate
+from beamfem.results.acting import Acting, Rows, acting_on, at_more_points
+from beamfem.results.postprocess import direction
+from beamfem.results.spread import shares_before
+
+
+@dataclass(frozen=True, eq=False)
+class Cuts:
+    """Points of a beam (points,) that cut it: element and xi."""
+
+    element: np.ndarray
+    xi: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class FreeBodies:
+    """Elements (ne,) of a beam cut free.
+
+    vectors (steps, ne, nv, 2): e; acting: what acts on them; force (2, steps, ne, 2) [N] and moment (2, steps, ne)
+    [N m] about their first node, of what stands on the side of the beam's end at their start and at their end.
+    """
+
+    mesh: BeamMesh
+    elements: np.ndarray
+    vectors: np.ndarray
+    acting: Acting
+    force: np.ndarray
+    moment: np.ndarray
+
+    def at(self, cuts: Cuts) -> np.ndarray:
+        """Return normal and shear force [N] and moment [N m] (steps, 3, points) at cuts.
+
+        Balance of what is before a cut, and of what is behind it; where nodes inside of an element are at rest to
+        round-off only, in proportion to the distance from its ends.
+        """
+        element = np.searchsorted(self.elements, cuts.element)
+        now = interpolate(self.mesh, self.vectors[:, element], cuts.element, cuts.xi)
+        share = self._before(cuts, element)
+        turn = self.acting.moments(self.vectors, self._origin)
+        force = self._carried(self.force, self.acting.force, share, cuts.xi, element)
+        moment = self._carried(self.moment, turn, share, cuts.xi, element)
+        moment = moment - cross(now.r - self._origin[:, element], force)
+        along = direction(self.mesh, now)
+        return np.stack([dot(along, force), cross(along, force), moment], axis=1)
+
+    def _carried(
+        self, ends: np.ndarray, acts: np.ndarray, share: csr_array, xi: np.ndarray, element: np.ndarray
+    ) -> np.ndarray:
+        """Return what cuts (points,) carry (steps, points, ...) from both ends (2, steps, ne, ...), less what acts."""
+        total = np.zeros((len(self.elements), len(acts), *acts.shape[2:]))
+        np.add.at(total, self.acting.element, np.moveaxis(acts, 1, 0))
+        weight = xi.reshape(-1, *(1,) * (acts.ndim - 2))
+        by_start, by_end = ends[0][:, element], (ends[1] + np.moveaxis(total, 0, 1))[:, element]
+        return np.asarray((1.0 - weight) * by_start + weight * by_end - _shared(share, acts))
+
+    @property
+    def _origin(self) -> np.ndarray:
+        return self.vectors[:, :, 0]
+
+    def _before(self, cuts: Cuts, element: np.ndarray) -> csr_array:
+        """Share (points, m) of each force in what acts between the start of its element and a cut."""
+        acting = self.acting
+        order = np.argsort(acting.element, kind="stable")
+        starts = np.searchsorted(acting.element[order], np.arange(len(self.elements) + 1))
+        count = np.diff(starts)[element]
+        row = np.repeat(np.arange(len(element)), count)
+        within = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        column = order[np.repeat(starts[element], count) + within]
+        share = np.empty(len(row))
+        for rule in np.unique(acting.rule):
+            own = np.flatnonzero(acting.rule[column] == rule)
+            share[own] = shares_before(int(rule), acting.xi[column[own]], cuts.xi[row[own]])
+        return coo_array((share, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
+
+
+def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) -> FreeBodies:
+    """Return elements (ne,), which rise, of a beam cut free in rows; p (steps, n): coordinates to take there."""
+    block = rows.system.blocks[mesh.block]
+    number = mesh.first_element + elements
+    states = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
+    found = elastic_forces(_parted(block, number), *states)
+    e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in found)
+    acting = acting_on(rows, mesh, elements, e, acceleration)
+    force -= acting.nodal(len(elements))
+    per_node = len(mesh.vectors)
+    first, last = slice(0, per_node), slice(-per_node, None)
+    # the vectors of a node behind r turn with it
+    turns = [cross(e[:, :, place], force[:, :, place])[:, :, 1:].sum(axis=2) for place in (first, last)]
+    pulls = [force[:, :, place][:, :, 0] for place in (first, last)]
+    arm = e[:, :, last][:, :, 0] - e[:, :, 0]
+    ends = np.stack([-pulls[0], pulls[1]])
+    moments = np.stack([-turns[0], turns[1] + cross(arm, pulls[1])])
+    return FreeBodies(mesh, elements, e, at_more_points(acting, mesh, elements), ends, moments)
+
+
+def _parted(block: Block, elements: np.ndarray) -> Block:
+    """Return elements of a block with nodes of their own."""
+    nodes = block.node[elements]
+    flat = nodes.ravel()
+    return block._replace(
+        node=np.arange(len(flat)).reshape(nodes.shape),
+        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
+        **{name: getattr(block, name)[flat] for name in ("carrier", "frame", "dof", "home")},
+    )
+
+
+def _shared(share: csr_array, values: np.ndarray) -> np.ndarray:
+    """Sum values (steps, m, ...) over m with the shares (points, m) of them."""
+    flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
+    found = (share @ flat).reshape(share.shape[0], len(values), *values.shape[2:])
+    return np.asarray(np.moveaxis(found, 0, 1))

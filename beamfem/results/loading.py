@@ -1,0 +1,17 @@
+"""The equations that the rows of a solution solve, and the load factors or times of their loads."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.system import System, system_of
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def loading(solution: "Solution") -> tuple[System, np.ndarray]:
+    """Return the system of a solution and the load factor or time [s] (steps,) that its loads have in each row."""
+    if solution.loaded is not None:
+        return system_of(solution.model, static=True), solution.loaded
+    return system_of(solution.model, solution.static), solution.at

@@ -1,0 +1,121 @@
+"""Tells how far locking elements keep a result from that of the same mesh without locking.
+
+The indicator is a Newton step: the forces of the same nodes with strains that do not lock, less the model's own, over
+the tangent of the former. It sees a strain that resists and one that shuts a motion out alike, in the digits it costs.
+"""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.blocks import build_block
+from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
+from beamfem.assembly.round_off import row_floors
+from beamfem.assembly.system import System, system_of
+from beamfem.element.element import Element
+from beamfem.kernels.block import Block
+from beamfem.model.model import Model
+from beamfem.results import postprocess
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution, State
+
+_TOLD = 1e-3  # change of a result by locking that a user is told of
+# of the step, each with the stresses of the last: those that lock are large and would hold it by themselves
+_PREDICTIONS = 3
+_ROWS = 32  # of a solution, among which the most strained is judged
+
+
+def locking_warnings(solution: "Solution") -> tuple[str, ...]:
+    """Say in a sentence that elements lock where that changes the displacements by more than 1e-3 of the largest."""
+    if not _locking_elements(solution.model):
+        return ()
+    rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
+    energy = sum(postprocess.strain_energy(mesh, solution.p[rows]) for mesh in solution.model.meshes)
+    span = None if solution.static else float(np.ptp(solution.at))
+    change = _change(solution[int(rows[np.argmax(energy)])], span)
+    return _sentences(solution.model, change, "the largest displacement")
+
+
+def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
+    """Say the same where it changes a frequency, by Rayleigh's quotient of modes with strains that do not lock.
+
+    state: the one that the modes are about; shapes (m, n): over all coordinates.
+    """
+    if not _locking_elements(state.model):
+        return ()
+    system = system_of(state.model, static=True)
+    rest, free = np.zeros(len(state.p)), system.free_dofs
+    before, after = (
+        linearise(system, state.p, rest, rest, state.at, STATICS, blocks=blocks)[1].sparse(system.turned)
+        for blocks in (system.blocks, _unlocked_blocks(system))
+    )
+    change = 0.0
+    for shape in np.real(shapes[:, free]):
+        own = float(shape @ (before @ shape))
+        if own > 0.0:
+            change = max(change, 0.5 * abs(1.0 - float(shape @ (after @ shape)) / own))
+    return _sentences(state.model, change, "a frequency")
+
+
+def _change(state: "State", span: float | None) -> float:
+    """Return the largest change of a position by one step to the same mesh without locking, over the displacement.
+
+    span: duration [s] of a motion, in which inertia lets a body that nothing holds move; None in statics.
+    """
+    system = system_of(state.model, span is None)
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    moved = float(np.linalg.norm((state.p - system.reference)[nodes], axis=1).max())
+    if moved == 0.0 or span == 0.0:
+        return 0.0
+    at = (state.p, state.v, state.a, state.at)
+    weights = STATICS if span is None else (1.0, 0.0, 1.0 / span**2)
+    free, blocks = system.free_dofs, _unlocked_blocks(system)
+    step, stresses, floors = np.zeros(len(state.p)), None, row_floors(system, state.p)[free]
+    for _ in range(_PREDICTIONS):
+        other, tangent = linearise(system, *at, weights, stresses, blocks)
+        excess = (other - residual(system, *at))[free]
+        if np.all(np.abs(excess) <= 2.0 * floors):
+            return 0.0
+        try:
+            step[free] = tangent.solve(-excess, system.turned)
+        except LinAlgError:
+            return 0.0
+        stresses = predicted_stresses(system, state.p, step, blocks)
+    return float(np.linalg.norm(step[nodes], axis=1).max()) / moved
+
+
+def _unlocked(element: Element) -> Element:
+    """Return the element with the integration that does not lock."""
+    if "r_x" in element.field.vectors:
+        return replace(element, integration="lobatto")
+    return replace(element, integration="reduced")
+
+
+def _locking_elements(model: Model) -> tuple[Element, ...]:
+    return tuple(element for element in model.groups if _unlocked(element) != element)
+
+
+def _unlocked_blocks(system: System) -> tuple[Block, ...]:
+    blocks = []
+    for number, element in enumerate(system.model.groups):
+        other = _unlocked(element)
+        own = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
+        changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in own]
+        blocks.append(system.blocks[number] if other == element else build_block(other, changed))
+    return tuple(blocks)
+
+
+def _sentences(model: Model, change: float, what: str) -> tuple[str, ...]:
+    if change <= _TOLD:
+        return ()
+    elements = _locking_elements(model)
+    names = ", ".join(dict.fromkeys(f"{element.name} ({element.forces.name} forces)" for element in elements))
+    cures = " or ".join(dict.fromkeys(f'integration="{_unlocked(element).integration}"' for element in elements))
+    size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than its own size"
+    return (
+        f"elements lock: {names}; without that {what} would change by {size} on this mesh. Use {cures}, or more "
+        "elements",
+    )

@@ -1,0 +1,115 @@
+"""An equilibrium path: its states, its limit points and its bifurcations."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, overload
+
+import numpy as np
+
+from beamfem.model.beam import Beam, Point
+from beamfem.results.fitting import require_crossing
+from beamfem.results.postprocess import Components, Fields, SectionForces
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
+from beamfem.results.turns import start_rotations
+
+
+@dataclass(frozen=True, eq=False)
+class PathState(State):
+    """One state of a path, with what a Solution offers but without its axis of steps.
+
+    stability: whether it is a stable equilibrium, where that is known; critical points are not. turned is counted along
+    the path.
+    """
+
+    stability: bool | None = field(default=None, kw_only=True)
+
+    @property
+    def load_factor(self) -> float:
+        return self.at
+
+    @cached_property
+    def _alone(self) -> Solution:
+        rows = (np.array([self.at]), self.p[None], self.v[None], self.a[None])
+        turned = None if self.turned is None else self.turned[None]
+        return Solution(self.model, True, *rows, Statistics(0, 0, 0, "one state of a path"), turned=turned)
+
+    @property
+    def stable(self) -> bool:
+        """Whether it is a stable equilibrium, see `Solution.stable`."""
+        return bool(self._alone.stable[0]) if self.stability is None else self.stability
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point (2,) [m]."""
+        return np.asarray(self._alone.position(point)[0])
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference (2,) [m]."""
+        return np.asarray(self._alone.displacement(point)[0])
+
+    def rotation(self, point: Point) -> float:
+        """Return the rotation of the section from the reference [rad], counter-clockwise, full turns included."""
+        return float(self._alone.rotation(point)[0])
+
+    def reaction(self, point: Point) -> np.ndarray:
+        """Return what a support does to the beam (3,): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        return np.asarray(self._alone.reaction(point)[0])
+
+    def fields(self, point: Point) -> Fields:
+        """Return position, gradients, rotation, shear angle, strain and stress at a point."""
+        found = self._alone.fields(point)
+        values = [getattr(found, name) for name in Fields.__dataclass_fields__]
+        return Fields(*(_first(value) for value in values))
+
+    def section_forces(self, beam: Beam) -> SectionForces:
+        """Return normal and shear force [N] and moment [N m] of a beam (stations,), see `SectionForces`."""
+        found = self._alone.section_forces(beam)
+        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation(PathState):
+    """A state where another branch crosses the path.
+
+    mode (n,): the change of the coordinates that the tangent does not resist, its root mean square 1 in lengths of the
+    model and radians, its largest coordinate positive; tangent (n + 1,): direction of the path, the load factor last.
+    """
+
+    mode: np.ndarray
+    tangent: np.ndarray
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_crossing(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Path(Solution):
+    """The equilibria along a path, in order; load factors may fall.
+
+    Row i is the state `path[i]`; limit points and bifurcations lie between the rows.
+    The bifurcation that a branch starts from is no stable row.
+    """
+
+    limit_points: tuple[PathState, ...] = ()
+    bifurcations: tuple[Bifurcation, ...] = ()
+
+    @overload
+    def __getitem__(self, row: int) -> PathState: ...
+    @overload
+    def __getitem__(self, row: slice) -> Solution: ...
+    def __getitem__(self, row: int | slice) -> PathState | Solution:
+        """Return the state of a row, or a Solution of the rows of a slice, without limit points and bifurcations."""
+        return super().__getitem__(row)  # type: ignore[return-value]
+
+    def _state(self, row: int) -> PathState:
+        stability = None if self.stability is None else bool(self.stability[row])
+        parts = (self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
+        return PathState(*parts, stability=stability, turned=start_rotations(self)[row])
+
+
+def _first(value: Any) -> Any:
+    """Drop the axis of steps."""
+    if isinstance(value, Components):
+        return Components(value.xx[0], value.yy[0], value.xy[0])
+    return value[0]

@@ -1,0 +1,73 @@
+"""Forces and moments that supports exert on a beam."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.assembly.equations import residual
+from beamfem.assembly.held import held_coordinate
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.model.beam import Point
+from beamfem.model.supports import Spring
+from beamfem.results.last_digits import exactly
+from beamfem.results.loading import loading
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def reaction(solution: "Solution", point: Point) -> np.ndarray:
+    """Return fx, fy [N] and m [N m] of the supports and springs at a point of a beam (steps, 3).
+
+    Those at points of other beams that are joined there are not in it. Raises InputError where no support is.
+    """
+    model = solution.model
+    mesh = model.mesh_of(point)
+    on_beam = [support for support in model.point_supports if support.point.beam is point.beam]
+    own = [support for support in on_beam if abs(support.point.fraction - point.fraction) < 1e-9]
+    if not own:
+        raise InputError(f"there is no support at {point}, so there is no reaction")
+    dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
+    held = {held_coordinate(support, direction) for support in own for direction in support.held()}
+    if None in held:  # an inclined roller
+        held |= {"r^x", "r^y"}
+    result = np.zeros((len(solution), 3))
+    for column, name in enumerate(("r^x", "r^y", "theta")):
+        if name in dofs:
+            stiffness = sum(support.by_coordinate[name] for support in own if isinstance(support, Spring))
+            result[:, column] = _of_some(solution, dofs[name], name in held, stiffness)
+    return result
+
+
+def _of_some(solution: "Solution", dof: int, held: bool, stiffness: float) -> np.ndarray:
+    """Return the force (steps,) on a coordinate of those supports that hold it, or not, and have this stiffness."""
+    system, _ = loading(solution)
+    moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
+    if not held:
+        return np.asarray(-stiffness * moved)
+    others = float(system.springs.stiffness[system.springs.dof == dof].sum()) - stiffness
+    return np.asarray(solution.support_forces[:, dof] + others * moved)
+
+
+def _supported(system: System) -> set[int]:
+    """Return the coordinates that supports other than springs act on."""
+    inclined = {dof + axis for dof, _ in system.inclined for axis in (0, 1)}
+    return {*system.held_dofs.tolist(), *inclined}
+
+
+def support_forces(solution: "Solution") -> np.ndarray:
+    """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
+    system, times = loading(solution)
+    held = np.zeros(solution.model.size, dtype=bool)
+    held[list(_supported(system))] = True
+    springs = system.springs
+
+    def forces(p: np.ndarray) -> np.ndarray:
+        result = np.zeros(p.shape)
+        for row, at in enumerate(times):
+            result[row] = np.where(held, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
+            np.subtract.at(result[row], springs.dof, springs.stiffness * (p[row, springs.dof] - springs.rest))
+        return result
+
+    return exactly(solution, forces)

@@ -1,0 +1,40 @@
+"""How far beams have turned whose rotation no coordinate counts, in the rows of a solution."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.turns import uncounted
+from beamfem.results import postprocess
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn of `near`."""
+    meshes = uncounted(model)
+    known = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
+    return np.array([rotations[0, 0] for rotations in known])
+
+
+def start_rotations(solution: "Solution") -> np.ndarray:
+    """Return the rotation of each such beam at its start (steps, m) [rad], full turns included.
+
+    As counted by the solve from step to step; else continued from row to row, the first of them within half a turn.
+    """
+    if solution.turned is not None:
+        return solution.turned
+    known: dict[str, np.ndarray] = solution.__dict__
+    if "_start_rotations" not in known:
+        parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
+        known["_start_rotations"] = np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
+    return known["_start_rotations"]
+
+
+def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
+    """Return that of one beam (steps,), None where its coordinates count it."""
+    own = [i for i, other in enumerate(uncounted(solution.model)) if other is mesh]
+    return start_rotations(solution)[:, own[0]] if own else None

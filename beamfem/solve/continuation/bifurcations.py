@@ -1,0 +1,135 @@
+"""Bifurcations between two points of an equilibrium path.
+
+The count of negative pivots says how many there are, the tangent condensed onto as many modes where. Close to a
+bifurcation round-off leads Newton's method off the path, so no equilibrium is solved for there: states, stiffness and
+modes are interpolated between points that keep their distance on both sides.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.solve.continuation.condensed import Condensed, condensed
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
+from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, turning, without_limit
+
+_BESIDE = 1e-3  # of a segment: how far from a limit point signs of pivots and positions are trusted
+_WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
+_JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
+_DISTANCE = 5e-3  # of the part of a segment that is searched: samples are no closer to a bifurcation
+_TOGETHER = 4.0  # of the distance: bifurcations closer than this are found together
+_SHARPNESS = 1e-5  # of a segment: parts that are not divided further
+_TRIALS = 12
+_GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiffnesses are looked at
+
+
+def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
+    """Return where the tangent is singular but the load factor has no extremum, or one as another path crosses.
+
+    In order; several modes that lose their stiffness at one point make as many bifurcations. limits: shares of the
+    limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
+    """
+    extrema = sorted([*limits, *segment.turned])
+    found = [turning(segment, x) for x in segment.turned]
+    start = 0.0
+    for i, x in enumerate(extrema):
+        low, high = max(x - _BESIDE, start), min(x + _BESIDE, 1.0)
+        if abs(segment.change(low, high)) != (x in limits):
+            if x not in limits:
+                raise SegmentLostError("several paths cross where the load factor turns")
+            low = max(x - _WINDOW, start)
+            high = min(x + _WINDOW, 0.5 * (x + extrema[i + 1]) if i + 1 < len(extrema) else 1.0)
+            found += without_limit(segment, x, list(_search(segment, low, high)))
+        if start < low:
+            found += _search(segment, start, low)
+        start = high
+    if start < 1.0:
+        found += _search(segment, start, 1.0)
+    return sorted(found, key=lambda one: one.share)
+
+
+def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
+    _require_one_path(segment, start, end)
+    change = segment.change(start, end)
+    if change == 0:
+        return
+    try:
+        found = _together(segment, start, end, change)
+    except LinAlgError:
+        found = 0.5 * (start + end)
+    if not isinstance(found, float):
+        yield from found
+    elif end - start < _SHARPNESS:
+        raise SegmentLostError("the tangent is singular at several points that cannot be told apart")
+    else:
+        yield from _search(segment, start, found)
+        yield from _search(segment, found, end)
+
+
+def _require_one_path(segment: Segment, start: float, end: float) -> None:
+    """Raise SegmentLostError where two points are further apart than the way from one to the other can be."""
+    line = segment.line
+    apart = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
+    if apart > 2.0 * (end - start) + _JUMP:
+        raise SegmentLostError("the step leads to another path")
+
+
+def _together(segment: Segment, start: float, end: float, change: int) -> list[Crossing] | float:
+    """Return the bifurcations between two shares if they lie close together, or a share to divide the part at."""
+    line, middle, distance = segment.line, 0.5 * (start + end), _DISTANCE * (end - start)
+    directions = _softer(segment, start, end, abs(change))
+    known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
+    shares = np.array([start, end])
+    roots = _roots(known, shares, (start, end))
+    for _ in range(_TRIALS):
+        if len(roots) != abs(change):
+            return middle
+        if roots[-1] - roots[0] > _TOGETHER * distance:
+            widest = int(np.argmax(np.diff(roots)))
+            return float(roots[widest] + roots[widest + 1]) / 2.0
+        shares = segment.beside(roots[0], roots[-1], distance, start, end)
+        known |= {x: condensed(line, segment.at(x), directions) for x in shares.tolist() if x not in known}
+        before, roots = roots, _roots(known, shares, (start, end))
+        if len(roots) == len(before) and np.abs(roots - before).max() < 0.1 * distance:
+            left, right = max(shares[shares < roots[0]], default=start), min(shares[shares > roots[-1]], default=end)
+            if segment.change(start, left) or segment.change(right, end):
+                return middle
+            samples = Samples(segment, shares, [known[x] for x in shares.tolist()], left, change, distance)
+            return crossings(samples, roots)
+    return middle
+
+
+def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarray:
+    """Return the softest modes (count, n + 1) of the end of a part of a segment where they are softer."""
+    line, found = segment.line, []
+    for x in (start, end):
+        modes = line.softest_modes(segment.at(x).factors, count)
+        stiffness = condensed(line, segment.at(x), modes).stiffness
+        found.append((float(np.abs(np.linalg.eigvalsh(stiffness)).max()), modes))
+    return min(found, key=lambda one: one[0])[1]
+
+
+def _roots(known: dict[float, Condensed], shares: np.ndarray, within: tuple[float, float]) -> np.ndarray:
+    """Return the shares where the polynomial through the stiffnesses at `shares` is singular, ascending.
+
+    One of each eigenvalue that changes its sign, the nearest to the samples.
+    """
+    from scipy.optimize import brentq  # slow to import
+
+    stiffness = np.array([known[x].stiffness for x in shares.tolist()])
+
+    def eigenvalues(x: float | np.ndarray) -> np.ndarray:
+        return np.asarray(np.linalg.eigvalsh(np.tensordot(interpolation_weights(shares, x), stiffness, axes=1)))
+
+    centre = 0.5 * (shares[0] + shares[-1])
+    reach = np.where(_GRID < 0.0, centre - within[0], within[1] - centre)
+    grid = centre + _GRID * reach
+    signs = np.sign(eigenvalues(grid))
+    found = []
+    for number, row in enumerate(signs.T):
+        changes = np.flatnonzero(row[1:] != row[:-1])
+        if len(changes):
+            i = changes[np.argmin(np.abs(changes - len(grid) // 2))]
+            found.append(brentq(lambda x, j=number: eigenvalues(x)[j], grid[i], grid[i + 1], xtol=1e-15))
+    return np.sort(found)

@@ -1,0 +1,236 @@
+"""Points of an equilibrium path, corrected and linearised with the load factor among the unknowns."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.equations import STATICS, linearise, load_slope, predicted_stresses, residual
+from beamfem.assembly.round_off import loses_digits
+from beamfem.assembly.system import System
+from beamfem.errors import ConvergenceError
+from beamfem.linalg.tangent import Factorised
+from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.newton import verdict
+
+_SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
+_LARGEST_RATIO = 30.0  # of the load scale to the soft load
+_LOAD_STEP = 2.0
+_GROWS_WELL = 0.3  # share of the load factor in the unit tangent
+_INVERSE_ITERATIONS = 30
+_STILL = 1e-7  # of a mode: what an iteration may still turn it by
+
+Stresses = tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class PathPoint:
+    """A converged point of a path: y (n + 1,) = coordinates and load factor, and the unit tangent of the path there."""
+
+    y: np.ndarray
+    tangent: np.ndarray
+    factors: Factorised
+
+    @property
+    def load_factor(self) -> float:
+        return float(self.y[-1])
+
+    @cached_property
+    def negative_pivots(self) -> int:
+        return self.factors.negative_pivots
+
+
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
+
+    negative_pivots: fewest and most of the tangents on the way.
+    """
+
+    y: np.ndarray
+    iterations: int
+    ended: Ended
+    negative_pivots: tuple[int, int] = (0, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class Continuation:
+    """A system whose load factor is unknown, measured in lengths of the model and in `load_scale`.
+
+    load_step: how far the load factor may change in a step while it is small.
+
+    The squared length of a change of y is the mean of the squared scaled changes of the unknown coordinates, plus that
+    of the load factor; it depends neither on units nor on the mesh.
+    """
+
+    system: System
+    newton: Newton
+    load_scale: float
+    load_step: float
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """What a change of y is measured by (n + 1,)."""
+        return np.append(self.system.scale, self.load_scale)
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Weights (n + 1,) of the squared changes of y; held coordinates follow the load factor and have none."""
+        free = self.system.free_dofs
+        result = np.zeros(len(self.scale))
+        result[free] = 1.0 / (len(free) * self.scale[free] ** 2)
+        result[-1] = 1.0 / self.load_scale**2
+        return result
+
+    def dot(self, a: np.ndarray, b: np.ndarray) -> float:
+        return float((self.weights * a) @ b)
+
+    def length(self, a: np.ndarray) -> float:
+        return float(np.sqrt(self.dot(a, a)))
+
+    def hold(self, y: np.ndarray) -> np.ndarray:
+        """Return y with the held coordinates of its load factor."""
+        result = y.copy()
+        result[self.system.held_dofs] = self.system.held_values(float(y[-1]))
+        return result
+
+    def plane(self, tangent: np.ndarray) -> np.ndarray:
+        """Return the normal (n + 1,) of the plane in which a step along a unit tangent is corrected.
+
+        It is the tangent; but where the load factor moves supports and grows well, its axis: independent stresses tell
+        the tangent nothing of held coordinates, so that these had better rest during the correction.
+        """
+        moved = bool(np.any(tangent[self.system.held_dofs]))
+        if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
+            return tangent
+        result = np.zeros(len(tangent))
+        result[-1] = 1.0
+        return result
+
+    def stresses(self, y: np.ndarray, step: np.ndarray) -> Stresses | None:
+        """Return the stress resultants that a step from y predicts, None where Newton is to take those of the state."""
+        return predicted_stresses(self.system, y[:-1], step[:-1]) if self.newton.independent_stresses else None
+
+    def correct(
+        self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray, farthest: float = np.inf
+    ) -> Corrected:
+        """Return the equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,).
+
+        stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
+        beyond which no equilibrium is looked for.
+        """
+        y, last, counts = self.hold(start), np.inf, []
+        for iteration in range(1, self.newton.iterations + 1):
+            try:
+                balance, along, factors = self._solve(y, stresses)
+            except LinAlgError:
+                return Corrected(y, iteration, Ended.SINGULAR)
+            counts.append(factors.negative_pivots)
+            reach = self.dot(normal, along)
+            if reach == 0.0:
+                return Corrected(y, iteration, Ended.SINGULAR)
+            change = -(self.dot(normal, y - start) + self.dot(normal, balance)) / reach
+            new = self.hold(y + balance + change * along)
+            stresses = self.stresses(y, new - y)
+            size = float(np.max(np.abs(new - y) / self.scale))
+            y = new
+            if self.length(y - start) > farthest:
+                return Corrected(y, iteration, Ended.DIVERGED)
+            ended = verdict(self.system, y[:-1], float(y[-1]), self.newton, iteration, (size, last))
+            if ended is not None:
+                return Corrected(y, iteration, ended, (min(counts), max(counts)))
+            last = size
+        return Corrected(y, self.newton.iterations, Ended.EXHAUSTED)
+
+    def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:
+        """Return the point y with the tangent that goes the way of `like` (n + 1,). Raises LinAlgError."""
+        _, along, factors = self._solve(y, None)
+        tangent = along / self.length(along)
+        return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
+
+    def softest(self, factors: Factorised) -> np.ndarray:
+        """Return the unit change of y (n + 1,) with the smallest stiffness; its largest coordinate is positive."""
+        mode = self.softest_modes(factors, 1)[0]
+        return np.asarray(mode * np.sign(mode[np.argmax(np.abs(mode) / self.scale)]))
+
+    def softest_modes(self, factors: Factorised, count: int) -> np.ndarray:
+        """Return orthonormal changes of y (count, n + 1) that span those with the smallest stiffness."""
+        free = self.system.free_dofs
+        roots = np.sqrt(self.weights[free])
+        basis = np.random.default_rng(0).standard_normal((len(free), min(count, len(free))))
+        for _ in range(_INVERSE_ITERATIONS):
+            basis = np.linalg.qr(basis)[0]
+            found = np.column_stack([factors.solve(roots * column) * roots for column in basis.T])
+            outside = found - basis @ (basis.T @ found)
+            still = np.all(np.linalg.norm(outside, axis=0) < _STILL * np.linalg.norm(found, axis=0))
+            basis = found
+            if still:
+                break
+        result = np.zeros((basis.shape[1], len(self.scale)))
+        result[:, free] = (np.linalg.qr(basis)[0] / roots[:, None]).T
+        return result
+
+    def softness(self, factors: Factorised, mode: np.ndarray) -> float:
+        """Return mode . K^-1 mode, infinite with a change of sign where the tangent K is singular along the mode."""
+        free = self.system.free_dofs
+        right = (self.weights * mode)[free]
+        return float(right @ factors.solve(right))
+
+    def _solve(self, y: np.ndarray, stresses: Stresses | None) -> tuple[np.ndarray, np.ndarray, Factorised]:
+        """Return the change of y that balances it at its load factor, the one with the load factor, and the factors."""
+        system, p, at = self.system, y[:-1], float(y[-1])
+        rest, free, held = np.zeros(len(p)), system.free_dofs, system.held_dofs
+        width = _SLOPE_WIDTH * self.load_scale
+        unbalanced, tangent = linearise(system, p, rest, rest, at, STATICS, stresses)
+        factors = tangent.factorised(system.turned)
+        balance, along = np.zeros(len(y)), np.zeros(len(y))
+        balance[free], _ = factors.correction(unbalanced[free])
+        along[free] = factors.solve(-load_slope(system, p, at, width)[free])
+        along[held] = (system.held_values(at + width) - system.held_values(at - width)) / (2.0 * width)
+        along[-1] = 1.0
+        if not (np.isfinite(balance).all() and np.isfinite(along).all()):
+            raise LinAlgError("the tangent is singular")
+        return balance, along, factors
+
+
+def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:
+    """Return the continuation of a model and its first point, that of the equilibrium p, towards larger loads.
+
+    A soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
+    prescribed motions are that large. The load scale lies between it and many times it, where possible so that the
+    tangent of the first point is as much movement as load. Neither depends on the size of the loads or on units.
+    Raises LinAlgError where the tangent is singular, ConvergenceError where loads are too large or small to go on.
+    """
+    plain = Continuation(system, newton, 1.0, 1.0)
+    rest = np.zeros(len(p))
+    loses_digits(system, p, load_factor)
+    _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
+    factors = tangent.factorised(system.turned)
+    mode = plain.softest(factors)
+    stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
+    # an amplitude may start with slope zero: then what it does up to load factor 1 tells
+    per_load = _reach(plain, p, load_factor, stiffness, 1e-6) or _reach(plain, p, load_factor, stiffness, 1.0)
+    soft = 1.0 / per_load if per_load > 0.0 else 1.0
+    if not np.finfo(float).tiny <= soft * soft < np.inf:
+        raise ConvergenceError(
+            f"the loads would move this model by {per_load:.1g} times its size, which double precision cannot square; "
+            "take loads closer to its stiffness"
+        )
+    growing = np.zeros(len(p) + 1)
+    growing[-1] = 1.0
+    y = np.append(p, load_factor)
+    moving = Continuation(system, newton, soft, soft).linearised(y, growing).tangent[-1] / soft
+    balanced = soft * moving / np.sqrt(max(1.0 - moving**2, _LARGEST_RATIO**-2))
+    line = Continuation(system, newton, max(balanced, soft), _LOAD_STEP * soft)
+    return line, line.linearised(y, growing)
+
+
+def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:
+    """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled."""
+    system, rest, scale = line.system, np.zeros(len(p)), line.scale[:-1]
+    ends = load_factor, load_factor + width
+    forces = [residual(system, p, rest, rest, at)[system.free_dofs] for at in ends]
+    held = [system.held_values(at) / scale[system.held_dofs] for at in ends]
+    moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
+    return max(moved, float(np.max(np.abs(held[1] - held[0]), initial=0.0))) / width

@@ -1,0 +1,209 @@
+"""The path between two of its points, and the limit points there."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.solve.continuation.continuation import Continuation, PathPoint
+
+_SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
+_LEVEL = 1e-4  # slope of the load factor at a limit point, at most
+_DISTANCE = 5e-3  # of a part of a segment: samples are no closer to where another path crosses
+_TRIALS = 12
+_EVEN = 1e-6  # of products with a tangent from both sides: what they may differ by if it is symmetric
+
+
+class SegmentLostError(Exception):
+    """A point between two points of a path could not be found."""
+
+
+@dataclass(eq=False)
+class Segment:
+    """The path between two of its points, by the share x of the chord from one to the other.
+
+    turned: shares where the load factor has an extremum because another path crosses, filled by `limit_points`.
+    """
+
+    line: Continuation
+    before: PathPoint
+    after: PathPoint
+    found: dict[float, PathPoint] = field(default_factory=dict)
+    turned: list[float] = field(default_factory=list)
+    iterations: int = 0
+
+    def __post_init__(self) -> None:
+        self.found = {0.0: self.before, 1.0: self.after}
+        self.chord = self.after.y - self.before.y
+        squared = self.line.dot(self.chord, self.chord)
+        points = (self.before, self.after)
+        # slopes of the cubic through both points; along the chord they advance evenly
+        self.slopes = [point.tangent * squared / self.line.dot(point.tangent, self.chord) for point in points]
+
+    def at(self, x: float, normal: np.ndarray | None = None) -> PathPoint:
+        """Return the point of the path at a share x in [0, 1]; normal: of the plane it is sought in, if not the chord.
+
+        Raises SegmentLostError.
+        """
+        if x in self.found:
+            return self.found[x]
+        start = _cubic(x, self.before.y, self.after.y, *self.slopes)
+        corrected = self.line.correct(start, self._stresses(x), self.chord if normal is None else normal)
+        self.iterations += corrected.iterations
+        if not corrected.ended.good or self.line.length(corrected.y - start) > self.line.length(self.chord):
+            raise SegmentLostError(corrected.ended.value)
+        try:
+            point = self.line.linearised(corrected.y, self.chord)
+        except LinAlgError as error:
+            raise SegmentLostError("the tangent is singular") from error
+        if normal is None:
+            self.found[x] = point
+        return point
+
+    def critical(self, x: float) -> np.ndarray:
+        """Return y (n + 1,) at the share of a limit point. Raises SegmentLostError.
+
+        Interpolated where more than the load factor is critical and no equilibrium can be solved for.
+        """
+        if x in self.found:
+            return self.found[x].y
+        shares = self.beside(x, x, _DISTANCE, 0.0, 1.0)
+        return np.asarray(interpolation_weights(shares, x) @ [self.at(at).y for at in shares.tolist()])
+
+    def at_load(self, load_factor: float) -> PathPoint:
+        """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
+        ends = (self.before.y[-1], self.after.y[-1], *(slope[-1] for slope in self.slopes))
+        x = brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15)
+        load = np.zeros(len(self.chord))
+        load[-1] = 1.0
+        point = self.at(x, normal=load)
+        point.y[-1] = load_factor
+        return point
+
+    def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
+        """Return the cubic of the stress resultants; the slopes at the ends are those along the path."""
+        rest = np.zeros(len(self.chord))
+        now = [self.line.stresses(point.y, rest) for point in (self.before, self.after)]
+        ahead = [
+            self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)
+        ]
+        if now[0] is None or now[1] is None or ahead[0] is None or ahead[1] is None:
+            return None
+        return tuple(
+            _cubic(x, a, b, a_ahead - a, b_ahead - b)
+            for a, b, a_ahead, b_ahead in zip(now[0], now[1], ahead[0], ahead[1], strict=True)
+        )
+
+    def limit_points(self) -> list[float]:
+        """Return the shares x where the load factor has an extremum, in order. Raises SegmentLostError.
+
+        Where another path crosses at an extremum, it is a bifurcation: its share goes to `turned`.
+        """
+        stops = [0.0, 1.0]
+        hidden = self._hidden_extremum()
+        if hidden is not None:
+            stops.insert(1, hidden)
+        found: list[float] = []
+        self.turned = []
+        for start, end in pairwise(stops):
+            left, right = self.at(start).tangent[-1], self.at(end).tangent[-1]
+            if left * right < 0.0:
+                x, crossed = self._extremum(start, end)
+                (self.turned if crossed else found).append(x)
+            elif right == 0.0 != left:
+                found.append(end)
+        return found
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
+        if self.line.system.symmetric:
+            return True
+        weights, factors = self.line.weights[self.line.system.free_dofs], self.before.factors
+        a, b = weights * np.random.default_rng(0).standard_normal((2, len(weights)))
+        one, other = a @ factors.solve(b), b @ factors.solve(a)
+        return bool(abs(one - other) < _EVEN * max(abs(one), abs(other)))
+
+    def change(self, start: float, end: float) -> int:
+        """Return how many eigenvalues of the tangent more are negative at one share than at another.
+
+        Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 where it differs.
+        """
+        change = self.at(end).negative_pivots - self.at(start).negative_pivots
+        return change if self.symmetric else change % 2
+
+    def beside(self, low: float, high: float, distance: float, start: float, end: float) -> np.ndarray:
+        """Return shares in [start, end] that keep a distance from [low, high], two on each side if there is room."""
+        steps = distance * np.arange(1.0, 5.0)
+        left, right = low - steps, high + steps
+        left, right = left[left >= start], right[right <= end]
+        on_left = max(2, 4 - len(right))
+        return np.sort(np.append(left[:on_left], right[: max(2, 4 - len(left))]))
+
+    def _extremum(self, start: float, end: float) -> tuple[float, bool]:
+        """Return the share between two others where the load factor has its extremum, and whether a path crosses there.
+
+        A limit point changes the sign of one pivot. Where none changes, stiffness vanishes on both sides of the point
+        as on a branch that comes back to the path it left: equilibria beside it are found, at it they are not.
+        """
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
+        if abs(self.change(start, end)) != 1:
+            x, samples = self._extremum_between(start, end)
+            start, end = max(samples[samples < x], default=start), min(samples[samples > x], default=end)
+            changed = self.change(start, end)
+            if abs(changed) != 1:
+                return x, changed == 0
+        x = float(brentq(lambda x: self.at(x).tangent[-1], start, end, xtol=_SHARPNESS, rtol=1e-9))
+        if abs(self.at(x).tangent[-1]) > _LEVEL * self.line.load_scale:
+            raise SegmentLostError("the step leads to another path")
+        return x, False
+
+    def _extremum_between(self, start: float, end: float) -> tuple[float, np.ndarray]:
+        """Return the share where the slope of the load factor vanishes, from shares at a distance, and those."""
+        samples = np.array([start, end])
+        x = _zero([self.at(at).tangent[-1] for at in samples], samples)
+        for _ in range(_TRIALS):
+            samples = self.beside(x, x, _DISTANCE * (end - start), start, end)
+            before, x = x, _zero([self.at(at).tangent[-1] for at in samples], samples)
+            if not start <= x <= end:
+                break
+            if abs(x - before) < 0.1 * _DISTANCE * (end - start):
+                return x, samples
+        raise SegmentLostError("the load factor has an extremum that was not located")
+
+    def _hidden_extremum(self) -> float | None:
+        """Return where the slope of the load factor may have changed its sign twice, after the cubic."""
+        left, right = self.slopes[0][-1], self.slopes[1][-1]
+        rise = self.chord[-1]
+        curvature = 6.0 * (left + right - 2.0 * rise)
+        if left * right <= 0.0 or curvature == 0.0:
+            return None
+        x = (2.0 * (2.0 * left + right) - 6.0 * rise) / curvature
+        if not 0.0 < x < 1.0:
+            return None
+        slope = left + x * (6.0 * rise - 4.0 * left - 2.0 * right) + x**2 * 0.5 * curvature
+        return float(x) if slope * left < 0.0 else None
+
+
+def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:
+    """Cubic on [0, 1] with values a, b and slopes at its ends."""
+    y = 1.0 - x
+    return y * y * (1.0 + 2.0 * x) * a + x * x * (3.0 - 2.0 * x) * b + x * y * (y * a_slope - x * b_slope)
+
+
+def interpolation_weights(at: np.ndarray, x: float | np.ndarray) -> np.ndarray:
+    """Return the weights (..., k) of the values at `at` (k,) that make up the values at x (...) of their polynomial."""
+    itself = np.eye(len(at), dtype=bool)
+    above = np.where(itself, 1.0, np.asarray(x)[..., None, None] - at)
+    return np.asarray(np.prod(above / np.where(itself, 1.0, at[:, None] - at), axis=-1))
+
+
+def _zero(values: list[float], at: np.ndarray) -> float:
+    """Return where the inverse of the polynomial through values at `at` is zero."""
+    return float(interpolation_weights(np.array(values), 0.0) @ at)

@@ -1,0 +1,178 @@
+"""Bifurcations that lie close together, interpolated between samples around them and proved by counts of pivots."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.solve.continuation.condensed import Condensed
+from beamfem.solve.continuation.continuation import Continuation
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
+
+_IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
+_LEFT = 4.0  # how much more than what is left unbalanced may have bent it
+_RESOLVED = 1e-2  # of the distance of samples: bifurcations that are closer may be one
+_ONE = 1e-7  # of the distance of samples: bifurcations that are closer are one, whatever counts say
+_WIDTH = 1e-3  # of the distance of samples: for slopes of interpolated values
+_ALONG = 1e-3  # of a path: what may lie outside of the modes it goes along
+_BESIDE = 5e-3  # of a segment: samples around a turning point
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """A bifurcation: its share x of the segment, y (n + 1,), the tangent of the path and the unit mode."""
+
+    share: float
+    y: np.ndarray
+    tangent: np.ndarray
+    mode: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Shares (s,) of a segment around bifurcations at a distance, the tangents condensed there, one share before them.
+
+    change: how many eigenvalues of the tangent more are negative behind them.
+    """
+
+    segment: Segment
+    shares: np.ndarray
+    condensed: list[Condensed]
+    before: float
+    change: int
+    distance: float
+
+    @cached_property
+    def y(self) -> np.ndarray:
+        return np.array([self.segment.at(x).y for x in self.shares])
+
+    @cached_property
+    def tangents(self) -> np.ndarray:
+        return np.array([self.segment.at(x).tangent for x in self.shares])
+
+    @cached_property
+    def shapes(self) -> np.ndarray:
+        return np.array([one.shapes for one in self.condensed])
+
+    def stiffness(self, x: float) -> np.ndarray:
+        """Return the condensed tangent (k, k) at a share."""
+        return self.at(x, np.array([one.stiffness for one in self.condensed]))
+
+    def at(self, x: float, values: np.ndarray) -> np.ndarray:
+        """Return values (s, ...) at the samples, interpolated at a share."""
+        return np.tensordot(interpolation_weights(self.shares, x), values, axes=1)
+
+
+def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
+    """Return the bifurcations at shares (k,), ascending, where condensed tangents are singular.
+
+    Between any two of them the count of negative pivots must have changed by as many as lie before; where they are too
+    close for that, they are one place with as many modes. Raises SegmentLostError.
+    """
+    groups = [[float(roots[0])]]
+    for number, (left, right) in enumerate(pairwise(roots.tolist()), 1):
+        if samples.segment.symmetric and not _apart(samples, left, right, number):
+            groups[-1].append(right)
+        else:
+            groups.append([right])
+    return [found for group in groups for found in _at_one_place(samples, float(np.mean(group)), len(group))]
+
+
+def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
+    """Tell whether the count between two shares shows that so many eigenvalues have changed their sign before.
+
+    False where it does not because they are too close to be told apart. Raises SegmentLostError.
+    """
+    x, apart = 0.5 * (left + right), right - left
+    if apart < _ONE * samples.distance:
+        return False
+    line, y = samples.segment.line, samples.at(x, samples.y)
+    rest = np.zeros(len(y) - 1)
+    tangent = linearise(line.system, y[:-1], rest, rest, float(y[-1]), STATICS)[1]
+    count = tangent.factorised(line.system.turned).negative_pivots
+    if count == samples.segment.at(samples.before).negative_pivots + passed * np.sign(samples.change):
+        return True
+    if apart > _RESOLVED * samples.distance:
+        raise SegmentLostError("the tangent is not singular where its modes lose their stiffness")
+    return False
+
+
+def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
+    """Return the bifurcation at a share with each of `count` modes, orthonormal. Raises SegmentLostError."""
+    line = samples.segment.line
+    values, vectors = np.linalg.eigh(samples.stiffness(x))
+    lost = vectors[:, np.argsort(np.abs(values), kind="stable")[:count]]
+    width = _WIDTH * samples.distance
+    slope = (samples.stiffness(x + width) - samples.stiffness(x - width)) / (2.0 * width)
+    # modes that become soft together differ in how fast they do
+    rates, mixed = np.linalg.eigh(lost.T @ slope @ lost)
+    modes = _orthonormal(line, (lost @ mixed).T @ samples.at(x, samples.shapes))
+    y, tangent = samples.at(x, samples.y), samples.at(x, samples.tangents)
+    for mode, rate in zip(modes, rates, strict=True):
+        _require_crossing(samples, x, mode, rate)
+    return [Crossing(x, y, tangent, mode) for mode in modes]
+
+
+def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.ndarray]:
+    """Return modes (k, n + 1) of length 1, orthogonal to those before, their largest coordinates positive."""
+    result: list[np.ndarray] = []
+    for mode in modes:
+        for other in result:
+            mode = mode - line.dot(mode, other) * other
+        largest = mode[np.argmax(np.abs(mode) / line.scale)]
+        result.append(mode / np.copysign(line.length(mode), largest))
+    return result
+
+
+def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float) -> None:
+    """Raise SegmentLostError where the way of a path along the mode is a hyperbola: it bends aside, it is not crossed.
+
+    rate: of the stiffness of the mode over the share. Forces that were left unbalanced bend the path aside as well.
+    """
+    line = samples.segment.line
+    shares = (samples.shares - x) / samples.distance
+    basis = np.stack([np.ones_like(shares), shares, 1.0 / shares], axis=1)
+    aside = [line.dot(mode, y) for y in samples.y]
+    bend = np.linalg.lstsq(basis, np.array(aside))[0][-1]
+    rest = np.zeros(len(mode) - 1)
+    left = max(abs(mode[:-1] @ residual(line.system, y[:-1], rest, rest, float(y[-1]))) for y in samples.y)
+    if abs(bend) > max(_IMPERFECT, _LEFT * left / (abs(rate) * samples.distance)):
+        raise SegmentLostError("the step leads to another path")
+
+
+def turning(segment: Segment, x: float) -> Crossing:
+    """Return the bifurcation at a share where the load factor turns because another path crosses.
+
+    There the path goes along the mode. Raises SegmentLostError.
+    """
+    shares = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    weights = interpolation_weights(shares, x)
+    points = [segment.at(at) for at in shares.tolist()]
+    tangent = weights @ [point.tangent for point in points]
+    tangent /= segment.line.length(tangent)
+    mode = np.append(tangent[:-1], 0.0)
+    largest = mode[np.argmax(np.abs(mode) / segment.line.scale)]
+    return Crossing(x, weights @ [point.y for point in points], tangent, mode / np.copysign(1.0, largest))
+
+
+def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:
+    """Return the bifurcations around a limit point at a share x, of which one or one mode is the limit point itself.
+
+    There the path goes along the mode. Raises SegmentLostError.
+    """
+    line = segment.line
+    shares = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    along = interpolation_weights(shares, x) @ [segment.at(at).tangent for at in shares.tolist()]
+    along[-1] = 0.0
+    nearest = sorted(found, key=lambda one: abs(one.share - x))
+    for count in range(1, len(nearest) + 1):
+        modes = np.array(_orthonormal(line, [one.mode for one in nearest[:count]]))
+        parts = modes @ (line.weights * along)
+        if line.length(along - parts @ modes) < _ALONG * line.length(along):
+            others = _orthonormal(line, np.linalg.svd(parts[None])[2][1:] @ modes)
+            y, tangent = segment.critical(x), nearest[0].tangent
+            return [*nearest[count:], *(Crossing(x, y, tangent, mode) for mode in others)]
+    raise SegmentLostError("the path does not go along a mode at a limit point")

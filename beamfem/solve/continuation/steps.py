@@ -1,0 +1,116 @@
+"""Steps along an equilibrium path: predicted, corrected, refused or accepted, and how long the next one is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.solve.continuation.bifurcations import Crossing, bifurcations
+from beamfem.solve.continuation.continuation import Continuation, Corrected, PathPoint
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
+
+_SMALLEST = 1e-8
+_LARGEST = 0.5
+_LEAST_SHARE = 0.1  # of a movement that is not translation: of less, that much is taken to bound it
+_LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
+_WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
+_LARGEST_TURN = 0.5
+_LARGEST_HELD_TURN = 1.0  # [rad] of a support in a step
+_LARGEST_CORRECTION = 0.5  # of the step
+_FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
+_WANTED_ITERATIONS = 8
+_LARGEST_INCREASE = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """An accepted step: the segment, the shares of its limit points, its bifurcations, and the length of the next."""
+
+    segment: Segment
+    limits: list[float]
+    crossings: list[Crossing]
+    iterations: int
+    next_size: float
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A step that was not accepted: why, and after how many iterations."""
+
+    reason: str
+    iterations: int
+
+
+def longest_step(line: Continuation, point: PathPoint) -> float:
+    """Return the longest step from a point.
+
+    It bounds the movement, the change of the load factor and the turn of a support, of which gradients elsewhere on the
+    beam cannot tell a full one from none. A structure on soft springs that drifts as a whole may go as far as its load
+    grows: translations are no other path, however long.
+    """
+    load_share = abs(float(point.tangent[-1])) / line.load_scale
+    moving = np.sqrt(max(1.0 - load_share**2, 0.0)) * _deforming(line, point.tangent)
+    load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
+    size = float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
+    before, slope = point.load_factor, float(point.tangent[-1])
+    while line.system.largest_turn(before, before + size * slope) > _LARGEST_HELD_TURN and size > _SMALLEST:
+        size *= 0.5
+    return size
+
+
+def _deforming(line: Continuation, tangent: np.ndarray) -> float:
+    """Return how much of the movement along a tangent bounds a step: all, but where nearly all of it is translation."""
+    system = line.system
+    change = tangent[:-1] / system.scale
+    beside = np.max(np.abs(change[~system.positions]), initial=0.0)
+    largest = max(float(np.max(np.abs(change), initial=0.0)), np.finfo(float).tiny)
+    nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
+    spread = 0.5 * float(np.ptp(change[nodes], axis=0).max())
+    return float(min(max(beside, spread) / (_LEAST_SHARE * largest), 1.0))
+
+
+def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
+    """Tell whether a step would be lost in the digits of the point."""
+    return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
+
+
+def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
+    """Return the step of a length from a point with what lies in it, or why it is refused."""
+    change = size * point.tangent
+    farthest = _FARTHEST * size
+    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent), farthest)
+    if not corrected.ended.good:
+        return Refused(corrected.ended.value, corrected.iterations)
+    if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:
+        return Refused("the equilibrium beside the end of the step is too far away", corrected.iterations)
+    try:
+        new = line.linearised(corrected.y, point.tangent)
+    except LinAlgError:
+        return Refused("the tangent is singular", corrected.iterations)
+    if _crosses_over(line, (point, new), corrected):
+        return Refused("another path lies between the start and the end of the step", corrected.iterations)
+    turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
+    if turn > _LARGEST_TURN:
+        return Refused("the path turns too sharply", corrected.iterations)
+    segment = Segment(line, point, new)
+    try:
+        limits = segment.limit_points()
+        crossings = bifurcations(segment, limits)
+    except SegmentLostError as error:
+        return Refused(f"a critical point was not found: {error}", corrected.iterations + segment.iterations)
+    increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
+    iterations = corrected.iterations + segment.iterations
+    return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))
+
+
+def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:
+    """Tell whether the correction went through states of another count of negative pivots than those of both ends.
+
+    So it does from one side of an imperfect bifurcation to the branch on the other side. Where loads follow, only the
+    sign of the determinant counts, which an odd number of negative pivots makes negative.
+    """
+    counts = [end.negative_pivots for end in ends]
+    fewest, most = corrected.negative_pivots
+    if line.system.symmetric:
+        return fewest < min(counts) or most > max(counts)
+    return fewest == most and counts[0] % 2 == counts[1] % 2 != most % 2

@@ -1,0 +1,1 @@
+"""Small vibration about an equilibrium."""

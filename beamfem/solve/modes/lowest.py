@@ -1,0 +1,116 @@
+"""The lowest eigenpairs of K phi = lambda M phi: none is left out, and slender beams keep their digits."""
+
+import numpy as np
+
+from beamfem.errors import ConvergenceError
+from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
+from beamfem.linalg.lapack import LinAlgError, eigh
+from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
+from beamfem.solve.modes.pencil import Pencil
+
+_CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be counted apart
+_SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
+_SPREAD = 1e6  # of the sizes of eigenvalues that are found together from their stiffness
+_SEARCHES = 8
+_SOLVES = 2  # for vectors far above the lowest: each leaves some hundredth of what is wrong of them
+
+
+def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
+    """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
+
+    rigid (unknown, r): M-orthonormal vectors whose lambda is zero, which the result does not hold; shift: below all,
+    where one is known. Those below a gap behind the last are counted by the pivots there. Raises ConvergenceError where
+    some were missed.
+    """
+    n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
+    if count == 0:
+        return nothing_known(n)
+    if shift is None:
+        shift = pencil.shift(rigid.shape[1])
+    factors = pencil.shifted(shift).factorised(pencil.system.turned)
+    wanted = min(count + _SPARE, available)
+    known = rigid
+    correction = np.zeros_like(pencil.p)
+    correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
+    found, missing = nothing_known(n), wanted
+    for _ in range(_SEARCHES):
+        more = largest_pairs(pencil.mass, factors, min(missing, available - len(found[0])), known)
+        found = _sorted(np.append(found[0], shift + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *found), correction)
+        if len(squares) == available:
+            return squares, vectors
+        below = count + int(np.argmax(np.diff(squares[count - 1 :])))
+        cut = 0.5 * (squares[below - 1] + squares[below])
+        if squares[below] - squares[below - 1] <= _CLUSTER * abs(cut):
+            missing = wanted
+        else:
+            missing = pencil.below(cut) - below - (rigid.shape[1] if cut > 0.0 else 0)
+            if missing == 0:
+                return squares[:below], vectors[:, :below]
+            missing = max(missing, _SPARE)
+        known = np.column_stack([known, more[1]])
+    raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
+
+
+def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray) -> Pairs:
+    """Return the vectors (unknown, m) of values far above the lowest after further solves, at a shift below them.
+
+    The factors that found them bring the round-off of the lowest, which for them is as large as the values lie apart.
+    """
+    first, *others = _alike(squares)
+    sharp = vectors[:, first]
+    for part in others:
+        factors = pencil.shifted(0.5 * squares[part.start]).factorised(pencil.system.turned)
+        own = _besides(pencil, sharp, vectors[:, part])
+        for _ in range(_SOLVES):
+            own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
+            own = _besides(pencil, sharp, own)
+        sharp = np.column_stack([sharp, own])
+    return squares, sharp
+
+
+def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) without their shares of known ones (n, k), and with x^T M x = 1."""
+    vectors = vectors - known @ (known.T @ (pencil.mass @ vectors))
+    return np.asarray(vectors / np.sqrt((vectors * (pencil.mass @ vectors)).sum(axis=0)))
+
+
+def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correction: np.ndarray) -> Pairs:
+    """Return eigenpairs anew from the stiffness of their vectors, which has not the round-off of assembled tangents.
+
+    Vectors of similar size are taken together (Rayleigh and Ritz), as they may be mixed where values are close.
+    """
+    modes = np.zeros((len(squares), len(pencil.p)))
+    modes[:, pencil.system.free_dofs] = vectors.T
+    stiffness = stiffness_of_modes(pencil.system, pencil.p, pencil.load_factor, modes, correction)
+    mass = vectors.T @ (pencil.mass @ vectors)
+    parts = []
+    for part in _alike(squares):
+        try:
+            values, mixed = eigh(stiffness[part, part], mass[part, part])
+        except LinAlgError:
+            raise ConvergenceError(
+                "the tangent of so slender a model has no digits left, and modes cannot be told from one another"
+            ) from None
+        parts.append((values, vectors[:, part] @ mixed))
+    return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([found for _, found in parts]))
+
+
+def _alike(squares: np.ndarray) -> list[slice]:
+    """Return parts of ascending values in which sizes do not spread too far, cut at gaps."""
+    first, result = 0, []
+    while first < len(squares):
+        far = np.flatnonzero(squares[first:] > _SPREAD * np.abs(squares[: first + 1]).max())
+        last = len(squares)
+        if len(far):
+            inside = np.arange(first + 1, first + int(far[0]) + 1)
+            shares = np.abs(squares[inside - 1]) / squares[inside]
+            last = int(inside[np.argmin(shares)])
+        result.append(slice(first, last))
+        first = last
+    return result
+
+
+def _sorted(values: np.ndarray, vectors: np.ndarray) -> Pairs:
+    order = np.argsort(values, kind="stable")
+    return values[order], vectors[:, order]

@@ -1,0 +1,53 @@
+"""The stiffness of modes, free of the round-off of an assembled tangent.
+
+Entries of the tangent are as large as E A / l times squared slopes; of a soft mode of a slender beam their sum is so
+much smaller that it drowns in their round-off. Strains of the mode first, then their energy, lose nothing. Likewise
+stresses of a state carry the round-off of its positions, unless the correction that would balance them, too small to
+be added to the positions, is added to their strains.
+"""
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
+from beamfem.assembly.points import free_sheet, resultants
+from beamfem.assembly.system import System
+from beamfem.solve.modes.pencil import UNTURNED
+
+
+def stiffness_of_modes(
+    system: System, p: np.ndarray, load_factor: float, modes: np.ndarray, correction: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the symmetric part (m, m) of modes K modes^T for changes (m, n) of the coordinates.
+
+    K: tangent in the state p (n,), sum B^T C B over the quadrature points and what stresses, springs and loads add;
+    correction (n,): what is still missing of the state.
+    """
+    rest, count = np.zeros(len(p)), len(modes)
+    result = np.zeros((count, count))
+    for block in system.blocks:
+        classes, points, measures, _ = block.stiffness.shape
+        unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
+        plain = free_sheet(block._replace(stiffness=unit), len(p))
+        before = resultants(plain, p, rest)
+        strains = np.array([resultants(plain, p, mode) - before for mode in modes]).reshape(count, *before.shape)
+        stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
+        result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
+    stresses = stresses_of(system, p, rest if correction is None else correction)
+    free = modes[:, system.free_dofs]
+    result += free @ (weak_stiffness(system, p, load_factor, stresses) @ free.T)
+    return np.asarray(0.5 * (result + result.T))
+
+
+def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants of a state, of each block (ne, nq, ns): none at all in the reference."""
+    if np.array_equal(p, system.reference):
+        return tuple(np.zeros_like(stresses) for stresses in system.assembler().stresses)
+    return predicted_stresses(system, p, correction)
+
+
+def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:
+    """Return the tangent (unknown, unknown) without sum B^T C B: what stresses, springs and loads add."""
+    rest = np.zeros(len(p))
+    weak = tuple(block._replace(stiffness=np.zeros_like(block.stiffness)) for block in system.blocks)
+    return linearise(system, p, rest, rest, load_factor, STATICS, stresses, weak)[1].sparse(UNTURNED)

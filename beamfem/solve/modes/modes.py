@@ -1,0 +1,159 @@
+"""Free vibration about a state."""
+
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem.assembly.system import system_of
+from beamfem.errors import InputError
+from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
+from beamfem.model.model import Model
+from beamfem.registry import offered
+from beamfem.results.locking import frequency_warnings
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
+from beamfem.solve.modes.lowest import lowest_pairs
+from beamfem.solve.modes.pencil import UNTURNED, Pencil
+from beamfem.solve.modes.rigid import unresisted
+from beamfem.solve.modes.shapes import largest_translation, upright
+from beamfem.solve.start.balance import left_over
+from beamfem.solve.start.memory import require_room
+from beamfem.solve.start.start_state import resting_state
+from beamfem.validation import count as whole_number
+from beamfem.validation import number_below, positive, squared
+
+_REAL = 1e-8  # imaginary parts of lambda below this share are round-off
+_SPARE = 4  # eigenvalues found beyond those asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes of small vibration about `state`: p(t) = p + Re(phi exp(s t)), s = growth + 2 pi i frequency.
+
+    frequencies (count,) [Hz]: first the rigid ones, exactly 0, then ascending; modes (count, n): shapes phi over all
+    coordinates, phi^T M phi = 1, complex only where follower loads make the tangent unsymmetric; growth (count,) [1/s]:
+    0 where the state is stable, > 0 for divergence (frequency 0) and flutter; rigid: for each rigid mode what it moves.
+    """
+
+    model: Model
+    state: State
+    frequencies: np.ndarray
+    growth: np.ndarray
+    modes: np.ndarray
+    rigid: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        listed = ", ".join(f"{value:.6g}" for value in self.frequencies[:12])
+        return f"Modes({listed}{' ...' if len(self) > 12 else ''} Hz)"
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """Frequencies [Hz] without those of the rigid modes."""
+        return self.frequencies[len(self.rigid) :]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the elements say against the digits of these frequencies, in sentences; empty if nothing."""
+        return frequency_warnings(self.state, self.modes[len(self.rigid) :])
+
+    def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
+        """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
+
+        Of a divergence, the time in which it grows by e.
+
+        mode: its row; amplitude [m] of the largest displacement of a node, by default a tenth of the longest beam.
+        Exact while the amplitude is small.
+        """
+        mode = number_below("mode", mode, len(self))
+        if whole_number("frames", frames) < 2:
+            raise InputError("frames must be at least 2")
+        require_room(frames, self.model.size)
+        if amplitude is None:
+            amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
+        amplitude = squared(positive)("amplitude", amplitude)
+        shape = amplitude / largest_translation(self.model, self.state.p, self.modes[mode]) * self.modes[mode]
+        frequency, growth = self.frequencies[mode], self.growth[mode]
+        at = np.linspace(0.0, 1.0 / (frequency or abs(growth) or 1.0), frames)
+        rate = growth + 2j * np.pi * frequency
+        if rate == 0.0:
+            p, v, a = (np.outer(weight, np.real(shape)) for weight in (at, np.ones(frames), np.zeros(frames)))
+        else:
+            moved = np.outer(np.exp(rate * at), shape)
+            p, v, a = (np.real(rate**order * moved) for order in range(3))
+        statistics = Statistics(0, frames - 1, 0, "a mode of small vibration")
+        loaded = np.full(frames, self.state.at)
+        return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
+
+    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """Draw the modes, each with its frequency; return the figure."""
+        return offered(Modes.plot)(self, path, **options)
+
+
+def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
+    """Return the `count` lowest modes of K phi = omega^2 M phi, those of rigid motions included.
+
+    about: the static equilibrium to vibrate about, whose loads and stresses then count (prestress, gravity): a state,
+    or a solution for its last state; it may come from a model with other supports. By default the reference at load
+    factor 0. K: tangent stiffness with the loads at the state's load factor, M: mass, both there.
+    Raises InputError; ConvergenceError where modes were missed.
+    """
+    whole_number("count", count)
+    system = system_of(model, static=True)
+    p, load_factor = resting_state(system, about)
+    unknown = len(system.free_dofs)
+    if count > unknown:
+        raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
+    pencil = Pencil(system, p, load_factor)
+    left = left_over(system, p, load_factor)
+    if left > 0.0:
+        raise InputError(
+            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
+            "is left over. Give about= a state of solve_static with the same loads"
+        )
+    if count > pencil.size:
+        raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")
+    with digits_for("modes"):
+        rigid, words = unresisted(pencil)
+        missing, free = max(count - len(rigid), 0), rigid[:, system.free_dofs].T
+        squares, vectors = (lowest_pairs if pencil.symmetric else _general)(pencil, missing, free)
+    rates = _rates(squares)
+    order = np.lexsort((-rates.real, rates.imag))
+    shapes = np.zeros((missing, model.size), dtype=vectors.dtype)
+    shapes[:, system.free_dofs] = vectors[:, order].T[:missing]
+    shapes = np.concatenate([rigid[:count], shapes])
+    rates = np.append(np.zeros(len(rigid)), rates[order])[:count]
+    rest_state = State(p, np.zeros_like(p), np.zeros_like(p), load_factor, model)
+    frequencies = rates.imag / (2.0 * np.pi)
+    return Modes(model, rest_state, frequencies, rates.real, upright(shapes), words[:count])
+
+
+def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
+    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric; see `lowest_pairs`."""
+    if count == 0:
+        return nothing_known(pencil.size)
+    shift = pencil.shift(rigid.shape[1])
+    tangent = pencil.shifted(shift)
+    factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
+    known = np.full(rigid.shape[1], -1.0 / shift), rigid
+    reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)
+    found = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
+    vectors = vectors[:, found]
+    sizes = np.real((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))
+    return shift + 1.0 / reciprocal[found], vectors / np.sqrt(sizes)
+
+
+def _rates(squares: np.ndarray) -> np.ndarray:
+    """Return s = growth + i omega (m,) with s^2 = -omega^2 and omega >= 0.
+
+    Of a conjugate pair of omega^2, one is the motion that grows and the other the one that decays.
+    """
+    squares = np.asarray(squares, dtype=complex)
+    real = np.abs(squares.imag) <= _REAL * np.abs(squares)
+    squares = np.where(real, squares.real, squares)
+    rates = np.sqrt(-squares)
+    return np.where(rates.imag < 0.0, -rates, rates) + 0.0

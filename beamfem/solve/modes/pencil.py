@@ -1,0 +1,96 @@
+"""Small vibration about a state: stiffness and mass of the unknown coordinates, counts of eigenvalues."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
+from beamfem.assembly.system import System
+from beamfem.linalg.tangent import Tangent
+
+# turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
+UNTURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+_RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
+_AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
+_ASYMMETRY = 1e-12
+
+
+def is_symmetric(matrix: csr_array) -> bool:
+    """Tell whether a tangent is symmetric to round-off, which the diagonal measures."""
+    size = np.sqrt(np.abs(matrix.diagonal()))
+    difference = (matrix - matrix.T).tocoo()
+    scale = size[difference.row] * size[difference.col]
+    return bool(np.all(np.abs(difference.data) <= _ASYMMETRY * np.maximum(scale, 1e-3 * size.max() ** 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Pencil:
+    """K phi = lambda M phi about the state p (n,) at a load factor."""
+
+    system: System
+    p: np.ndarray
+    load_factor: float
+
+    @cached_property
+    def unbalanced(self) -> np.ndarray:
+        """Residual (unknown,) that Newton's method has left."""
+        rest = np.zeros(len(self.p))
+        return residual(self.system, self.p, rest, rest, self.load_factor)[self.system.free_dofs]
+
+    def shifted(self, shift: float) -> Tangent:
+        """Return K - shift M."""
+        return self._tangent((1.0, 0.0, -shift))
+
+    def _tangent(self, coefficients: tuple[float, float, float]) -> Tangent:
+        rest = np.zeros(len(self.p))
+        return linearise(self.system, self.p, rest, rest, self.load_factor, coefficients)[1]
+
+    @cached_property
+    def mass(self) -> csr_array:
+        return self._tangent(INERTIA).sparse(UNTURNED)
+
+    @cached_property
+    def stiffness(self) -> csr_array:
+        return self._tangent(STATICS).sparse(UNTURNED)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        return is_symmetric(self.stiffness)
+
+    @cached_property
+    def size(self) -> int:
+        """How many modes there are: inclined rollers hold one of their two coordinates each."""
+        return self.mass.shape[0] - len(self.system.turned[0])
+
+    def below(self, value: float) -> int:
+        """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
+        return self.shifted(value).factorised(self.system.turned).negative_pivots
+
+    def shift(self, rigid: int) -> float:
+        """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.
+
+        rigid: how many are zero; without any, zero itself is such a shift of a stable state.
+        """
+        if rigid == 0 and self.symmetric and self.below(0.0) == 0:
+            return 0.0
+        high = np.log(4.0 * float(np.max(np.abs(self.stiffness.diagonal()) / self.mass.diagonal())))
+        low = high - _RANGE
+        while high - low > np.log(4.0):
+            middle = 0.5 * (low + high)
+            size = np.exp(middle)
+            near = self.below(size) - (self.below(-size) if self.symmetric else 0)
+            low, high = (low, middle) if near > rigid else (middle, high)
+        shift = -float(np.exp(high))
+        while self.symmetric and not self.clear_of(shift):
+            shift *= 4.0
+        return shift
+
+    def clear_of(self, shift: float) -> bool:
+        """Tell whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
+
+        What is at an eigenvalue is below it or above by round-off, and its factors lose the others: stiffness is odd in
+        the load about a critical point, so that eigenvalues on one side of it are where a shift for the other is.
+        """
+        return self.below(_AWAY * shift) == 0

@@ -1,0 +1,106 @@
+"""Motion in time."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from beamfem.assembly.compiled import tell_of_compilation
+from beamfem.assembly.rigid_velocity import RigidVelocity
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.model import Model
+from beamfem.model.turns import turning_pairs
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics, Status
+from beamfem.results.turns import first_turns
+from beamfem.solve.motion.initial_velocity import start_velocity
+from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.march import ITERATIONS, Last, Record, initial_acceleration, march, new_statistics
+from beamfem.solve.motion.prescribed_motion import prescribed_motion
+from beamfem.solve.motion.time_steps import SIDE, stretches
+from beamfem.solve.motion.unresolved import courses, name_unresolved
+from beamfem.solve.start.interrupted import kept
+from beamfem.solve.start.memory import require_memory
+from beamfem.solve.start.start_state import start_state
+from beamfem.solve.start.transfer import transferred_turns
+from beamfem.validation import count, positive, shown
+
+
+def simulate(
+    model: Model,
+    duration: float,
+    step: float,
+    integrator: GeneralizedAlpha | None = None,
+    start: State | None = None,
+    velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
+    save_every: int = 1,
+) -> Solution:
+    """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
+
+    start: a state to start from, such as the last of a static solution; velocity: initial velocity field;
+    save_every: keep each so many-th step, and the last.
+    Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails. Any other
+    exception on the way, such as KeyboardInterrupt, gets the states so far as its `solution` as well.
+    """
+    duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
+    if step > duration:
+        raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
+    if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
+        raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {shown(integrator)}")
+    system = system_of(model, static=False)
+    tell_of_compilation()
+    require_memory(model.size, duration, step, save_every)
+    integrator = integrator or GeneralizedAlpha()
+    times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
+    acting = courses(system)
+    parts = stretches(times, [course for course in acting if course.amplitude])
+    ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
+    held = prescribed_motion(system, ends)
+    unresolved = name_unresolved(acting, ends, SIDE * step)
+    state = np.zeros((4, model.size))
+    state[0] = start_state(system, start)
+    state[1] = start_velocity(system, state[0], velocity, start)
+    state[:3, system.held_dofs] = held[0]
+    for dof, normal in system.inclined:
+        pair = slice(dof, dof + 2)
+        state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
+        state[1, pair] -= normal * (normal @ state[1, pair])
+    state[2] = initial_acceleration(system, state, parts[0].loads_from)
+    state[3] = state[2]
+    rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)
+    table = np.empty((rows, 3, model.size))
+    record = Record(table, save_every, new_statistics(), pairs, np.empty((rows, len(pairs))))
+    near = transferred_turns(start, model, "start")
+    record.states[0], record.turned[0] = state[:3], first_turns(model, state[0], near)
+    further = len(ends) - len(times)
+    last = Last((0, state[:3].copy(), record.turned[0].copy()))
+    with kept(lambda: _solution(system, times, record, last, further, unresolved)):
+        failed = march(system, integrator, parts, held, state, record, last)
+    solution = _solution(system, times, record, last, further, unresolved)
+    if failed is not None:
+        raise ConvergenceError(
+            f"the iteration of the step from {failed[0]:.6g} s to {failed[1]:.6g} s did not converge: "
+            f"the last correction was {record.statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
+            "A smaller step may help",
+            solution,
+        )
+    return solution
+
+
+def _solution(
+    system: System, times: np.ndarray, record: Record, last: Last, further: int, unresolved: list[str]
+) -> Solution:
+    done, state, turned_by = last.step
+    kept_steps = np.append(np.arange(0, done, record.every), done)
+    states, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
+    if done % record.every:
+        states[-1], turned[-1] = state, turned_by
+    ended = f"{done} steps of {times[1]:g} s"
+    if further:
+        ended += f", divided {further} times at kinks of loads"
+    for name in unresolved:
+        ended += f"; the {name} varies within steps, which is lost"
+    status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
+    summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
+    p, v, a = states.swapaxes(0, 1)
+    return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=turned)

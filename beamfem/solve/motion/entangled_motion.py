@@ -1,0 +1,112 @@
+"""Time steps of models whose tangent is no narrow band: those of `kernels.march` with a sparse factorisation.
+
+A step is solved to the same tolerances. Only a factorisation is kept longer, for it costs as much as ten iterations.
+"""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.equations import linearise, residual
+from beamfem.assembly.system import System
+from beamfem.kernels.motion_steps import complete, correct, count_turns, judge, predict
+from beamfem.linalg.tangent import Factorised
+from beamfem.solve.motion.band_motion import Saving
+
+# Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
+# them, or above which rate of convergence, the next step gets a new tangent.
+_MOST, _MANY, _SLOW = 24, 16, 0.5
+
+
+class EntangledMotion:
+    """Marches through time steps; keeps the factors of its tangent from one call to the next.
+
+    rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
+    coordinate, largest number of iterations; statistics (8,): see `kernels.march.march`.
+    """
+
+    def __init__(self, system: System, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray) -> None:
+        h, alpha_m, alpha_f, gamma, beta = rule
+        self.system, self.rule, self.statistics = system, rule, statistics
+        self.tolerance, self.iterations = float(limits[0]), int(limits[1])
+        self.coefficients = 1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
+        self._weights = np.array(self.coefficients)
+        self._inverse_scale = np.zeros(system.model.size)
+        self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
+        self._differences, self._size, self._number = np.zeros((3, system.model.size)), system.model.size, np.zeros(1)
+        self._factors: Factorised | None = None
+
+    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+        """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
+
+        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: see
+        `BandMotion.advance`.
+        """
+        saved, first, every, counted, turned, saved_turns = saving
+        dofs, statistics = self.system.held_dofs, self.statistics
+        for step, time in enumerate(times):
+            before = state.copy()
+            if not self._solve(state, before, held[step], float(time)):
+                state[:] = before
+                return step
+            differences, scale = self._differences, self._inverse_scale
+            change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, self._number)
+            statistics[6], statistics[7] = self._number[0], change / self.coefficients[2]
+            count_turns(len(counted), counted, before, state, turned)
+            if (first + step) % every == 0:
+                saved[(first + step) // every] = state[:3]
+                saved_turns[(first + step) // every] = turned
+        return len(times)
+
+    def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:
+        """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate."""
+        kept = self.statistics[4] >= 0.0 and self._factors is not None
+        if kept and self._iterate(state, before, held, time, full=False, fresh=False):
+            return True
+        solved = self._iterate(state, before, held, time, full=False, fresh=True)
+        return solved or self._iterate(state, before, held, time, full=True, fresh=True)
+
+    def _iterate(
+        self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float, full: bool, fresh: bool
+    ) -> bool:
+        """Iterate, full: each with its own tangent; tell whether the error is small enough."""
+        statistics, most = self.statistics, self.iterations if full else min(_MOST, self.iterations)
+        free = self.system.free_dofs
+        rate = 1.0 if fresh else max(statistics[4], 1e-4) ** 0.8
+        size, first_size, done, iteration = 0.0, 0.0, False, 0
+        state[:] = before
+        order = 0.0 if full else statistics[6]
+        dofs = self.system.held_dofs
+        predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
+        while iteration < most and not done:
+            try:
+                right = self._correction(state, time, fresh or full)
+            except LinAlgError:
+                break
+            scale = self._inverse_scale
+            last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
+            fresh = False
+            iteration += 1
+            statistics[0] += 1
+            statistics[2] = size
+            if iteration == 1:
+                first_size = max(size, statistics[7])
+            self._number[0] = rate
+            done = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number) != 0
+            rate = float(self._number[0])
+            if not np.isfinite(size) or (not full and iteration > 1 and rate >= 0.5):
+                break
+        statistics[1] = max(statistics[1], iteration)
+        statistics[4] = -1.0 if not done or iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
+        return done
+
+    def _correction(self, state: np.ndarray, time: float, renew: bool) -> np.ndarray:
+        """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError."""
+        p, v, a, _ = state
+        if renew or self._factors is None:
+            self._factors = None  # room for the new ones
+            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients)
+            self._factors = tangent.factorised(self.system.turned)
+            self.statistics[5] += 1
+        else:
+            unbalanced = residual(self.system, p, v, a, time)
+        return self._factors.solve(-unbalanced[self.system.free_dofs])

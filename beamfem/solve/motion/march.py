@@ -1,0 +1,134 @@
+"""The way through the time steps of a motion: stretches of equal steps, what is kept of them, and where one fails."""
+
+import time as clock
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.equations import INERTIA, linearise, residual
+from beamfem.assembly.system import System
+from beamfem.progress import progress
+from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.entangled_motion import EntangledMotion
+from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.time_steps import Stretch
+
+ITERATIONS = 25
+_TOLERANCE = 1e-9
+_CHUNK_SECONDS = 0.25
+_FIRST_CHUNK = 200_000  # coordinates times steps
+
+
+@dataclass(frozen=True)
+class Record:
+    """Kept states (rows, 3, n) of every so many-th whole step, and of the last, which goes to the row after them.
+
+    statistics (8,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    the kept states.
+    """
+
+    states: np.ndarray
+    every: int
+    statistics: np.ndarray
+    pairs: np.ndarray
+    turned: np.ndarray
+
+
+def new_statistics() -> np.ndarray:
+    """Return the statistics of a motion that has not begun."""
+    return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0])
+
+
+@dataclass
+class Last:
+    """The last whole step that was completed, whenever the work ends: its number, state (3, n) and turns (m,) [rad].
+
+    One assignment sets it, so that an interruption finds it whole.
+    """
+
+    step: tuple[int, np.ndarray, np.ndarray]
+
+
+def march(
+    system: System,
+    integrator: GeneralizedAlpha,
+    parts: tuple[Stretch, ...],
+    held: np.ndarray,
+    state: np.ndarray,
+    record: Record,
+    last: Last,
+) -> tuple[float, float] | None:
+    """March from p, p', p'' and the auxiliary acceleration (4, n), in place, through stretches of steps.
+
+    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return the
+    beginning and end [s] of the step that failed, None where none did.
+    """
+    kind = BandMotion if system.unknowns.pattern is None else EntangledMotion
+    limits, statistics = np.array([_TOLERANCE, ITERATIONS]), record.statistics
+    done, row, size, failed = 0, 0, max(_FIRST_CHUNK // system.model.size, 1), None
+    turned = record.turned[0].copy()
+    counting = record.pairs, turned, record.turned
+    with progress("time [s]", float(parts[-1].times[-1])) as report:
+        for number, part in enumerate(parts):
+            rule = integrator.rule(part.step)
+            if number > 0:
+                _begin_anew(system, integrator.rule(parts[number - 1].step), part, state, _kept(record, done, part))
+                statistics[[4, 6, 7]] = -1.0, 0.0, 0.0
+            motion = kind(system, rule, limits, statistics)
+            loaded = np.append(part.times[1:-1], part.loads_to)
+            begun, steps = 0, len(loaded)
+            while begun < steps and failed is None:
+                now = min(size, steps - begun) if part.whole else steps
+                rows = slice(begun, begun + now)
+                which = (done + 1, record.every) if part.whole else (1, steps + 1)
+                saving = (record.states, *which, *counting)
+                started = clock.perf_counter()
+                completed = motion.advance(state, held[row + 1 : row + now + 1], loaded[rows], saving)
+                spent = clock.perf_counter() - started
+                row, begun = row + completed, begun + completed
+                done += completed if part.whole else 0
+                if completed < now:
+                    failed = float(part.times[begun]), float(part.times[begun + 1])
+                if part.whole and completed:
+                    last.step = done, state[:3].copy(), turned.copy()
+                    report(float(part.times[begun]))
+                if part.whole and spent < _CHUNK_SECONDS:
+                    size *= 4
+            if failed is not None:
+                break
+            if part.ends_whole and not part.whole:
+                done += 1
+                last.step = done, state[:3].copy(), turned.copy()
+                if done % record.every == 0:
+                    record.states[done // record.every], record.turned[done // record.every] = last.step[1:]
+    return failed
+
+
+def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
+    """Return the row (3, n) that was kept where a stretch begins, if one was."""
+    return record.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
+
+
+def _begin_anew(system: System, rule: np.ndarray, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:
+    """Begin a stretch with accelerations that satisfy the equations under the loads there; rule: of the steps before.
+
+    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. What the
+    auxiliary acceleration a still had to give goes to p', so that this is so across stretches, and momentum is kept.
+    """
+    state[1] += rule[0] * (0.5 - rule[2]) * (state[3] - state[2])
+    begin = float(part.times[0])
+    if kept is not None and part.loads_from > begin:
+        kept[2] = initial_acceleration(system, state, begin)
+    state[2] = initial_acceleration(system, state, part.loads_from)
+    state[3] = state[2]
+
+
+def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.ndarray:
+    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates."""
+    p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
+    free = system.free_dofs
+    a[free] = 0.0
+    unbalanced = residual(system, p, v, a, time)
+    _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
+    a[free] = mass.solve(-unbalanced[free], system.turned)
+    return a

@@ -1,0 +1,95 @@
+"""Where the time steps of a motion end: at multiples of the step, and at the kinks that its loads declare."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.solve.motion.unresolved import Course
+
+_NEAR = 1e-4  # of a step: a kink so near to the end of a step is at it
+SIDE = 1e-9  # of a step: how far from a kink a load is taken on either side of it
+_JUMP = 1e-6  # of the values of a load: a larger difference over a kink is a jump
+_STRAIGHT = 1e-4  # of the values of a load: how well steps follow one in a step that is divided for it
+_MOST_PARTS = 128
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Equal steps one after the other.
+
+    times (m + 1,) [s]: from where it begins; step [s]; begins_whole, ends_whole, whole: whether it begins, it ends, and
+    all its steps end at multiples of the step that was asked for; loads_from, loads_to [s]: when the loads at its
+    beginning and at its end are taken, on their own sides of a jump.
+    """
+
+    times: np.ndarray
+    step: float
+    begins_whole: bool
+    ends_whole: bool
+    whole: bool
+    loads_from: float
+    loads_to: float
+
+
+def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]:
+    """Return the steps between the times of a grid (steps + 1,) [s], divided at the kinks of amplitudes.
+
+    A part in which such an amplitude is no straight line is divided further.
+    """
+    step, end_time = float(grid[1]), float(grid[-1])
+    declaring = [course for course in amplitudes if course.kinks]
+    if not declaring:
+        return (Stretch(grid, step, True, True, True, 0.0, end_time),)
+    kinks = _apart(np.concatenate([course.kinks for course in declaring]), _NEAR * step, end_time)
+    nearest = np.minimum(np.round(kinks / step).astype(int), len(grid) - 1)
+    inside = np.abs(kinks - grid[nearest]) > _NEAR * step
+    places = np.where(inside, kinks, grid[nearest])
+    looks = [course.look(grid, SIDE * step) for course in declaring]
+    sizes = [size for _, size in looks]
+    jumps = {
+        at: kink
+        for at, kink in zip(places.tolist(), kinks.tolist(), strict=True)
+        if any(
+            _jump(course, kink, SIDE * step, end_time) > _JUMP * size
+            for course, size in zip(declaring, sizes, strict=True)
+        )
+    }
+    bulging = np.flatnonzero(np.any([steps for steps, _ in looks], axis=0))
+    divided = np.union1d(np.searchsorted(grid, kinks[inside]) - 1, bulging)
+    bounds = np.unique(np.concatenate([grid[[0, -1]], kinks[inside], grid[divided], grid[divided + 1], list(jumps)]))
+    found = []
+    for begin, end in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
+        whole = int(np.searchsorted(grid, 0.5 * (begin + end))) - 1 not in divided
+        if whole:
+            times, size = grid[np.searchsorted(grid, begin) : np.searchsorted(grid, end) + 1], step
+        else:
+            parts = _parts(declaring, sizes, begin, end)
+            times, size = np.linspace(begin, end, parts + 1), (end - begin) / parts
+        loads_from = jumps[begin] + SIDE * step if begin in jumps else begin
+        loads_to = jumps[end] - SIDE * step if end in jumps else end
+        found.append(Stretch(times, size, begin in grid, end in grid, whole, loads_from, loads_to))
+    return tuple(found)
+
+
+def _apart(kinks: np.ndarray, near: float, end_time: float) -> np.ndarray:
+    """Return the kinks (n,) [s] within a motion that are further apart than `near`, in order."""
+    kept: list[float] = []
+    for kink in np.unique(kinks).tolist():
+        if -near <= kink <= end_time + near and (not kept or kink - kept[-1] > near):
+            kept.append(kink)
+    return np.array(kept)
+
+
+def _jump(course: Course, kink: float, side: float, end_time: float) -> float:
+    """Return how far a load is apart on both sides of a kink; nothing is asked before or after the motion."""
+    return abs(course.at(min(kink + side, end_time)) - course.at(max(kink - side, 0.0)))
+
+
+def _parts(declaring: list[Course], sizes: list[float], begin: float, end: float) -> int:
+    """Return into how many equal steps the time between two kinks is divided."""
+    inset, parts = SIDE * (end - begin), 1
+    for course, size in zip(declaring, sizes, strict=True):
+        if size > 0.0:
+            bend = course.bend(begin + inset, end - inset)
+            parts = max(parts, int(np.ceil(np.sqrt(bend / (_STRAIGHT * size)))))
+    return min(parts, _MOST_PARTS)

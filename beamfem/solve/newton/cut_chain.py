@@ -1,0 +1,131 @@
+"""One long chain as two halves with numbers of their own, so that two threads can work on them."""
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.assembler import Assembler, Equations
+from beamfem.assembly.equations import STATICS
+from beamfem.assembly.sheet import make_sheet
+from beamfem.assembly.system import System
+from beamfem.kernels.block import Block, PointLoads, Springs
+
+_LONG = 20_000  # elements; below, two threads gain little
+
+
+@dataclass(frozen=True, eq=False)
+class Half:
+    """The elements on one side of the cut: what they are made of, their state and space for a step.
+
+    place: its coordinates among those of the chain; free: the unknown ones of its own in the order of elimination, from
+    the far end to the node at the cut, whose own stand last, from `inner` on; equations: its own, under its loads; rows
+    (unknown, width): its band.
+    """
+
+    place: slice
+    free: np.ndarray
+    inner: int
+    equations: Assembler
+    scale: np.ndarray
+    p: np.ndarray
+    rest: np.ndarray
+    step: np.ndarray
+    residual: np.ndarray
+    right: np.ndarray
+    rows: np.ndarray
+
+    def balance(self, predicted: bool, matrix: np.ndarray) -> None:
+        """Fill the residual and, unless it is empty, the matrix; predicted: see `Assembler.balance`."""
+        self.equations.balance(self.p, self.rest, self.rest, self.residual, matrix, predicted)
+
+
+def worth_cutting(system: System, elements: int = _LONG) -> bool:
+    """Tell whether a model is one chain of so many elements, with two cores to work on it."""
+    model = system.model
+    single = len(model.beams) == 1 and not model.joints and not system.inclined
+    return single and system.unknowns.pattern is None and len(system.blocks[0].node) >= elements and usable_cores() > 1
+
+
+def usable_cores() -> int:
+    """Return how many cores this process may use; as in linear algebra, no more than OMP_NUM_THREADS."""
+    allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    limit = os.environ.get("OMP_NUM_THREADS", "")
+    return min(allowed, int(limit)) if limit.isdecimal() else allowed
+
+
+def halves_of(system: System, start: np.ndarray, load_factor: float) -> tuple[Half, Half]:
+    """Return the halves of a chain in the state `start` (n,), cut at the node nearest to the middle element."""
+    (block,), size = system.blocks, len(start)
+    # at a corner of the curve two nodes stand at the same place
+    cuts = 1 + np.flatnonzero(block.node[1:, 0] == block.node[:-1, -1])
+    cut = int(cuts[len(cuts) // 2])
+    shared = block.dof[block.node[cut, 0]]
+    shared = shared[shared >= 0]
+    first, end = int(shared.min()), int(shared.max()) + 1
+    unknown = int((system.unknowns.free[shared] >= 0).sum())
+    # springs of the shared node are those of the second half
+    sprung = system.springs.dof < first
+    return (
+        _half(system, start, load_factor, slice(0, cut), slice(0, end), sprung, unknown),
+        _half(system, start, load_factor, slice(cut, len(block.node)), slice(first, size), ~sprung, unknown),
+    )
+
+
+def _half(
+    system: System,
+    start: np.ndarray,
+    load_factor: float,
+    elements: slice,
+    place: slice,
+    sprung: np.ndarray,
+    shared: int,
+) -> Half:
+    (whole,), (loads,), (layout,), (values,) = (
+        system.blocks,
+        system.point_loads,
+        system.layouts,
+        system.point_values(load_factor),
+    )
+    block, size, half_width = _part(whole, elements, place.start), place.stop - place.start, layout.half_width
+    order = np.flatnonzero(layout.free[place] >= 0)
+    if place.start > 0:
+        order = order[::-1].copy()
+    free = np.full(size, -1, dtype=np.int64)
+    free[order] = np.arange(len(order))
+    loaded = (loads.element >= elements.start) & (loads.element < elements.stop)
+    points = PointLoads(*(column[loaded] for column in loads))
+    points = points._replace(element=points.element - elements.start)
+    dof, stiffness, rest, _ = (column[sprung] for column in system.springs)
+    number = free[dof - place.start]
+    diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
+    springs = Springs(dof - place.start, stiffness, rest, diagonal)
+    equations = Assembler(Equations((make_sheet(block, layout._replace(free=free), points),), springs, size))
+    equations.load(system.body(load_factor), (values[loaded],))
+    equations.weigh(STATICS)
+    return Half(
+        place=place,
+        free=order,
+        inner=len(order) - shared,
+        equations=equations,
+        scale=system.scale[place],
+        p=start[place].copy(),
+        rest=np.zeros(size),
+        step=np.empty(size),
+        residual=np.empty(size),
+        right=np.empty(len(order)),
+        rows=np.empty((len(order), 2 * half_width + 1)),
+    )
+
+
+def _part(block: Block, elements: slice, first_dof: int) -> Block:
+    """Return elements of a chain as a block, its coordinates counted from the first."""
+    node = block.node[elements]
+    nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
+    dof = block.dof[nodes]
+    return block._replace(
+        node=node - nodes.start,
+        dof=np.where(dof >= 0, dof - first_dof, -1),
+        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
+        **{name: getattr(block, name)[nodes] for name in ("carrier", "frame", "home")},
+    )

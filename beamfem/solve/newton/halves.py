@@ -1,0 +1,99 @@
+"""Newton's steps of a chain cut in two, on two threads, by substructuring.
+
+Each half eliminates its own unknowns; what is left for those of the shared node, a few rows, is added up and solved.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from typing import TypeVar
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.kernels.band import band
+from beamfem.kernels.newton import take_step
+from beamfem.linalg.tangent import SMALLEST_PIVOT
+from beamfem.solve.newton.cut_chain import Half
+
+_NOTHING = np.empty(0)
+T = TypeVar("T")
+
+# a step (n,) of the held coordinates and what it changes in the residual (n,), on the first step only
+Change = tuple[np.ndarray, np.ndarray] | None
+
+
+def correct(halves: tuple[Half, Half], pool: Executor, predicts: bool, change: Change) -> tuple[float, np.ndarray]:
+    """Take one step of Newton's method; return its relative size and the pivots of the shared unknowns (s,).
+
+    predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError where pivots are
+    needed.
+    """
+    predicted = predicts and change is None
+    left = _both(pool, lambda half: _eliminate(half, predicted, change), halves)
+    # in the second half the shared unknowns stand in reversed order
+    schur, right, diagonal = (a + np.flip(b) for a, b in zip(*left, strict=True))
+    if change is not None:
+        right -= change[1][halves[0].free[halves[0].inner :]]
+    if not (diagonal > 0.0).all():
+        raise LinAlgError("the tangent is singular")
+    pivots = np.linalg.eigvals(schur / diagonal[:, None]).real
+    if not np.abs(pivots).min(initial=1.0) > SMALLEST_PIVOT:
+        raise LinAlgError("the tangent is singular")
+    shared = np.linalg.solve(schur, right)
+    for half, known in zip(halves, (shared, shared[::-1]), strict=True):
+        half.right[half.inner :] = known
+    return float(np.max(_both(pool, lambda half: _advance(half, predicts, change), halves))), pivots
+
+
+def negative_pivots(halves: tuple[Half, Half], shared: np.ndarray) -> int:
+    """Return how many pivots of the last step were negative; shared: those of the shared unknowns."""
+    # the factorisation keeps the inverse of each pivot on the diagonal
+    of_all = (shared, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in halves))
+    return sum(int((values < 0.0).sum()) for values in of_all)
+
+
+def _both(pool: Executor, call: Callable[[Half], T], halves: tuple[Half, Half]) -> tuple[T, T]:
+    """Return what a call gives for each half; this thread does one of them."""
+    other = pool.submit(call, halves[1])
+    return call(halves[0]), other.result()
+
+
+def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what is left for the shared unknowns (s,): matrix (s, s), right-hand side and the diagonal before."""
+    rows, right, inner, middle = half.rows, half.right, half.inner, half.rows.shape[1] // 2
+    half.balance(predicted, rows.reshape(-1))
+    np.negative(np.take(half.residual, half.free, out=right, mode="clip"), out=right)
+    if change is not None:
+        right[:inner] -= change[1][half.place][half.free[:inner]]
+    diagonal = np.abs(rows[inner:, middle])
+    own = band(middle)
+    if not own.factor(len(rows), inner, middle, 1, rows, right, half.step) > SMALLEST_PIVOT:
+        raise LinAlgError("a pivot is tiny")
+    i, j = np.ogrid[: len(diagonal), : len(diagonal)]
+    return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal
+
+
+def _advance(half: Half, predicts: bool, change: Change) -> float:
+    """Take the step, whose shared unknowns are known; return its relative size."""
+    middle = half.rows.shape[1] // 2
+    band(middle).solve_upper(half.inner, len(half.right), middle, half.rows, half.right)
+    half.step[:] = 0.0 if change is None else change[0][half.place]
+    half.step[half.free] = half.right
+    if predicts:
+        half.equations.predict(half.p, half.step)
+    return float(take_step(len(half.p), half.step, half.p, half.scale))
+
+
+def joined(halves: tuple[Half, Half], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return state (n,), residual (n,) and the smallest r0' x d of the chain."""
+    smallest = min(_both(pool, _balanced, halves))
+    state, residual = np.zeros((2, halves[1].place.stop))
+    for half in halves:
+        state[half.place] = half.p
+        residual[half.place] += half.residual
+    return state, residual, smallest
+
+
+def _balanced(half: Half) -> float:
+    half.balance(False, _NOTHING)
+    return half.equations.smallest_jacobian(half.p)

@@ -1,0 +1,1 @@
+"""Equilibrium paths and their branches."""

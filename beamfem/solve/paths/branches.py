@@ -1,0 +1,57 @@
+"""From a bifurcation onto the branch that crosses there."""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.results.path import Bifurcation
+from beamfem.solve.continuation.continuation import Continuation, PathPoint
+
+_FIRST_MODE = 0.02  # how far along the mode the branch is looked for first: lengths of the model, radians
+_TRIES = 12
+_ALONG = 1e-3  # of a mode: what is left of it across a path that goes along it
+
+
+def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathPoint | str:
+    """Return a point of the branch close to a bifurcation, or why there is none.
+
+    It is the equilibrium in the plane across the mode at a small distance along it, which the path that was followed
+    to the bifurcation does not meet: the part of the mode along that path is taken out.
+    """
+    start = np.append(bifurcation.p, bifurcation.at)
+    try:
+        way = direction * _other_way(line, start, bifurcation)
+    except LinAlgError:
+        return "the tangent is singular"
+    distance, reason = _FIRST_MODE, ""
+    for _ in range(_TRIES):
+        step = distance * way
+        corrected = line.correct(start + step, line.stresses(start, step), way)
+        reason = corrected.ended.value
+        if corrected.ended.good:
+            moved = corrected.y - start
+            if line.length(moved) < 2.0 * distance:
+                try:
+                    return line.linearised(corrected.y, moved)
+                except LinAlgError:
+                    reason = "the tangent is singular"
+            else:
+                reason = "the equilibrium beside it is far away"
+        distance *= 0.5
+    return reason
+
+
+def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:
+    """Return the unit change of y (n + 1,) that is across the path, and like it keeps the balance to first order.
+
+    Along the mode or, where the path itself goes along it, towards larger load factors. Raises LinAlgError.
+    """
+    along = bifurcation.tangent / line.length(bifurcation.tangent)
+    mode = np.append(bifurcation.mode, 0.0)
+    mode /= line.length(mode)
+    across = mode - line.dot(mode, along) * along
+    if line.length(across) < _ALONG:
+        growing = np.zeros(len(start))
+        growing[-1] = 1.0
+        across = line.linearised(start, growing).tangent
+        across = across - line.dot(across, mode) * mode
+    return np.asarray(across / line.length(across))

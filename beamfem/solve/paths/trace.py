@@ -1,0 +1,197 @@
+"""Equilibrium paths by arc-length continuation, through limit points in load and in displacement."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.model.model import Model
+from beamfem.progress import progress
+from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
+from beamfem.solve.continuation.critical_points import Segment
+from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
+from beamfem.solve.newton.iteration import Newton, require_newton
+from beamfem.solve.paths.branches import leave
+from beamfem.solve.paths.path_record import PathRecord
+from beamfem.solve.start.free_motion import require_support
+from beamfem.solve.start.interrupted import kept
+from beamfem.solve.statics.preload import first_equilibrium
+from beamfem.validation import count, finite, function_of_one, optional, positive, shown
+
+_FIRST_STEP = 2e-3  # along the path, see Continuation
+_ITERATIONS = 15  # a shorter step is cheaper than more
+
+Until = float | Callable[[PathState], bool] | None
+
+
+def trace_equilibrium(
+    model: Model,
+    until: Until = None,
+    *,
+    start: Bifurcation | None = None,
+    direction: int | None = None,
+    step: float | None = None,
+    points: int = 500,
+    newton: Newton | None = None,
+) -> Path:
+    """Return the equilibria along the path that leaves load factor 0, past limit points.
+
+    until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
+    path ends after so many `points`. direction: 1 to leave towards larger load factors, -1 towards negative ones, by
+    default towards `until`. start: a bifurcation of a path of this model, to follow the branch that crosses there to
+    the side of its mode (direction 1, the default) or to the other (-1); a branch that comes back has the mode along
+    it, and is left towards larger load factors (1) or smaller ones (-1). step: how far the load factor of the second
+    point is from 0.
+    Steps are cut and grown as the iterations and the turning of the path need.
+    Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
+    cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
+    Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
+    """
+    if callable(until):
+        function_of_one("until", until, "a state of the path")
+    else:
+        until = optional(finite)("until", until)
+    if step is not None:
+        step = positive("step", step)
+        if start is not None:
+            raise InputError("step is the load factor of the second point of a path from 0; a branch finds its own")
+    count("points", points)
+    if direction is not None and (isinstance(direction, bool) or not isinstance(direction, int | np.integer)):
+        raise InputError(f"direction must be 1 or -1, got {shown(direction)}")
+    if direction not in (None, 1, -1):
+        raise InputError(f"direction must be 1 or -1, got {direction}")
+    if direction is None:
+        direction = -1 if start is None and isinstance(until, float) and until < 0.0 else 1
+    newton = require_newton(newton, Newton(iterations=_ITERATIONS))
+    system = system_of(model, static=True)
+    require_support(system)
+    _require_load(system)
+    _require_crossing(model, start)
+    record = PathRecord(model)
+    with kept(lambda: record.path() if record.rows else None), progress("points of the path", points) as report:
+        line, point = _first(system, newton, record)
+        size = _FIRST_STEP if step is None else step / abs(point.tangent[-1])
+        if step is not None and too_small(line, point, size):
+            raise InputError(f"step must be larger: {step:g} of the load factor moves the model by round-off only")
+        if start is None:
+            point = replace(point, tangent=direction * point.tangent)
+            record.add(point.y, point.negative_pivots == 0)
+        else:
+            record.add(np.append(start.p, start.at), stable=False, turned=start.turned)
+            if points > 1:
+                point, size = _branch(line, start, direction, record)
+        landed = False
+        while not (landed or _met(until, record.last)):
+            if len(record.rows) >= points:
+                record.end(f"the {points} points are used up")
+                break
+            taken = _step(line, point, size, record)
+            size = taken.next_size
+            landing = _landing(line, taken, until) if isinstance(until, float) else None
+            landed = landing is not None
+            point = taken.segment.after if landing is None else landing
+            record.add(point.y, point.negative_pivots == 0)
+            record.add_critical(line, taken, point)
+            report(len(record.rows))
+        else:
+            record.end("the path has come to where it shall end")
+    return record.path()
+
+
+def _require_load(system: System) -> None:
+    """Raise InputError where nothing changes with the load factor."""
+    for at in (0.37, 1.0):
+        changes = [(system.body(at), system.body(0.0)), (system.held_values(at), system.held_values(0.0))]
+        changes += zip(system.point_values(at), system.point_values(0.0), strict=True)
+        if any(not np.array_equal(now, before) for now, before in changes):
+            return
+    raise InputError(
+        "no load and no prescribed motion of this model changes with the load factor, so there is no path to follow"
+    )
+
+
+def _require_crossing(model: Model, start: Bifurcation | None) -> None:
+    """Raise InputError where `start` is no bifurcation of this model."""
+    if start is None:
+        return
+    if not isinstance(start, Bifurcation):
+        raise InputError(f"start must be a bifurcation, such as path.bifurcations[0], got a {type(start).__name__}")
+    if start.model is not model:
+        raise InputError("start is a bifurcation of another model; trace the path of this one first")
+
+
+def _first(system: System, newton: Newton, record: PathRecord) -> tuple[Continuation, PathPoint]:
+    """Return the continuation and the point at load factor 0."""
+    first = first_equilibrium(system, newton)
+    record.iterations += first.iterations
+    if not first.ended.good:
+        record.add(np.append(system.reference, 0.0), stable=False)
+        raise ConvergenceError(f"no equilibrium under the loads that do not scale: {first.ended.value}")
+    try:
+        return begin(system, first.state, 0.0, newton)
+    except LinAlgError:
+        raise ConvergenceError("there is no path from load factor 0: the tangent is singular") from None
+
+
+def _branch(line: Continuation, start: Bifurcation, direction: int, record: PathRecord) -> tuple[PathPoint, float]:
+    """Return the first point of the branch that leaves a bifurcation and the length of the step to it."""
+    found = leave(line, start, direction)
+    if isinstance(found, str):
+        raise ConvergenceError(f"no branch was found at the bifurcation at load factor {start.at:.6g}: {found}")
+    record.add(found.y, found.negative_pivots == 0)
+    return found, line.length(found.y - record.rows[0][0])
+
+
+def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
+    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError.
+
+    It names what most lengths were refused for: of the shortest ones, round-off decides.
+    """
+    size = min(size, longest_step(line, point))
+    reasons: list[str] = []
+    while True:
+        taken = take_step(line, point, size)
+        record.iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken if not reasons else replace(taken, next_size=min(taken.next_size, size))
+        record.cuts += 1
+        reasons.append(taken.reason)
+        size *= 0.5
+        if too_small(line, point, size):
+            record.ended = max(reasons, key=reasons.count)
+            raise ConvergenceError(
+                f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
+                f"{record.ended}, with steps along it down to {size:.1e}",
+                record.path(),
+            )
+
+
+def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
+    """Return the first point of a step with the load factor, None where it does not come to it."""
+    shares = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
+    stops = [step.segment.at(x) for x in shares]
+    for before, after in pairwise(stops):
+        low, high = before.load_factor - load_factor, after.load_factor - load_factor
+        if high == 0.0:
+            return after
+        if low * high < 0.0:
+            return Segment(line, before, after).at_load(load_factor)
+    return None
+
+
+def _met(until: Until, state: PathState) -> bool:
+    if not callable(until):
+        return False
+    try:
+        answer = until(state)
+    except Exception as error:
+        error.add_note(f"raised by `until`, for the state at load factor {state.load_factor:.6g}")
+        raise
+    if not isinstance(answer, bool | np.bool_):
+        raise InputError(f"until must give True or False for a state of the path, got {answer!r}")
+    return bool(answer)

@@ -1,0 +1,1 @@
+"""At which loads an equilibrium becomes unstable."""

@@ -1,0 +1,183 @@
+"""Buckling: load factors at which the tangent of a loaded structure becomes singular."""
+
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+from warnings import warn
+
+import numpy as np
+
+from beamfem.assembly.equations import STATICS, linearise, load_slope
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
+from beamfem.linalg.eigenpairs import digits_for
+from beamfem.model.model import Model
+from beamfem.registry import offered
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Statistics
+from beamfem.solve.modes.shapes import largest_translation, upright
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
+from beamfem.solve.stability.linearised import linearised_loads
+from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.start.balance import left_over
+from beamfem.solve.start.free_motion import require_support
+from beamfem.solve.start.start_state import resting_state
+from beamfem.validation import count as whole_number
+from beamfem.validation import number_below, positive, squared
+
+_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
+_LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
+_LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
+_MOST_POINTS = 300
+_UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
+
+
+@dataclass(frozen=True, eq=False)
+class Buckling:
+    """Critical points of a loading path, in its order, load factors ascending.
+
+    load_factors (m,): where the tangent is singular, m <= count; kinds (m,): "bifurcation", where another path crosses,
+    or "limit point", the largest load factor of the path, with which it ends; linearised (k,), k <= count: where it
+    would be singular if the path went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (m, n):
+    critical shapes over all coordinates, their largest displacement of a node 1; states (m, n): the equilibria at
+    `load_factors`; uncertainty (m,): share of a load factor that round-off and interpolation may have changed; ended:
+    why there are no more.
+    """
+
+    model: Model
+    load_factors: np.ndarray
+    kinds: tuple[str, ...]
+    linearised: np.ndarray
+    modes: np.ndarray
+    states: np.ndarray
+    uncertainty: np.ndarray
+    ended: str
+
+    def __repr__(self) -> str:
+        points = zip(self.kinds, self.load_factors, strict=True)
+        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points)
+        return f"Buckling({listed or 'no critical point'}; ended because {self.ended})"
+
+    def __len__(self) -> int:
+        return len(self.load_factors)
+
+    def solution(self, mode: int = 0, amplitude: float | None = None) -> Solution:
+        """Return the critical state and the same with a mode added, as a Solution to draw or export.
+
+        mode: its row; amplitude [m] of the largest displacement, by default a tenth of the longest beam.
+        """
+        if len(self) == 0:
+            raise InputError(f"there is no critical point: {self.ended}")
+        mode = number_below("mode", mode, len(self))
+        if amplitude is None:
+            amplitude = 0.1 * max(beam.curve.length for beam in self.model.beams)
+        p = self.states[mode] + np.outer([0.0, squared(positive)("amplitude", amplitude)], self.modes[mode])
+        at = np.full(2, self.load_factors[mode])
+        statistics = Statistics(0, 1, 0, "a critical state and its mode")
+        return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
+
+    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+        """Draw the modes, each with its load factor; return the figure."""
+        return offered(Buckling.plot)(self, path, **options)
+
+
+def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
+    """Return the first `count` points of the loading path at which the tangent is singular, or those that there are.
+
+    about: the stable equilibrium to start from, by default that at load factor 0. The true equilibria from there are
+    followed up to their largest load factor, and negative pivots of the tangent are counted: no change is left out.
+    Warns of results with less than four digits. Raises InputError where no load factor is critical, loads do nothing
+    or follow the beam; FreeMotionError; ConvergenceError, with the equilibria found, where the path was lost before.
+    """
+    whole_number("count", count)
+    system = system_of(model, static=True)
+    require_support(system)
+    unknown = len(system.free_dofs)
+    if count > unknown:
+        raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
+    with digits_for("critical load factors"):
+        p, load_factor = _stable_start(system, about)
+        path = LoadingPath(system, p, load_factor)
+        slope = path.start.tangent[:-1] / path.start.tangent[-1]
+        linearised = linearised_loads(system, p, load_factor, slope, count)
+    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
+    if not len(linearised):
+        raise InputError(
+            "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "
+            "first have to move it by more than half of its length. If they soften it later, trace_equilibrium finds it"
+        )
+    farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
+    with digits_for("critical load factors"):
+        found, ended = _criticals(path, count, farthest)
+    if not found and path.lost:
+        raise ConvergenceError(
+            f"the loading path was lost before any load factor was critical: {ended}", path.solution()
+        )
+    uncertainty = np.array([point.uncertainty for point in found])
+    if np.any(uncertainty > _UNCERTAIN):
+        errors = ", ".join(f"{value:.0e}" for value in uncertainty)
+        said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
+        warn(said, RoundOffWarning, stacklevel=2)
+    shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
+    return Buckling(
+        model,
+        np.array([point.load_factor for point in found]),
+        tuple(point.kind for point in found),
+        linearised,
+        upright(np.array(shapes).reshape(-1, model.size)),
+        np.array([point.p for point in found]).reshape(-1, model.size),
+        uncertainty,
+        ended,
+    )
+
+
+def _stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
+    p, load_factor = resting_state(system, about)
+    if left_over(system, p, load_factor) > 0.0:
+        begun = solve_equilibrium(system, p, load_factor, Newton())
+        if not begun.ended.good:
+            raise ConvergenceError(f"no equilibrium at load factor {load_factor:g} to start from: {begun.ended.value}")
+        p = begun.state
+    if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
+        raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
+    rest = np.zeros_like(p)
+    tangent = linearise(system, p, rest, rest, load_factor, STATICS)[1]
+    unstable = tangent.factorised(system.turned).negative_pivots
+    if unstable > 0:
+        raise InputError(
+            f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "
+            f"in {unstable} direction(s)"
+        )
+    return p, load_factor
+
+
+def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str]:
+    """Return the first `count` critical points of a path up to its first limit point, and why there are no more."""
+    found: list[Critical] = []
+    here = path.start
+    while len(path.points) < _MOST_POINTS:
+        try:
+            following = path.advance(here)
+            more, here = critical_points(path, here, following)
+        except PathLostError as error:
+            if not path.shorten(here):
+                return found, str(error)
+            continue
+        except ConvergenceError as error:
+            path.lost = True
+            return found, str(error)
+        path.add(here)
+        for point in more:
+            found.append(point)
+            if point.kind == LIMIT_POINT:
+                return found[:count], "the path has its largest load factor there"
+        if len(found) >= count:
+            return found[:count], f"{count} are asked for"
+        if path.moved(here) > _LARGEST_MOVEMENT:
+            return found, "the model has moved by more than its own length"
+        if here.load_factor > farthest:
+            return found, f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
+    return found, f"the {_MOST_POINTS} points of the path are used up"

@@ -1,0 +1,192 @@
+"""Where on a loading path the tangent is singular: bifurcations and limit points.
+
+No equilibrium is solved for at a critical point itself, where round-off leads off the path. The path, its load and the
+stiffness of the softest modes are interpolated between points that keep their distance on both sides; modes whose
+stiffness vanishes close together are interpolated as one subspace.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamfem.solve.continuation.continuation import PathPoint
+from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.stability.window import Window, Zero, on_path, smooth
+
+BIFURCATION = "bifurcation"
+LIMIT_POINT = "limit point"
+
+_INSIDE = 0.3  # of the radius: critical points further out are left to windows of their own
+_CLEAR = 1.2  # times the radius: where the nearest critical point outside may be
+_RADII = 0.2 * 0.3 ** np.arange(8)  # of the step in which a critical point lies
+_RECENTRED = 4
+_IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
+_ROUND_OFF = 30.0  # times the force along a mode that is left: how far round-off may bend a path
+_SMOOTH = 0.03  # of a step: how far its inside may lie from where its ends foretell it
+_EXACT = 1e-12  # of the load: no smaller window is tried
+
+
+@dataclass(frozen=True, eq=False)
+class Critical:
+    """A singular point of a loading path: what it is, its load factor and state p (n,), the mode (n,) that is not
+    resisted, and how far from it the load factor of a smaller or larger window is.
+    """
+
+    kind: str
+    load_factor: float
+    p: np.ndarray
+    mode: np.ndarray
+    uncertainty: float
+
+
+def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> tuple[list[Critical], PathPoint]:
+    """Return the first critical points between two points of a path, those that lie close together, and a point behind
+    them up to which there are no others; none and `after` where nothing changes in between. Raises PathLostError.
+    """
+    middle = _between(path, before, after)
+    if Search(path, before, middle).changes:
+        after = middle
+    while True:
+        search = Search(path, before, after)
+        if not search.changes:
+            return [], after
+        found, first, last = search.located(search.estimate())
+        if search.distance(first) <= 0.0 or not Search(path, before, first).changes:
+            return found, last
+        after = first
+
+
+def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoint:
+    """Return a point inside a step, where the load's slope differs most from those at the ends.
+
+    Raises PathLostError where the path is not the smooth one that the ends foretell: they lie on different paths.
+    """
+    normal = path.normal(before, after)
+    reach = path.line.dot(normal, after.y - before.y)
+    slopes = [reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after)]
+    rise = after.load_factor - before.load_factor
+    curvature = slopes[0] + slopes[1] - 2.0 * rise
+    share = 0.5
+    if curvature != 0.0:
+        extreme = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
+        share = extreme if 0.1 < extreme < 0.9 else 0.5
+    foretold = smooth(path, normal, (before, after), share * reach)
+    found = on_path(path, normal, (before, after), share * reach)
+    if path.line.length(found.y - foretold) > _SMOOTH * path.line.length(after.y - before.y):
+        raise PathLostError("the path turns too sharply")
+    return found
+
+
+class Search:
+    """The search for the critical points next to a place between two points of a path."""
+
+    def __init__(self, path: LoadingPath, before: PathPoint, after: PathPoint) -> None:
+        self.path, self.line = path, path.line
+        self.before, self.after = before, after
+        self.normal = path.normal(before, after)
+        self.reach = self.distance(after)
+
+    def distance(self, point: PathPoint) -> float:
+        return self.line.dot(self.normal, point.y - self.before.y)
+
+    @property
+    def changes(self) -> bool:
+        """Whether stability or the slope of the load is another at the end."""
+        turns = self.before.tangent[-1] * self.after.tangent[-1] < 0.0
+        return turns or self.before.negative_pivots != self.after.negative_pivots
+
+    def estimate(self) -> float:
+        """Return about where the first critical point lies."""
+        ends, places = (self.before, self.after), []
+        unstable = sorted(point.negative_pivots for point in ends)
+        if unstable[0] < unstable[1]:
+            values = [self.path.softest(point, unstable[1]).values[unstable[0] :] for point in ends]
+            places += [a / (a - b) if a * b < 0.0 else 0.5 for a, b in zip(*values, strict=True)]
+        slopes = [point.tangent[-1] for point in ends]
+        if slopes[0] * slopes[1] < 0.0:
+            places.append(slopes[0] / (slopes[0] - slopes[1]))
+        return float(self.reach * min(places))
+
+    def located(self, place: float) -> tuple[list[Critical], PathPoint, PathPoint]:
+        """Return the critical points next to a place and the ends of the window that they were found in.
+
+        Windows shrink until what they find no longer settles. Raises PathLostError.
+        """
+        best: tuple[list[Critical], PathPoint, PathPoint] | None = None
+        before: list[Critical] = []
+        for radius in _RADII * self.reach:
+            window, zeros = self._centred(place, radius)
+            place = window.centre
+            inside = [zero for zero in zeros if abs(zero.at - place) <= _INSIDE * window.radius and zero.at > 0.0]
+            if not inside or len(inside) < len(zeros) or not window.alike:
+                before = []
+                continue
+            try:
+                found = self._read(window, inside)
+            except PathLostError:
+                if best is None:
+                    raise
+                break
+            if len(found) == len(before):
+                found = [
+                    replace(one, uncertainty=abs(one.load_factor / other.load_factor - 1.0))
+                    for one, other in zip(found, before, strict=True)
+                ]
+                if best is not None and _worst(found) > 0.5 * _worst(best[0]):
+                    break
+                best = found, window.points[0], window.points[-1]
+                if _worst(found) < _EXACT:
+                    break
+            before = found
+        if best is None:
+            raise PathLostError("critical points lie too close together to be told apart")
+        return best
+
+    def _centred(self, place: float, radius: float) -> tuple[Window, list[Zero]]:
+        """Return the window about the critical point nearest to a place, and all that vanishes there."""
+        for _ in range(_RECENTRED):
+            if self.before is self.path.start:
+                radius = min(radius, 0.9 * place)
+            window = Window.about(self.path, self.normal, (self.before, self.after), place, radius)
+            zeros = window.zeros(_CLEAR * radius)
+            if not zeros:
+                break
+            nearest = min((zero.at for zero in zeros), key=lambda at: abs(at - place))
+            if abs(nearest - place) <= 0.5 * _INSIDE * radius:
+                return window, zeros
+            place = nearest if nearest > 0.0 else 0.5 * place
+        raise PathLostError("a change of stability was not found again")
+
+    def _read(self, window: Window, zeros: list[Zero]) -> list[Critical]:
+        """Return what lies where the tangent is singular."""
+        turn = window.turn()
+        limit = None if turn is None else min(zeros, key=lambda zero: abs(zero.at - turn))
+        result = []
+        for zero in zeros:
+            mode, kind, at = window.mode(zero), BIFURCATION, zero.at
+            if zero is limit and turn is not None:
+                kind, at = LIMIT_POINT, turn
+            else:
+                self._require_crossing(window, zero, mode)
+            y = window.weights(at) @ window.rows
+            result.append(Critical(kind, float(y[-1]), y[:-1], mode, np.inf))
+        return sorted(result, key=lambda one: one.load_factor)
+
+    def _require_crossing(self, window: Window, zero: Zero, mode: np.ndarray) -> None:
+        """Raise PathLostError where the path bends aside along the mode, on a hyperbola, instead of being crossed.
+
+        Round-off bends it as well: by the force that it leaves, over the stiffness of the mode.
+        """
+        system = self.path.system
+        shares = (window.at - zero.at) / window.radius
+        largest = float(np.max(np.abs(mode) / system.scale))
+        basis = np.column_stack([shares**0, shares, shares**2, shares**3, 1.0 / shares])
+        bend = largest * abs(np.linalg.lstsq(basis, window.aside(mode))[0][-1])
+        left = max(abs(float(mode @ self.path.unbalanced(point))) for point in window.points)
+        stiffness = min(float(np.abs(soft.values).min()) for soft in window.softest)
+        if bend > max(_IMPERFECT, _ROUND_OFF * left * largest / stiffness):
+            raise PathLostError("the path bends aside")
+
+
+def _worst(found: list[Critical]) -> float:
+    return max(one.uncertainty for one in found)

@@ -1,0 +1,85 @@
+"""Critical load factors as they would be if a loading path went on as it starts."""
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import LinearOperator, eigs
+
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
+from beamfem.linalg.lapack import eig, eigh, qr
+from beamfem.linalg.tangent import Factorised, Tangent
+from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
+from beamfem.solve.modes.pencil import UNTURNED, is_symmetric
+
+_CHANGE = 1e-3  # of the coordinates, over which the tangent's derivative is taken
+_NONE = 1e-10  # of the rate at which the coordinates change: rates this small are round-off
+_INDEPENDENT = 1e-8
+_SPARE = 2  # shapes found beyond those asked for
+
+
+def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: np.ndarray, count: int) -> np.ndarray:
+    """Return the `count` lowest critical lambda (m,) above a load factor of K0 phi = -(lambda - lambda0) K' phi.
+
+    K0: tangent in the stable state p (n,); K' = dK/dlambda along slope = dp/dlambda (n,), a difference of fourth order.
+    m is smaller where loads soften the model in fewer ways. Raises InputError where loads are not conservative.
+    """
+    moved = float(np.max(np.abs(slope) / system.scale))
+    width = _CHANGE / moved
+    tangent = _tangent(system, p, load_factor)
+    stiffness = tangent.sparse(UNTURNED)
+    rate = csr_array(stiffness.shape)
+    for steps, weight in ((1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)):
+        at = steps * width
+        rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNTURNED)
+    if not is_symmetric(csr_array(stiffness + width * rate)):
+        raise InputError(
+            "some load turns with the beam and its work depends on the way: such loads can make a structure "
+            "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
+        )
+    factors = tangent.factorised(system.turned)
+    shapes = _softened(csr_array(rate), factors, count)
+    modes = np.zeros((shapes.shape[1], len(p)))
+    modes[:, system.free_dofs] = shapes.T
+    correction = np.zeros_like(p)
+    rest = np.zeros_like(p)
+    left = linearise(system, p, rest, rest, load_factor, STATICS)[0]
+    correction[system.free_dofs] = -factors.solve(left[system.free_dofs])
+    rates = eigh(
+        -shapes.T @ (rate @ shapes), stiffness_of_modes(system, p, load_factor, modes, correction), eigvals_only=True
+    )[::-1]
+    return np.asarray(load_factor + 1.0 / rates[rates > _NONE * moved][:count])
+
+
+def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
+    """Return a basis (unknown, m) of the shapes that lose the largest shares of their stiffness per load.
+
+    The tangent's inverse times -K' is not symmetric, but sums of large parts that cancel appear nowhere.
+    """
+    n = rate.shape[0]
+    wanted = count + _SPARE
+
+    def lost(x: np.ndarray) -> np.ndarray:
+        return -factors.solve(rate @ x)
+
+    def few(vectors: int) -> Pairs:
+        operator = LinearOperator((n, n), matvec=lost, dtype=float)
+        options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
+        return eigs(operator, wanted, which="LR", **options)
+
+    def dense() -> Pairs:
+        return eig(np.column_stack([lost(column) for column in np.eye(n)]))
+
+    values, x = first_that_works(dense, few, n, wanted + 1)
+    x = x[:, np.argsort(-values.real, kind="stable")[: wanted + 1]]
+    # close values may come as a complex pair, whose real and imaginary parts span their shapes
+    parts = np.column_stack([x.real, x.imag])
+    basis, triangle, _ = qr(parts, mode="economic", pivoting=True)
+    sizes = np.abs(np.diag(triangle))
+    return np.asarray(basis[:, sizes > _INDEPENDENT * sizes[0]])
+
+
+def _tangent(system: System, p: np.ndarray, load_factor: float) -> Tangent:
+    rest = np.zeros_like(p)
+    return linearise(system, p, rest, rest, load_factor, STATICS)[1]

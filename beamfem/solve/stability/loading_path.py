@@ -1,0 +1,131 @@
+"""A loading path: its points, and how stiff the softest modes are there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.system import System
+from beamfem.errors import BeamfemError, ConvergenceError
+from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics
+from beamfem.solve.continuation.continuation import PathPoint, begin
+from beamfem.solve.continuation.steps import longest_step, too_small
+from beamfem.solve.modes.lowest import lowest_pairs
+from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.newton.iteration import Newton
+
+_ITERATIONS = 15
+_FIRST_STEP = 0.02
+_LARGEST_TURN = 0.3  # [rad] of the path's tangent in a step
+_LARGEST_CORRECTION = 0.3  # of a step
+_GROWTH = 3.0
+_REFUSALS = 12  # of steps from one point in which critical points cannot be told apart
+
+
+class PathLostError(BeamfemError):
+    """The path cannot be followed any further; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Softest:
+    """The lowest lambda (m,) [1/s^2] of K phi = lambda M phi, ascending, and phi (unknown, m), phi^T M phi = 1."""
+
+    values: np.ndarray
+    vectors: np.ndarray
+
+
+class LoadingPath:
+    """The path through a state towards larger load factors."""
+
+    def __init__(self, system: System, p: np.ndarray, load_factor: float) -> None:
+        self.system = system
+        self.line, self.start = begin(system, p, load_factor, Newton(iterations=_ITERATIONS))
+        self.points = [self.start]
+        self.size = self._next_size = _FIRST_STEP
+        self.refused, self.lost = 0, False
+        self._shift = 0.0
+
+    def advance(self, point: PathPoint) -> PathPoint:
+        """Return a further point of the path, by a step as long as the path's turning allows. Raises PathLostError."""
+        size, reason = min(self.size, longest_step(self.line, point)), ""
+        while not too_small(self.line, point, size):
+            change = size * point.tangent
+            try:
+                following = self.corrected(point.y + change, point.y, self.line.plane(point.tangent), point.tangent)
+            except PathLostError as error:
+                reason = str(error)
+            else:
+                aside = self.line.length(following.y - point.y - change)
+                turn = float(np.arccos(np.clip(self.line.dot(following.tangent, point.tangent), -1.0, 1.0)))
+                if aside <= _LARGEST_CORRECTION * size and turn <= _LARGEST_TURN:
+                    self.size = size
+                    self._next_size = size * min(_GROWTH, 0.5 * _LARGEST_TURN / max(turn, 1e-12))
+                    return following
+                reason = "the path turns too sharply"
+            size *= 0.5
+        self.size = size
+        raise PathLostError(reason)
+
+    def shorten(self, point: PathPoint) -> bool:
+        """Shorten the next step; tell whether it is still worth taking."""
+        self.size *= 0.5
+        self.refused += 1
+        self.lost = self.refused > _REFUSALS or too_small(self.line, point, self.size)
+        return not self.lost
+
+    def add(self, point: PathPoint) -> None:
+        """Add a point up to which all critical points are known."""
+        self.points.append(point)
+        self.refused = 0
+        self.size = self._next_size
+
+    def normal(self, before: PathPoint, after: PathPoint) -> np.ndarray:
+        """Return the direction (n + 1,) that places between two points are measured along."""
+        chord = after.y - before.y
+        return self.line.plane(chord / self.line.length(chord))
+
+    def unbalanced(self, point: PathPoint) -> np.ndarray:
+        """Return the residual (n,) of the unknown coordinates that is left at a point."""
+        result = np.zeros(len(point.y) - 1)
+        left = Pencil(self.system, point.y[:-1], point.load_factor).unbalanced
+        result[self.system.free_dofs] = left
+        return result
+
+    def moved(self, point: PathPoint) -> float:
+        """Return the largest movement of a node from the start, in lengths of the model."""
+        places = np.concatenate([block.dof[:, :2].ravel() for block in self.system.blocks])
+        return float(np.max(np.abs(point.y - self.start.y)[places] / self.system.extent))
+
+    def solution(self) -> Solution:
+        """Return the points found, as a solution."""
+        rows = np.array([point.y for point in self.points])
+        p, at = rows[:, :-1], rows[:, -1]
+        statistics = Statistics(0, len(rows) - 1, 0, "the equilibria that were found on the loading path")
+        return Solution(self.system.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
+
+    def corrected(self, start: np.ndarray, base: np.ndarray, normal: np.ndarray, like: np.ndarray) -> PathPoint:
+        """Return the point of the path in the plane through `start` across `normal` (n + 1,); stresses are those
+        predicted from `base`, the tangent goes the way of `like`. Raises PathLostError.
+        """
+        corrected = self.line.correct(start, self.line.stresses(base, start - base), normal)
+        if not corrected.ended.good:
+            raise PathLostError(corrected.ended.value)
+        try:
+            return self.line.linearised(corrected.y, like)
+        except LinAlgError:
+            raise PathLostError("the tangent is singular") from None
+
+    def softest(self, point: PathPoint, count: int) -> Softest:
+        """Return the `count` softest modes, none left out. Raises ConvergenceError."""
+        pencil = Pencil(self.system, point.y[:-1], point.load_factor)
+        none = np.empty((len(self.system.free_dofs), 0))
+        shift = self._shift or None
+        while shift is not None and not pencil.clear_of(shift):
+            shift *= 4.0
+        found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
+        if not len(found[0]):
+            raise ConvergenceError("round-off leaves the softest modes of the tangent no digits")
+        # of the size of the lowest values, which change little from here to the next state
+        self._shift = 2.0 * min(float(found[0][0]), 0.0) - float(np.abs(found[0][:2]).max())
+        return Softest(found[0][:count], found[1][:, :count])

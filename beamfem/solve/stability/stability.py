@@ -1,0 +1,31 @@
+"""Whether the rows of a static solution are stable."""
+
+import numpy as np
+
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import System, system_of
+from beamfem.results.solution import Solution
+from beamfem.solve.modes.modes import solve_modes
+
+_MODES = 12  # the lowest ones, where loads that follow can make flutter
+
+
+def stable_rows(solution: Solution) -> np.ndarray:
+    """Return whether each row of a static solution is stable (steps,); see `Solution.stable`."""
+    system = system_of(solution.model, static=True)
+    if system.symmetric:
+        counts = (unstable_directions(system, p, at) for p, at in zip(solution.p, solution.at, strict=True))
+        return np.array([count == 0 for count in counts])
+    count = min(_MODES, len(system.free_dofs))
+    return np.array([_none_grows(solution, row, count) for row in range(len(solution))])
+
+
+def unstable_directions(system: System, p: np.ndarray, load_factor: float) -> int:
+    """Return how many eigenvalues of the tangent are negative in the state p (n,)."""
+    rest = np.zeros(len(p))
+    tangent = linearise(system, p, rest, rest, load_factor, STATICS)[1]
+    return tangent.factorised(system.turned).negative_pivots
+
+
+def _none_grows(solution: Solution, row: int, count: int) -> bool:
+    return not np.any(solve_modes(solution.model, count, about=solution[row]).growth > 0.0)

@@ -1,0 +1,1 @@
+"""What every solve asks before its first step: where it starts, whether the model can move freely, whether it fits."""

@@ -1,0 +1,34 @@
+"""Tell whether a state is an equilibrium."""
+
+import numpy as np
+
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.round_off import digits_of, remainder
+from beamfem.assembly.system import System
+
+_TOLERANCE = 1e-6  # of the largest force: a state this far from equilibrium is none
+_CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, up to this for fields of high order
+
+
+def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
+    """Return the largest force [N, N m] that is not balanced in the state p (n,); 0 if it is small enough."""
+    rest = np.zeros_like(p)
+    unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
+    left = np.abs(system.along_free(unbalanced))
+    acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
+    force = max([float(np.abs(unbalanced).max()), *acting])
+    reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
+    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.turned)).sum(axis=1))
+    if np.all(left <= _TOLERANCE * force):
+        return 0.0
+    # faint loads hide in the round-off of stiff rows and bend a slender beam all the same
+    if np.all(left <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
+        return 0.0
+    return float(left.max())
+
+
+def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Tell whether a state (n,) balances what acts but for its last digits."""
+    if digits_of(system, p, load_factor) >= 1.0:
+        return True
+    return remainder(system, p, load_factor).digits >= 1.0

@@ -1,0 +1,121 @@
+"""Motions of beams taken as rigid, and the conditions that supports and joints put on them."""
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackError, eigsh
+
+from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
+from beamfem.assembly.system import System
+from beamfem.errors import ConvergenceError
+from beamfem.model.beam import Point
+from beamfem.model.joints import Rigid
+from beamfem.model.model import Model
+from beamfem.model.supports import Roller, Spring
+
+NEGLIGIBLE = 1e-9  # of the size of the model
+_DENSE_BODIES = 300
+_FIRST_FEW = 3
+
+
+def bodies_of(model: Model) -> np.ndarray:
+    """Return the number of the body (beams,) that each beam is part of; rigid joints make one body of two beams."""
+    pairs = [
+        (model.number_of(joint.a.beam), model.number_of(joint.b.beam))
+        for joint in model.joints
+        if isinstance(joint, Rigid)
+    ]
+    count = len(model.beams)
+    if not pairs:
+        return np.arange(count)
+    a, b = np.array(pairs).T
+    return connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False)[1]
+
+
+class Conditions:
+    """Conditions on the motions (a, b, turn) of all bodies from a state p (n,).
+
+    Lengths are measured by the model's size, turns are about its centre. body (beams,): the body that a beam is of.
+    """
+
+    def __init__(self, system: System, body: np.ndarray, p: np.ndarray) -> None:
+        model = system.model
+        self.model, self.body, self.extent = model, body, system.extent
+        self.nodes = [p[mesh.carried.dof[:, :2]] for mesh in model.meshes]
+        self.centre = np.mean([positions.mean(axis=0) for positions in self.nodes], axis=0)
+        self.bodies = int(body.max() + 1)
+        self.entries: list[tuple[int, int, float]] = []
+        self.count = 0
+        for support in model.point_supports:
+            here = self.displacement(support.point)
+            turn = np.array([0.0, 0.0, 1.0])
+            own = int(body[model.number_of(support.point.beam)])
+            if isinstance(support, Spring):
+                held = [row for row, k in zip(here, support.stiffness, strict=True) if k > 0.0]
+                held += [turn] if support.rotational > 0.0 else []
+            elif isinstance(support, Roller):
+                held = [support.direction @ here]
+            else:
+                given = {"ux": here[0], "uy": here[1], "rotation": turn}
+                held = [given[name] for name in support.held()]
+            for row in held:
+                self._add({own: row})
+        for foundation in model.foundations:
+            number = model.number_of(foundation.beam)
+            for position in self.nodes[number]:
+                for row, k in zip(self._moved(position), foundation.stiffness, strict=True):
+                    if k > 0.0:
+                        self._add({int(body[number]): row})
+        for joint in model.joints:
+            one, other = (int(body[model.number_of(point.beam)]) for point in (joint.a, joint.b))
+            if one != other:
+                for left, right in zip(self.displacement(joint.a), self.displacement(joint.b), strict=True):
+                    self._add({one: left, other: -right})
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement (2, 3) of a point with a, b and turn of its body."""
+        node = self.model.mesh_of(point).node_at(point.fraction)
+        return self._moved(self.nodes[self.model.number_of(point.beam)][node])
+
+    def _moved(self, position: np.ndarray) -> np.ndarray:
+        x, y = (position - self.centre) / self.extent
+        return np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
+
+    def _add(self, parts: dict[int, np.ndarray]) -> None:
+        for own, row in parts.items():
+            self.entries += [(self.count, 3 * own + i, float(value)) for i, value in enumerate(row)]
+        self.count += 1
+
+    def matrix(self) -> csr_array:
+        """Return the conditions (m, 3 bodies); a motion that they leave free gives zero."""
+        row, column, value = np.array(self.entries or [(0, 0, 0.0)]).T
+        shape = (max(self.count, 1), 3 * self.bodies)
+        return csr_array(coo_array((value, (row.astype(int), column.astype(int))), shape=shape))
+
+    def rates(self, p: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Return the change (n,) of the coordinates from the state p with a motion (3 bodies,)."""
+        result = np.zeros(len(p))
+        for number, mesh in enumerate(self.model.meshes):
+            a, b, turn = motion.reshape(-1, 3)[self.body[number]].tolist()
+            velocity = RigidVelocity((a * self.extent, b * self.extent), turn, tuple(self.centre))
+            set_rigid_rates(mesh, velocity, p, result)
+        return result
+
+
+def free_motions(conditions: Conditions) -> np.ndarray:
+    """Return an orthonormal basis (m, 3 bodies) of the motions that satisfy all conditions."""
+    rows, size = conditions.matrix(), 3 * conditions.bodies
+    wanted = _FIRST_FEW
+    while size > 3 * _DENSE_BODIES and 2 * wanted < size:
+        start = np.random.default_rng(1).standard_normal(size)
+        try:
+            values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
+        except ArpackError as error:
+            raise ConvergenceError(
+                f"whether {conditions.bodies} bodies can move freely could not be found out: {error}"
+            ) from error
+        if values.max() >= NEGLIGIBLE:
+            return np.asarray(vectors.T[values < NEGLIGIBLE])
+        wanted *= 4
+    _, singular, basis = np.linalg.svd(rows.toarray())
+    return np.asarray(basis[int((singular > NEGLIGIBLE).sum()) :])

@@ -1,0 +1,52 @@
+"""Refuse models that supports and joints leave free to move when every beam is taken as rigid."""
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.errors import FreeMotionError
+from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, free_motions
+
+_PROVEN = "supported"
+
+
+def require_support(system: System) -> None:
+    """Raise FreeMotionError naming a beam, a point and the motion where a rigid motion or a mechanism is left free."""
+    if _PROVEN in system.proven:
+        return
+    model = system.model
+    body = bodies_of(model)
+    rows = Conditions(system, body, system.reference)
+    free = free_motions(rows)
+    if not len(free):
+        system.proven.add(_PROVEN)
+        return
+    sizes = np.abs(free[0].reshape(-1, 3)).max(axis=1)[body]
+    # the first of those that move alike, whatever the round-off
+    number = int(np.flatnonzero(sizes > (1.0 - 1e-6) * sizes.max())[0])
+    motions = [motion.reshape(-1, 3)[body[number]] for motion in free]
+    described = [
+        "it " + describe(motion[:2] * system.extent, motion[2], rows.centre, system.extent)
+        for motion in motions
+        if np.abs(motion).max() > NEGLIGIBLE
+    ]
+    start, end = model.beams[number].start, model.beams[number].end
+    moved = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
+    farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
+    x, y = farthest.reference
+    raise FreeMotionError(
+        f"beam {number} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves. A static solve needs "
+        "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "
+        "without them, use simulate"
+    )
+
+
+def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:
+    """Say a rigid motion in words: the velocity (2,) of the point `origin` and the turn; reach: size of the body."""
+    if abs(turn) * reach < 1e-6 * np.hypot(*translation):
+        x, y = translation / np.hypot(*translation)
+        if max(abs(x), abs(y)) > 1.0 - 1e-9:
+            return f"translates along {'x' if abs(x) > abs(y) else 'y'}"
+        return f"translates along ({abs(x):.3g}, {np.copysign(y, x * y):.3g})"
+    centre = origin + np.array([-translation[1], translation[0]]) / turn
+    x, y = np.where(np.abs(centre) < 1e-6 * reach, 0.0, centre)
+    return f"turns about ({x:.6g}, {y:.6g})"

@@ -1,0 +1,20 @@
+"""What has been found outlives whatever ends the work."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from beamfem.errors import ConvergenceError
+from beamfem.results.solution import Solution
+
+
+@contextmanager
+def kept(found: Callable[[], Solution | None]) -> Iterator[None]:
+    """Give what was found so far to whatever exception ends the work inside, KeyboardInterrupt too, as `solution`."""
+    try:
+        yield
+    except BaseException as error:
+        if getattr(error, "solution", None) is None and (solution := found()) is not None:
+            error.solution = solution  # type: ignore[attr-defined]
+            if not isinstance(error, ConvergenceError):
+                error.add_note("What was found before is the `solution` of this exception.")
+        raise

@@ -1,0 +1,39 @@
+"""The state that a solve starts from."""
+
+import numpy as np
+
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.results.fitting import require_finite
+from beamfem.results.solution import Solution, State
+from beamfem.solve.start.transfer import transferred
+
+
+def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
+    """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
+    if start is None:
+        return system.reference.copy()
+    if not isinstance(start, State):
+        raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
+    require_finite(name, start)
+    return transferred(start, system, name)[0]
+
+
+def resting_state(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the coordinates (n,) of a static equilibrium and its load factor: the reference and 0 for None.
+
+    about: a state, or a static solution for its last one; it may come from a model with other supports.
+    Raises InputError for a state that moves.
+    """
+    if isinstance(about, Solution):
+        if not about.static:
+            raise InputError("about must be a static equilibrium, this solution is a motion; give one of solve_static")
+        if not len(about):
+            raise InputError("about must be a state, but this solution has no rows")
+        about = about[-1]
+    p = start_state(system, about, "about")
+    if about is None:
+        return p, 0.0
+    if np.any(about.v) or np.any(about.a):
+        raise InputError("about must be a state at rest, this one moves; take it from solve_static")
+    return p, about.at

@@ -1,0 +1,118 @@
+"""A state of one model as a state of another that has the same beams and meshes, but other supports or joints."""
+
+import numpy as np
+
+from beamfem.assembly.system import System, coordinate_columns
+from beamfem.element.axis import cross, dot
+from beamfem.element.coordinates import across
+from beamfem.errors import InputError
+from beamfem.kernels.block import TURNED_GRADIENTS
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.reference import reference_angle
+from beamfem.model.turns import uncounted
+from beamfem.results import postprocess
+from beamfem.results.solution import State
+
+_SAME = 1e-9  # of the length of a beam, within which its nodes are at the same place
+_ADVICE = "take it from a model of the same beams, elements and points with supports"
+
+
+def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates (n,) of a state in the model of a system.
+
+    Beams are found again by themselves, in a copy of their model by where they lie, whatever their order. Nodes are the
+    same; whether gradients or angles carry them depends on what holds and joins them.
+    Raises InputError where the beams do not match.
+    """
+    source, target = state.model, system.model
+    if source is target:
+        return np.array(state.p), np.array(state.v)
+    p, v = system.reference.copy(), np.zeros(target.size)
+    for old, new in _matched(source, target, name):
+        values, rates = _by_label(old, state)
+        for label, nodes, dofs in coordinate_columns(new):
+            # a turned vector is that of the first of the joined nodes
+            own = new.carried.carrier[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
+            p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
+    return p, v
+
+
+def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:
+    """Return the rotation at the start (m,) [rad], full turns included, of each beam of a model that does not count it.
+
+    Zero without a state. Raises InputError where the beams do not match.
+    """
+    meshes = uncounted(model)
+    if state is None or not meshes:
+        return np.zeros(len(meshes))
+    pairs = zip(model.meshes, model.meshes, strict=True) if state.model is model else _matched(state.model, model, name)
+    old = {id(new): source for source, new in pairs}
+    return np.array([_rotations(old[id(mesh)], state)[0] for mesh in meshes])
+
+
+def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
+    """Return the rotation of each node's section (nodes,) [rad] in a state."""
+    own = [i for i, other in enumerate(uncounted(state.model)) if other is mesh]
+    turned = state.turned[own] if own and state.turned is not None else None
+    return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
+
+
+def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Every coordinate that a node could have (nodes,), and its rate, by name."""
+    p, v = state.p[None], state.v[None]
+    e, rate = postprocess.nodal_vectors(mesh, p)[0], postprocess.nodal_velocities(mesh, p, v)[0]
+    values: dict[str, np.ndarray] = {}
+    rates: dict[str, np.ndarray] = {}
+    for i, vector in enumerate(mesh.vectors):
+        for component, axis in enumerate("xy"):
+            values[f"{vector}^{axis}"], rates[f"{vector}^{axis}"] = e[:, i, component], rate[:, i, component]
+    director, turning = e[:, -1], rate[:, -1]
+    normal = -across(director)
+    angle = np.arctan2(normal[:, 1], normal[:, 0]) - reference_angle(mesh)
+    turns = np.round((_rotations(mesh, state) - angle) / (2.0 * np.pi))
+    values["theta"] = angle + 2.0 * np.pi * turns
+    rates["theta"] = cross(director, turning) / dot(director, director)
+    if "r_x" in mesh.vectors:
+        slope = e[:, mesh.vectors.index("r_x")]
+        along = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+        values["s"] = dot(slope, along)
+        rates["s"] = dot(rate[:, mesh.vectors.index("r_x")], along)
+    return values, rates
+
+
+def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
+    """Return the mesh of each beam in both models. Raises InputError where a beam has no like one."""
+    own = {id(mesh.beam): mesh for mesh in source.meshes}
+    left = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
+    pairs = []
+    for new in target.meshes:
+        old = own.get(id(new.beam)) or next((mesh for mesh in left if _alike(mesh, new)), None)
+        if old is None or not _alike(old, new):
+            other = [old] if old is not None else source.meshes[:5]
+            there = "; ".join(_described(source, mesh) for mesh in other)
+            raise InputError(
+                f"{name} does not have the {_described(target, new)} of this model, it has {there}, or nodes elsewhere "
+                f"in between; {_ADVICE}"
+            )
+        left = [mesh for mesh in left if mesh is not old]
+        pairs.append((old, new))
+    if left:
+        raise InputError(f"this model does not have the {_described(source, left[0])} of {name}; {_ADVICE}")
+    return pairs
+
+
+def _alike(old: BeamMesh, new: BeamMesh) -> bool:
+    """Tell whether two beams have the same nodal vectors at the same places."""
+    if old.vectors != new.vectors or old.nodes != new.nodes:
+        return False
+    near = _SAME * new.arc[-1]
+    apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
+    turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
+    return bool(apart <= near and turned <= _SAME * new.speed.max())
+
+
+def _described(model: Model, mesh: BeamMesh) -> str:
+    (x0, y0), (x1, y1) = mesh.position[[0, -1]]
+    number = model.number_of(mesh.beam)
+    return f"{mesh.nodes} nodes of {mesh.beam.element.name} on beam {number} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"

@@ -1,0 +1,1 @@
+"""Equilibria under loads that grow step by step."""

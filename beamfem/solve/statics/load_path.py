@@ -1,0 +1,130 @@
+"""Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.system import System
+from beamfem.errors import BeamfemError
+from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
+from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
+from beamfem.solve.newton.iteration import Newton
+
+_FIRST_STEP = 1e-2  # along the path, see Continuation
+_PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
+_SLOWER = 0.8  # likewise where it slows down, as towards a limit point
+_FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
+_MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A point of the path, how many iterations it took and how many steps were refused on the way to it."""
+
+    point: PathPoint
+    iterations: int
+    cuts: int
+
+
+class PathLostError(BeamfemError):
+    """The path could not be followed: why, after how many iterations and refused steps."""
+
+    def __init__(self, reason: str, iterations: int, cuts: int) -> None:
+        super().__init__(reason)
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+class TurnsBackError(BeamfemError):
+    """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path behind it."""
+
+    def __init__(self, limit: np.ndarray, beyond: np.ndarray, iterations: int, cuts: int) -> None:
+        super().__init__(f"the path turns back at load factor {limit[-1]:.6g}")
+        self.limit = limit
+        self.beyond = beyond
+        self.iterations = iterations
+        self.cuts = cuts
+
+
+class PathFollower:
+    """The path of a system from the equilibrium p (n,), followed by its length; steps go on as long as they were."""
+
+    def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float) -> None:
+        self.system = system
+        self.newton = newton
+        self.start = p, load_factor
+        self.size = _FIRST_STEP
+        self.left: np.ndarray | None = None  # limit point (n + 1,) of the last jump
+        self.passed: deque[float] = deque(maxlen=_PACE)
+
+    @cached_property
+    def line(self) -> Continuation:
+        """How lengths along the path are measured: by what the loads do at its start."""
+        return begin(self.system, *self.start, self.newton)[0]
+
+    def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
+        """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
+
+        end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
+        along the path is accepted, or where load factor 1 is out of reach at the pace of the last steps.
+        """
+        growing = np.zeros(len(p) + 1)
+        growing[-1] = 1.0
+        try:
+            line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
+        except LinAlgError:
+            raise PathLostError("the tangent is singular there", 0, 0) from None
+        while point.load_factor < beyond:
+            self._require_pace(point.load_factor)
+            step, iterations, cuts = _step(line, point, self.size)
+            self.passed.extend((cuts + 1) * [point.load_factor])
+            self.size = step.next_size
+            point = step.segment.after
+            if step.limits:
+                limit = step.segment.critical(step.limits[0])
+                if np.array_equal(limit, point.y):
+                    point = _step(line, point, self.size)[0].segment.after
+                raise TurnsBackError(limit, point.y, iterations, cuts)
+            if point.load_factor > end:
+                point = _at_load(step.segment, end, iterations, cuts)
+            yield Followed(point, iterations, cuts)
+
+    def _require_pace(self, load_factor: float) -> None:
+        """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
+        if len(self.passed) == _PACE:
+            half = _PACE // 2
+            before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
+            if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
+                raise PathLostError(
+                    f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
+                    "out of reach: the loads are far too large for what bears them",
+                    0,
+                    0,
+                )
+
+
+def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:
+    try:
+        return segment.at_load(target)
+    except SegmentLostError as error:
+        raise PathLostError(str(error), iterations, cuts) from error
+
+
+def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int, int]:
+    """Return the longest step up to `size` that is accepted, the iterations of all that were tried, and those cut."""
+    size = min(size, longest_step(line, point))
+    iterations = cuts = 0
+    while True:
+        taken = take_step(line, point, size)
+        iterations += taken.iterations
+        if isinstance(taken, Step):
+            return taken, iterations, cuts
+        cuts += 1
+        size *= 0.5
+        if too_small(line, point, size):
+            raise PathLostError(f"{taken.reason}, with steps along it cut to round-off", iterations, cuts)

@@ -1,0 +1,121 @@
+"""Load steps that stay on the path: by the load where that is safe, else by the length of the path."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+from beamfem.assembly.system import System
+from beamfem.errors import ConvergenceError, LimitPointError
+from beamfem.progress import progress
+from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.statics.load_path import PathFollower, PathLostError, TurnsBackError
+from beamfem.solve.statics.skipped import skips_limit_points
+from beamfem.solve.statics.snap import rest_state, same_point
+from beamfem.solve.statics.static_record import StaticRecord
+
+Snap = Literal["error", "jump"]
+
+_CUTS = 4  # in succession, before the path is followed by its length
+_EASY_ITERATIONS = 8
+_LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
+_SAME = 1e-12  # of the load factor: no nearer than this are two of them
+_SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
+
+
+def reach(
+    system: System, done: StaticRecord, step: float, newton: Newton, snap: Snap, stops: Sequence[float] = ()
+) -> None:
+    """Add the rows from the last one to load factor 1; `step` is the first load step.
+
+    stops: load factors that get a row of their own, but for those that a jump leaves out.
+    Raises LimitPointError and ConvergenceError with the solution so far.
+    """
+    ahead = sorted({stop for stop in stops if _SAME < stop < 1.0 - _SAME} | {1.0})
+    follower = PathFollower(system, newton, done.state, done.reached)
+    cuts, refused = 0, done.reached
+    with progress("load factor", 1.0) as report:
+        while done.reached < 1.0:
+            step = _within_a_turn(system, done, step)
+            stop = next((stop for stop in ahead if stop > done.reached + _SAME), 1.0)
+            target = stop if done.reached + step > stop - _SAME else done.reached + step
+            result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
+            done.iterations += result.iterations
+            if result.ended.good and not skips_limit_points(system, done, target, result, newton):
+                done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
+                if target >= refused:
+                    cuts = 0
+                if result.iterations <= _EASY_ITERATIONS:
+                    step *= 2.0
+            elif result.ended is Ended.NO_DIGITS:
+                # what round-off takes of a load it takes of a smaller one as well
+                raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
+            elif cuts < _CUTS:
+                cuts += 1
+                done.cuts += 1
+                refused = max(refused, target)
+                step *= 0.5
+            else:
+                # behind what the load step could not pass, a longer one is tried once
+                _follow(done, follower, (target, stop), snap)
+                refused = 1.0
+                step *= 2.0
+            report(done.reached)
+
+
+def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
+    """Return a load step in which no prescribed rotation turns too far. Raises ConvergenceError at a jump."""
+    while system.largest_turn(done.reached, min(done.reached + step, 1.0)) > _LARGEST_TURN:
+        step *= 0.5
+        if step < _SHORTEST_TURN:
+            raise ConvergenceError(
+                f"a prescribed rotation jumps by more than {_LARGEST_TURN:g} rad just after load factor "
+                f"{done.reached:.6g}; let it turn over a part of the load factor, so that turns can be counted",
+                done.solution(),
+            )
+    return step
+
+
+def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float], snap: Snap) -> None:
+    """Add the rows along the path or, where the path turns back, to the state behind the jump.
+
+    to: the load factor to reach, and the one that no row exceeds.
+    """
+    try:
+        for followed in follower.follow(done.state, done.reached, *to):
+            done.iterations += followed.iterations
+            done.cuts += followed.cuts
+            point = followed.point
+            done.add(point.load_factor, point.y[:-1], point.negative_pivots, Ended.CONVERGED)
+    except TurnsBackError as turn:
+        done.iterations += turn.iterations
+        done.cuts += turn.cuts
+        _jump(follower, done, turn, snap)
+    except PathLostError as lost:
+        done.iterations += lost.iterations
+        done.cuts += lost.cuts
+        raise ConvergenceError(
+            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}", done.solution()
+        ) from lost
+
+
+def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
+    """Add the state of rest behind a limit point. Raises LimitPointError where no jump is wanted."""
+    load_factor = float(turn.limit[-1])
+    where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
+    if snap == "error":
+        raise LimitPointError(
+            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to where the structure comes to '
+            "rest; or let a Prescribed displacement lead instead of the load",
+            load_factor,
+            done.solution(),
+        )
+    if follower.left is not None and same_point(follower.system, follower.left, turn.limit):
+        raise LimitPointError(
+            f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()
+        )
+    follower.left = turn.limit
+    found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
+    done.iterations += found.iterations
+    if not found.ended.good:
+        raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())
+    done.add(load_factor, found.state, found.negative_pivots, found.ended, found.digits)

@@ -1,0 +1,76 @@
+"""The equilibrium at load factor 0, under the loads that do not scale and what is prescribed there."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from beamfem.assembly.equations import residual
+from beamfem.assembly.round_off import load_size, row_floors
+from beamfem.assembly.system import System, system_of
+from beamfem.errors import ConvergenceError
+from beamfem.model.loads import factor
+from beamfem.model.model import Model
+from beamfem.model.supports import Prescribed
+from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.statics.load_steps import reach
+from beamfem.solve.statics.static_record import StaticRecord
+from beamfem.validation import function_value
+
+_AT_REST = "nothing acts at load factor 0"
+
+
+def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
+    """Return the equilibrium at load factor 0; where it is far, that of the path along which all loads grow at once."""
+    if _at_rest(system):
+        return NewtonResult(system.reference, 0, Ended.CONVERGED)
+    result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
+    return result if result.ended.good else _grown(system, newton, result)
+
+
+def _at_rest(system: System) -> bool:
+    """Tell whether nothing acts yet at load factor 0."""
+    if _AT_REST not in system.proven:
+        p = system.reference
+        rest = np.zeros(p.shape)
+        balanced = np.all(np.abs(residual(system, p, rest, rest, 0.0)) <= row_floors(system, p))
+        # a load that is lost in the round-off of stiff rows may bend the beam all the same
+        acts = load_size(system, system.point_values(0.0)) > 0.0 or bool(system.body(0.0).any())
+        if acts or not balanced or not np.array_equal(system.held_values(0.0), p[system.held_dofs]):
+            return False
+        system.proven.add(_AT_REST)
+    return True
+
+
+def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:
+    """Return the end of the path along which what acts at load factor 0 grows from nothing."""
+    growing = system_of(_growing(system.model), static=True)
+    done = StaticRecord(growing.model, growing.symmetric)
+    done.iterations = failed.iterations
+    done.add(0.0, growing.reference, 0, Ended.CONVERGED)
+    try:
+        reach(growing, done, 1.0, newton, "error")
+    except ConvergenceError:
+        return replace(failed, iterations=done.iterations)
+    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots, done.digits)
+
+
+def _growing(model: Model) -> Model:
+    """Return the model with what acts at load factor 0 in proportion to the load factor, and nothing else."""
+    loads = [replace(load, amplitude=_in_proportion(factor(load, 0.0, True))) for load in model.loads]
+    supports = [_led(support) if isinstance(support, Prescribed) else support for support in model.supports]
+    return Model(model.beams, supports, loads, model.joints)
+
+
+def _led(support: Prescribed) -> Prescribed:
+    """Return a support with what it prescribes at load factor 0 in proportion to the load factor."""
+    values = {
+        name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
+        for name, value in support.held().items()
+    }
+    return Prescribed(support.point, **values)
+
+
+def _in_proportion(weight: float) -> Callable[[float], float]:
+    return lambda load_factor: weight * load_factor

@@ -1,0 +1,67 @@
+"""Whether a load step may have gone over limit points to a state as stable as the one it left."""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
+from beamfem.assembly.system import System
+from beamfem.solve.newton.iteration import Newton, NewtonResult
+from beamfem.solve.statics.static_record import StaticRecord
+
+_OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
+_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models are at rest first and go all the way in one long step
+
+
+def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
+    """Tell whether a load step to `target` may have gone over limit points.
+
+    Either linearised stability expects a critical point before its end. Or the tangent at its start goes far beyond its
+    end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
+    looked at where the iteration was slow, the state half-way has another count of negative pivots.
+    """
+    if result.linear is not None and _critical(system, done, target, result.linear):
+        return True
+    if done.reached > 0.0:
+        moved = float(np.max(np.abs(result.state - done.state) / system.scale))
+        if result.first > _OVERSHOOT * moved + newton.tolerance:
+            return True
+    if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
+        return False
+    return _differs_half_way(system, done, target, result.state)
+
+
+def _critical(system: System, done: StaticRecord, target: float, linear: np.ndarray) -> bool:
+    """Tell whether the tangent at the start has another count with the stress resultants of a linear step.
+
+    linear: the state (n,) after this step, in whose shape, which may be absurd, the tangent has another count anyway.
+    """
+    done.iterations += 1
+    try:
+        stresses = predicted_stresses(system, done.state, linear - done.state)
+        return _other_count(system, done, done.state, target, stresses)
+    except LinAlgError:
+        return True
+
+
+def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:
+    """Tell whether the state half-way has another count with the mean stress resultants of both ends.
+
+    Its own would be those of a chord.
+    """
+    done.iterations += 1
+    rest = np.zeros(len(end))
+    ends = (predicted_stresses(system, p, rest) for p in (done.state, end))
+    mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
+    try:
+        return _other_count(system, done, 0.5 * (done.state + end), 0.5 * (done.reached + target), mean)
+    except LinAlgError:
+        return True
+
+
+def _other_count(
+    system: System, done: StaticRecord, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]
+) -> bool:
+    """Tell whether the tangent in a state (n,) with these resultants has another count. Raises LinAlgError."""
+    rest = np.zeros(len(p))
+    _, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
+    return tangent.factorised(system.turned).negative_pivots != done.negative_pivots

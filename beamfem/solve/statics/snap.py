@@ -1,0 +1,107 @@
+"""Where a structure comes to rest that snaps at a limit point under a load that stays.
+
+Slow loading and damping: the motion is the overdamped one, M q' = -r(q), in implicit Euler steps that grow as it comes
+to rest. Loads that keep their direction lose potential energy in every step, so it ends in a stable equilibrium, as
+long as a step does not leave the valley it is in: M / dt + K must be positive on the way.
+"""
+
+import numpy as np
+
+from beamfem.assembly.equations import INERTIA, linearise, residual
+from beamfem.assembly.system import System
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.newton.newton import solve_equilibrium
+
+_STEPS = 2000
+_ITERATIONS = 8  # of Newton's method in a step
+_LARGEST_MOVE = 0.1  # in a step: lengths of the model, radians
+_NEAR = 1e-3  # a step that moves less than this, however long, is close to rest
+_CLOSE = 1e-9  # of the move: the last correction of a step
+_SAME_LOAD = 1e-6  # limit points are located to about 1e-8
+_SAME_PLACE = 1e-3  # of the model, or of a gradient: by 1e-6 loads beside a limit point, states differ by the root
+
+
+def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Newton) -> NewtonResult:
+    """Return the equilibrium at the load of a limit point (n + 1,) that the structure snaps to.
+
+    beyond (n + 1,): a point of the path behind the limit point, on the side that it leaves to.
+    """
+    load_factor, free = float(limit[-1]), system.free_dofs
+    aside = np.zeros(len(limit) - 1)
+    aside[free] = (beyond - limit)[:-1][free]
+    aside *= min(1.0, _LARGEST_MOVE / _size(system, aside))
+    p = limit[:-1] + aside
+    mass = _mass(system, p, load_factor)
+    pull = abs(float(aside[free] @ _unbalanced(system, p, load_factor)[free]))
+    time = float(aside[free] @ (mass @ aside[free])) / max(pull, np.finfo(float).tiny)
+    iterations = 0
+    for _ in range(_STEPS):
+        moved, used = _step(system, p, load_factor, time)
+        iterations += used
+        size = np.inf if moved is None else _size(system, moved - p)
+        if moved is None or size > _LARGEST_MOVE:
+            time *= 0.5
+            continue
+        p = moved
+        time *= 2.0
+        if size < _NEAR:
+            result = solve_equilibrium(system, p, load_factor, newton, keep=0)
+            iterations += result.iterations
+            if result.ended.good and result.negative_pivots == 0 and _size(system, result.state - p) < _LARGEST_MOVE:
+                return NewtonResult(result.state, iterations, result.ended)
+    return NewtonResult(p, iterations, Ended.EXHAUSTED)
+
+
+def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
+    """Tell whether two limit points (n + 1,) are the same but for whole turns, which loads that follow may add.
+
+    Slow loading never lowers the load factor, so that a limit point met again at the same one is where a cycle closes.
+    """
+    if abs(one[-1] - other[-1]) > _SAME_LOAD * abs(one[-1]):
+        return False
+    nodes = [system.assembler().nodal_vectors(np.ascontiguousarray(y[:-1])) for y in (one, other)]
+    changes = [np.abs(a - b) for a, b in zip(*nodes, strict=True)]
+    positions = max(float(change[:, :2].max()) for change in changes) / system.extent
+    return max(positions, *(float(change[:, 2:].max()) for change in changes)) < _SAME_PLACE
+
+
+def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
+    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations.
+
+    It fails as well where the step is so long that more than one state is at its end: some lie in other valleys.
+    """
+    free, moved, rest = system.free_dofs, p.copy(), np.zeros(len(p))
+    mass = _mass(system, p, load_factor)
+    for iteration in range(1, _ITERATIONS + 1):
+        unbalanced, tangent = linearise(system, moved, rest, rest, load_factor, (1.0, 0.0, 1.0 / time))
+        right = -unbalanced[free] - mass @ (moved - p)[free] / time
+        try:
+            factors = tangent.factorised(system.turned)
+            if system.symmetric and factors.negative_pivots > 0:
+                return None, iteration
+            change = factors.solve(right)
+        except LinAlgError:
+            return None, iteration
+        moved[free] += change
+        size = float(np.max(np.abs(change) / system.scale[free]))
+        if not size < 1e3:
+            return None, iteration
+        if size <= _CLOSE + 1e-3 * _size(system, moved - p) * (iteration > 1):
+            return moved, iteration
+    return None, _ITERATIONS
+
+
+def _mass(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
+    rest = np.zeros(len(p))
+    return linearise(system, p, rest, rest, load_factor, INERTIA)[1].sparse(UNTURNED)
+
+
+def _unbalanced(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
+    rest = np.zeros(len(p))
+    return residual(system, p, rest, rest, load_factor)
+
+
+def _size(system: System, change: np.ndarray) -> float:
+    return float(np.max(np.abs(change) / system.scale))

@@ -1,0 +1,96 @@
+"""What a static solve has found, and how it becomes a solution."""
+
+import warnings
+
+import numpy as np
+
+from beamfem.assembly.round_off import FEW_DIGITS
+from beamfem.errors import RoundOffWarning, UnstableWarning
+from beamfem.model.model import Model
+from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics, Status
+from beamfem.solve.newton.iteration import Ended
+
+
+class StaticRecord:
+    """The rows found so far: load factors, states (n,) and the negative pivots of their tangents.
+
+    One call adds a row, so that an interruption finds it whole.
+    """
+
+    def __init__(self, model: Model, symmetric: bool) -> None:
+        self.model = model
+        self.symmetric = symmetric
+        self.rows: list[tuple[float, np.ndarray, int]] = []
+        self.iterations = 0
+        self.cuts = 0
+        self.ended = Ended.CONVERGED
+        self.digits = np.nan
+
+    @property
+    def reached(self) -> float:
+        return self.rows[-1][0]
+
+    @property
+    def state(self) -> np.ndarray:
+        return self.rows[-1][1]
+
+    @property
+    def negative_pivots(self) -> int:
+        return self.rows[-1][2]
+
+    def add(
+        self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended, digits: float = np.nan
+    ) -> None:
+        self.ended = ended
+        self.digits = digits
+        self.rows.append((load_factor, state, negative_pivots))
+
+    def solution(self, complete: bool = False) -> Solution:
+        """Return the rows as a solution; complete: the solve came to its end.
+
+        Warns of few digits and, where the solve is complete, of unstable rows: where it is not, an error is on its way.
+        """
+        load_factors, states, counts = map(np.array, zip(*self.rows, strict=True))
+        # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
+        unstable = counts > 0 if self.symmetric else counts % 2 == 1
+        status = Status.STOPPED if not complete else Status.COMPLETED
+        if complete and self.ended is Ended.ROUND_OFF:
+            status = Status.ROUND_OFF
+        ended = self.ended.value
+        said: tuple[str, ...] = ()
+        if unstable.any():
+            status = Status.UNSTABLE if complete else status
+            said = (_describe(unstable, load_factors),)
+            if unstable[-1] and self.symmetric:
+                ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
+            elif unstable[-1]:
+                ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
+            if complete:
+                warnings.warn(said[0], UnstableWarning, stacklevel=3)
+        if self.digits < FEW_DIGITS:
+            few = f"round-off leaves {self.digits:.0f} digits of the forces"
+            ended += f"; {few}"
+            said += (few,)
+            warnings.warn(few, RoundOffWarning, stacklevel=3)
+        statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, said, self.digits)
+        return Solution(
+            self.model,
+            True,
+            load_factors,
+            states,
+            np.zeros(states.shape),  # unlike zeros_like, no memory until somebody writes to it
+            np.zeros(states.shape),
+            statistics,
+            ~unstable if self.symmetric else None,
+        )
+
+
+def _describe(unstable: np.ndarray, load_factors: np.ndarray) -> str:
+    rows = np.flatnonzero(unstable)
+    first, last = load_factors[rows[0]], load_factors[rows[-1]]
+    where = f"at load factor {first:.6g}" if len(rows) == 1 else f"from load factor {first:.6g} to {last:.6g}"
+    return (
+        f"{len(rows)} of {len(unstable)} rows are unstable equilibria, {where}: the structure would leave them for "
+        "another path. solution.stable tells which; trace_equilibrium finds the bifurcations and follows their branches"
+    )

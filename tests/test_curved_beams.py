@@ -9,7 +9,8 @@ import beamfem as bf
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System, coordinate_columns
 from beamfem.model.reference import energy_points, reference_axis
-from beamfem.results.postprocess import axis, nodal_vectors, strain_energy
+from beamfem.results.postprocess import axis, nodal_vectors, nodal_velocities, strain_energy
+from beamfem.results.status import Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SOFT = bf.Material(2e5, 0.3, 1000.0)
@@ -154,11 +155,9 @@ def test_strain_and_kinetic_energy_of_a_curved_body_by_brute_force(element, curv
     system = System(bf.Model([beam], loads=[bf.Gravity((0.0, -1.0))]), static=False)
     mesh, n = system.model.meshes[0], system.model.size
     p, v = system.reference + 0.05 * rng.standard_normal(n), rng.standard_normal(n)
-    solution = bf.Solution(
-        system.model, False, np.zeros(1), p[None], v[None], 0 * p[None], bf.solution.Statistics(0, 0, 0, "")
-    )
+    solution = bf.Solution(system.model, False, np.zeros(1), p[None], v[None], 0 * p[None], Statistics(0, 0, 0, ""))
     e0, e = (nodal_vectors(mesh, q[None])[0] for q in (system.reference, p))
-    e_dot = bf.postprocess.nodal_velocities(mesh, p[None], v[None])[0]
+    e_dot = nodal_velocities(mesh, p[None], v[None])[0]
     points = max(element.field.degree, element.field.director_degree) + 1
     strain, kinetic, potential = 0.0, 0.0, 0.0
     momentum = np.zeros(2)

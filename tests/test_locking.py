@@ -13,6 +13,7 @@ from beamfem.assembly.system import System
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Cubic
 from beamfem.results.postprocess import axis, nodal_vectors, strain_energy
+from beamfem.results.status import Statistics
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 LINES = (bf.Structural(), bf.ElasticLine())
@@ -263,7 +264,7 @@ def test_frequencies_of_a_ring_that_locks_say_so():
 def test_warnings_of_a_solver_come_first_and_are_saved(tmp_path):
     pytest.importorskip("h5py")
     solution, _ = cantilever(bf.CRBF(1), 2, 10, tip_force)
-    said = bf.solution.Statistics(3, 1, 0, "ended", warnings=("take care",))
+    said = Statistics(3, 1, 0, "ended", warnings=("take care",))
     marked = bf.Solution(solution.model, True, solution.at, solution.p, solution.v, solution.a, said)
     assert marked.warnings == ("take care",)
     marked.save(tmp_path / "marked.h5")

@@ -24,7 +24,7 @@ FEW_DIGITS = 4.0  # of the forces: users are told
 
 
 def row_floors(system: System, p: np.ndarray) -> np.ndarray:
-    """Return the residual (n,) [N, N m] that rounded coordinates leave in each row, see `model.round_off`."""
+    """Return the residual (n,) [N, N m] that rounded coordinates leave in each row, see `row_errors`."""
     reach, turn = sizes(system, p)
     positions, directions = system.residual_errors
     return np.asarray(ROUND_OFF * (reach * positions + turn * directions))

@@ -1,7 +1,7 @@
 """What the coordinates of a static solution lack below their last digit, and what that adds to its forces.
 
 A stiff part of a model turns the last digit of a position into a force that may be larger than what acts. The state
-still is the equilibrium; what it lacks is found from the balance (`analysis.round_off.remainder`) and kept apart.
+still is the equilibrium; what it lacks is found from the balance (`assembly.round_off.remainder`) and kept apart.
 """
 
 from collections.abc import Callable

@@ -9,8 +9,9 @@ from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.linalg import eigenpairs, linearised
+from beamfem.linalg import eigenpairs
 from beamfem.solve.modes.pencil import Pencil
+from beamfem.solve.stability import linearised
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)
@@ -97,9 +98,18 @@ def test_a_portal_sways_and_then_has_a_limit_point(degrees, mirror):
     assert found.load_factors[0] == pytest.approx(path.bifurcations[0].load_factor, rel=1e-7)
     assert found.load_factors[1] == pytest.approx(28.135857, rel=1e-6)
     assert "largest load factor" in found.ended
+    assert found.status is bf.Status.COMPLETED
     assert len(found.linearised) >= 2
     assert len(bf.solve_buckling(model).load_factors) == 1
     require_counts(model, found)
+
+
+def test_a_search_that_runs_out_of_points_has_stopped(monkeypatch):
+    monkeypatch.setattr("beamfem.solve.stability.buckling._MOST_POINTS", 2)
+    found = bf.solve_buckling(portal([0.5], [EI]), 5)
+    assert len(found) < 2
+    assert "used up" in found.ended
+    assert found.status is bf.Status.STOPPED
 
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])

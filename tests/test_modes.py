@@ -161,8 +161,11 @@ def test_a_compressed_column_diverges_beyond_its_critical_load():
     with pytest.warns(bf.UnstableWarning):
         states = bf.solve_static(model, steps=2)
     below = int(np.flatnonzero(states.load_factor < 0.8)[-1])
-    assert bf.solve_modes(model, 1, about=states[below]).growth[0] == 0.0
+    stable = bf.solve_modes(model, 1, about=states[below])
+    assert stable.growth[0] == 0.0
+    assert stable.status is bf.Status.COMPLETED
     modes = bf.solve_modes(model, 2, about=states)
+    assert modes.status is bf.Status.UNSTABLE
     assert modes.growth[0] > 0.0
     assert modes.frequencies[0] == 0.0
     assert modes.growth[1] == 0.0

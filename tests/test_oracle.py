@@ -7,7 +7,10 @@ import pytest
 
 from beamfem import ContinuumMechanics, Element, Gravity, Line, Material, Model, Pin, Section
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
-from beamfem.assembly.forms import (
+from beamfem.assembly.system import System
+from beamfem.element.coordinates import Gradients, Rotation, labels
+from beamfem.element.fields import Cubic, Field, Lagrange
+from beamfem.forms import (
     beam_basis,
     elastic_force,
     elastic_tangent,
@@ -17,9 +20,6 @@ from beamfem.assembly.forms import (
     nodal_numbers,
     strain_energy,
 )
-from beamfem.assembly.system import System
-from beamfem.element.coordinates import Gradients, Rotation, labels
-from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.kernels.block import ROTATION
 from beamfem.model.beam import Beam
 from beamfem.results.postprocess import strain_energy as kernel_strain_energy

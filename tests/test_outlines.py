@@ -6,7 +6,7 @@ import pyvista
 from scipy.integrate import quad
 
 import beamfem as bf
-from beamfem.assembly.forms import beam_basis
+from beamfem.forms import beam_basis
 from beamfem.view.shapes import Shapes
 
 STEEL = bf.Material(2.1e11, 0.3, 7850.0)

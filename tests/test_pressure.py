@@ -8,8 +8,8 @@ from scipy.optimize import fsolve
 
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise, residual
-from beamfem.assembly.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.assembly.system import System
+from beamfem.forms import axis_basis, nodal_numbers, pressure_load
 from beamfem.results.postprocess import nodal_vectors, nodal_velocities
 from beamfem.solve.newton.iteration import NewtonResult
 from beamfem.solve.newton.newton import solve_equilibrium

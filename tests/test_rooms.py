@@ -33,6 +33,7 @@ ROOMS = (
     "results",
     "assembly",
     "linalg",
+    "forms",
     "model",
     "element",
     "physics",

@@ -1,4 +1,4 @@
-"""A field basis as a scikit-fem element on a line mesh: what the readable forms of the physics are written on."""
+"""A field basis as a scikit-fem element on a line mesh: what the readable forms of `beamfem.forms` are written on."""
 
 import numpy as np
 from skfem import Element, MappingAffine

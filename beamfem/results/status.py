@@ -11,7 +11,7 @@ class Status(Enum):
 
     COMPLETED = "the solve came to its end"
     ROUND_OFF = "the solve came to its end, where the residual is at the round-off floor of the model"
-    UNSTABLE = "the solve came to its end, but some of its rows are unstable equilibria"
+    UNSTABLE = "the solve came to its end, but an equilibrium that it found, or started from, is unstable"
     STOPPED = "the solve stopped before its end"
 
 

@@ -13,7 +13,7 @@ from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.locking import frequency_warnings
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
+from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.lowest import lowest_pairs
 from beamfem.solve.modes.pencil import UNTURNED, Pencil
 from beamfem.solve.modes.rigid import unresisted
@@ -55,6 +55,11 @@ class Modes:
     def elastic(self) -> np.ndarray:
         """Frequencies [Hz] without those of the rigid modes."""
         return self.frequencies[len(self.rigid) :]
+
+    @property
+    def status(self) -> Status:
+        """UNSTABLE where a mode grows, else COMPLETED: a solve that misses modes raises."""
+        return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED
 
     @property
     def warnings(self) -> tuple[str, ...]:

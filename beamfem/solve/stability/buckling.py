@@ -14,7 +14,7 @@ from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.solution import Solution, State
-from beamfem.results.status import Statistics
+from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.newton import solve_equilibrium
@@ -43,7 +43,7 @@ class Buckling:
     would be singular if the path went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (m, n):
     critical shapes over all coordinates, their largest displacement of a node 1; states (m, n): the equilibria at
     `load_factors`; uncertainty (m,): share of a load factor that round-off and interpolation may have changed; ended:
-    why there are no more.
+    why there are no more; status: STOPPED where the path was lost, or too long, before that could be known.
     """
 
     model: Model
@@ -54,6 +54,7 @@ class Buckling:
     states: np.ndarray
     uncertainty: np.ndarray
     ended: str
+    status: Status = Status.COMPLETED
 
     def __repr__(self) -> str:
         points = zip(self.kinds, self.load_factors, strict=True)
@@ -110,7 +111,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         )
     farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
     with digits_for("critical load factors"):
-        found, ended = _criticals(path, count, farthest)
+        found, ended, status = _criticals(path, count, farthest)
     if not found and path.lost:
         raise ConvergenceError(
             f"the loading path was lost before any load factor was critical: {ended}", path.solution()
@@ -130,6 +131,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         np.array([point.p for point in found]).reshape(-1, model.size),
         uncertainty,
         ended,
+        status,
     )
 
 
@@ -154,8 +156,8 @@ def _stable_start(system: System, about: State | Solution | None) -> tuple[np.nd
     return p, load_factor
 
 
-def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str]:
-    """Return the first `count` critical points of a path up to its first limit point, and why there are no more."""
+def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:
+    """Return the first `count` critical points up to the first limit point, why there are no more, and the status."""
     found: list[Critical] = []
     here = path.start
     while len(path.points) < _MOST_POINTS:
@@ -164,20 +166,21 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
             more, here = critical_points(path, here, following)
         except PathLostError as error:
             if not path.shorten(here):
-                return found, str(error)
+                return found, str(error), Status.STOPPED
             continue
         except ConvergenceError as error:
             path.lost = True
-            return found, str(error)
+            return found, str(error), Status.STOPPED
         path.add(here)
         for point in more:
             found.append(point)
             if point.kind == LIMIT_POINT:
-                return found[:count], "the path has its largest load factor there"
+                return found[:count], "the path has its largest load factor there", Status.COMPLETED
         if len(found) >= count:
-            return found[:count], f"{count} are asked for"
+            return found[:count], f"{count} are asked for", Status.COMPLETED
         if path.moved(here) > _LARGEST_MOVEMENT:
-            return found, "the model has moved by more than its own length"
+            return found, "the model has moved by more than its own length", Status.COMPLETED
         if here.load_factor > farthest:
-            return found, f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
-    return found, f"the {_MOST_POINTS} points of the path are used up"
+            ended = f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
+            return found, ended, Status.COMPLETED
+    return found, f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED

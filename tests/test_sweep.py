@@ -8,13 +8,14 @@ import textwrap
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.sweeps.keys import canonical, point_key
+from beamfem.sweeps.keys import _MOVED, canonical, point_key
 from beamfem.sweeps.parameters import labels
 
 TWO_PROCESSES = partial(ProcessPoolExecutor, 2)
@@ -200,6 +201,19 @@ def test_keys_tell_values_apart():
     assert canonical(np.int32(3), "x") == canonical(3, "x")
     assert canonical(np.array([1.0, 2.0], dtype=">f8"), "x") == canonical(np.array([1.0, 2.0]), "x")
     assert canonical(bf.CRBF(2), "x") == canonical(bf.CRBF(order=2), "x")
+
+
+def test_results_stored_under_the_former_modules_of_classes_are_found():
+    former = {
+        "beamfem.analysis.iteration.Newton": bf.Newton(),
+        "beamfem.analysis.integrators.GeneralizedAlpha": bf.GeneralizedAlpha(),
+        "beamfem.analysis.initial.RigidVelocity": bf.RigidVelocity(),
+        "beamfem.status.Status": bf.Status.COMPLETED,
+        "beamfem.analysis.statics.solve_static": bf.solve_static,
+        "beamfem.element.element.Element": bf.CRBF(2),
+    }
+    assert [canonical(value, "x")[1] for value in former.values()] == list(former)
+    assert all(find_spec(module) for module in _MOVED)
 
 
 def test_keys_are_the_same_in_another_process():

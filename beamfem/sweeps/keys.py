@@ -15,6 +15,20 @@ import numpy as np
 
 from beamfem.errors import InputError
 
+_MOVED = {
+    "beamfem.assembly.rigid_velocity": "beamfem.analysis.initial",
+    "beamfem.solve.motion.integrators": "beamfem.analysis.integrators",
+    "beamfem.solve.motion.dynamics": "beamfem.analysis.dynamics",
+    "beamfem.solve.newton.iteration": "beamfem.analysis.iteration",
+    "beamfem.solve.modes.modes": "beamfem.analysis.modes",
+    "beamfem.solve.paths.trace": "beamfem.analysis.trace",
+    "beamfem.solve.stability.buckling": "beamfem.analysis.buckling",
+    "beamfem.solve.statics.statics": "beamfem.analysis.statics",
+    "beamfem.results.path": "beamfem.path",
+    "beamfem.results.solution": "beamfem.solution",
+    "beamfem.results.status": "beamfem.status",
+}
+
 
 def point_key(function_form: Any, point: Mapping[str, Any]) -> str:
     """Return the key of a call (64 hexadecimal digits). Raises InputError for what cannot be keyed."""
@@ -35,7 +49,7 @@ def canonical(value: Any, where: str) -> Any:
     if value is None or isinstance(value, bool | np.bool_):
         return str(value)
     if isinstance(value, Enum):
-        return ["enum", _class_name(value), value.name]
+        return ["enum", _name(type(value)), value.name]
     if isinstance(value, str):
         return ["text", value]
     if isinstance(value, PurePath):
@@ -57,7 +71,7 @@ def canonical(value: Any, where: str) -> Any:
         return ["partial", canonical(parts, where)]
     if is_dataclass(value) and not isinstance(value, type):
         members = {member.name: getattr(value, member.name) for member in fields(value)}
-        return ["object", _class_name(value), *([n, canonical(item, f"{where}.{n}")] for n, item in members.items())]
+        return ["object", _name(type(value)), *([n, canonical(item, f"{where}.{n}")] for n, item in members.items())]
     if isinstance(value, type | BuiltinFunctionType | np.ufunc):
         return ["builtin", getattr(value, "__module__", ""), value.__name__]
     if isinstance(value, FunctionType):
@@ -69,7 +83,7 @@ def canonical(value: Any, where: str) -> Any:
 
 
 def _function(function: FunctionType, where: str) -> Any:
-    name = f"{function.__module__}.{function.__qualname__}"
+    name = _name(function)
     if function.__name__ == "<lambda>":
         raise InputError(f"{where} is a lambda, which has no name to be found again by; define it with def")
     try:
@@ -89,8 +103,9 @@ def _array(value: np.ndarray, where: str) -> Any:
     return ["array", little.dtype.str, list(value.shape), hashlib.sha256(little.tobytes()).hexdigest()]
 
 
-def _class_name(value: Any) -> str:
-    return f"{type(value).__module__}.{type(value).__qualname__}"
+def _name(item: FunctionType | type) -> str:
+    """Return module and qualified name; of what has moved the name under which results may be stored."""
+    return f"{_MOVED.get(item.__module__, item.__module__)}.{item.__qualname__}"
 
 
 def _digest(text: str) -> str:

@@ -12,6 +12,7 @@ from beamfem.assembly.system import system_of
 from beamfem.linalg import eigenpairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability import linearised
+from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)
@@ -110,6 +111,17 @@ def test_a_search_that_runs_out_of_points_has_stopped(monkeypatch):
     assert len(found) < 2
     assert "used up" in found.ended
     assert found.status is bf.Status.STOPPED
+
+
+def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch):
+    def lost(path, point):
+        raise PathLostError("the tangent is singular")
+
+    monkeypatch.setattr(LoadingPath, "advance", lost)
+    with pytest.raises(bf.ConvergenceError, match="lost before any load factor") as caught:
+        bf.solve_buckling(portal([0.5], [EI]))
+    assert caught.value.solution.status is bf.Status.STOPPED
+    assert caught.value.solution.load_factor.tolist() == [0.0]
 
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])

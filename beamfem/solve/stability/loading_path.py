@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.system import System
 from beamfem.errors import BeamfemError, ConvergenceError
 from beamfem.results.solution import Solution
-from beamfem.results.status import Statistics
+from beamfem.results.status import Statistics, Status
 from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.steps import longest_step, too_small
 from beamfem.solve.modes.lowest import lowest_pairs
@@ -98,10 +98,11 @@ class LoadingPath:
         return float(np.max(np.abs(point.y - self.start.y)[places] / self.system.extent))
 
     def solution(self) -> Solution:
-        """Return the points found, as a solution."""
+        """Return the points found before the path was lost, as a solution."""
         rows = np.array([point.y for point in self.points])
         p, at = rows[:, :-1], rows[:, -1]
-        statistics = Statistics(0, len(rows) - 1, 0, "the equilibria that were found on the loading path")
+        ended = "the equilibria that were found on the loading path"
+        statistics = Statistics(0, len(rows) - 1, 0, ended, Status.STOPPED)
         return Solution(self.system.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
 
     def corrected(self, start: np.ndarray, base: np.ndarray, normal: np.ndarray, like: np.ndarray) -> PathPoint:

@@ -21,6 +21,7 @@ from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.linearised import linearised_loads
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.free_motion import require_support
 from beamfem.solve.start.start_state import resting_state
@@ -103,7 +104,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         path = LoadingPath(system, p, load_factor)
         slope = path.start.tangent[:-1] / path.start.tangent[-1]
         linearised = linearised_loads(system, p, load_factor, slope, count)
-    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
+    linearised = linearised[(linearised - load_factor) * largest_movement(system, slope) <= _LARGEST_CHANGE]
     if not len(linearised):
         raise InputError(
             "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "

@@ -1,12 +1,19 @@
 """Two threads find what one finds: equilibria, iterations, how they end, negative pivots, of chains cut in two."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
 from beamfem.solve.newton import cut_chain, newton
+from beamfem.solve.newton.banded import BandProblem
 from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.loop import iterate
+from beamfem.solve.newton.pivoted import PivotedProblem
+from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.substructured import SubstructuredProblem
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
 EI = MATERIAL.youngs_modulus * 0.05**4 / 12.0
@@ -59,10 +66,10 @@ def beam_of(element, elements=9, curve=LINE):
 def both(model, settings=None):
     """What one thread finds, and two."""
     system = system_of(model, static=True)
-    start, held = system.reference, np.zeros(model.size)
-    held[system.held_dofs] = system.held_values(1.0) - start[system.held_dofs]
-    given = system, start, 1.0, settings or Newton(), held, None
-    return newton._solve_band(*given), newton._solve_halves(*given)
+    used = settings or Newton()
+    given = system, system.reference, 1.0, used, Prescribed(system, system.reference, 1.0)
+    with ThreadPoolExecutor(1) as pool:
+        return iterate(BandProblem(*given, None), used), iterate(SubstructuredProblem(*given, pool), used)
 
 
 def assert_alike(model, settings=None):
@@ -134,7 +141,7 @@ def test_the_first_step_follows_what_is_held_beside_the_cut():
 def test_a_singular_tangent_is_left_to_pivots():
     beam = beam_of(bf.CRBF(2))
     loose = bf.Model([beam], [bf.Roller(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (1.0, 0.0))])
-    assert both(loose) == (None, None)
+    assert [result.ended for result in both(loose)] == 2 * [Ended.SINGULAR]
 
 
 def test_only_long_single_chains_are_cut(monkeypatch):
@@ -165,8 +172,8 @@ def test_a_chain_of_20_000_elements_takes_both_threads_and_is_right(monkeypatch)
     """P L^2 / EI = 5, L / h = 100, structural forces: tip of the Reissner beam, k_s = 5 / 6."""
     monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
     calls = []
-    solve = newton._solve_halves
-    monkeypatch.setattr(newton, "_solve_halves", lambda *given: calls.append(1) or solve(*given))
+    problem = newton.SubstructuredProblem
+    monkeypatch.setattr(newton, "SubstructuredProblem", lambda *given: calls.append(1) or problem(*given))
     beam = bf.Beam(LINE, 20_000, bf.CRBF(2), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
     force = 5.0 * 2e11 * 0.01**4 / 12.0
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, force))]))
@@ -180,16 +187,10 @@ def test_pivots_cost_no_iteration(monkeypatch):
     force = bf.PointForce(beam.at(0.5), (0.0, 500.0))
     for lift in (0.0, 0.1):
         model = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, uy=lift)], [force])
-        system = system_of(model, static=True)
+        system, settings = system_of(model, static=True), bf.Newton()
+        given = system, system.reference, 1.0, settings, Prescribed(system, system.reference, 1.0)
         compiled, general = (
-            newton.solve_equilibrium(system, system.reference, 1.0, bf.Newton(), 0),
-            solved_in_general(system, monkeypatch),
+            iterate(problem, settings, 0) for problem in (BandProblem(*given, 0), PivotedProblem(*given))
         )
         assert general.first == pytest.approx(compiled.first, rel=1e-6)
         assert general.iterations == compiled.iterations
-
-
-def solved_in_general(system, monkeypatch):
-    with monkeypatch.context() as patch:
-        patch.setattr(newton, "_solve_band", lambda *given: None)
-        return newton.solve_equilibrium(system, system.reference, 1.0, bf.Newton(), 0)

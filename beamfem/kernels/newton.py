@@ -33,8 +33,9 @@ def iterate(system, solver, calls):
     negative pivots where it stops if the third tangent or a later one has another, or -1. `FOUND` (9,): iterations so
     far, last correction and the one before; then largest residual of the unknown and of all coordinates, times their
     scales, and the smallest r0' x d of the state reached, whose residual (n,) is filled; negative pivots of the last
-    tangent; size of the first correction; 1 where the second tangent, with the resultants of a linear step, has another
-    count: `LINEAR` (n,) then is the state after this step. Stops where corrections are small or stagnant, or grow.
+    tangent; size of the first correction; negative pivots of the second tangent, which has the resultants of a linear
+    step: where it has another count, `LINEAR` (n,) is the state after this step. Stops where corrections are small or
+    stagnant, or have grown.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
@@ -71,12 +72,13 @@ def iterate(system, solver, calls):
         for i in range(unknown):
             negative += rows[i * (2 * half + 1) + half] < 0.0
         found[6] = negative
+        if found[0] == 1.0:
+            found[8] = negative
         if limits[6] >= 0.0 and found[6] != limits[6]:
             if found[0] > 1.0:
                 found[0] += 1.0
                 return 1
             if found[0] == 1.0:
-                found[8] = 1.0
                 for i in range(n):
                     linear[i] = p[i]
         _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)

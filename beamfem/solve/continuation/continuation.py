@@ -11,8 +11,9 @@ from beamfem.assembly.round_off import loses_digits
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.tangent import Factorised
+from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Ended, Newton
-from beamfem.solve.newton.newton import verdict
+from beamfem.solve.newton.loop import iterate
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
@@ -120,32 +121,13 @@ class Continuation:
         stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
         beyond which no equilibrium is looked for.
         """
-        y, last, counts = self.hold(start), np.inf, []
-        for iteration in range(1, self.newton.iterations + 1):
-            try:
-                balance, along, factors = self._solve(y, stresses)
-            except LinAlgError:
-                return Corrected(y, iteration, Ended.SINGULAR)
-            counts.append(factors.negative_pivots)
-            reach = self.dot(normal, along)
-            if reach == 0.0:
-                return Corrected(y, iteration, Ended.SINGULAR)
-            change = -(self.dot(normal, y - start) + self.dot(normal, balance)) / reach
-            new = self.hold(y + balance + change * along)
-            stresses = self.stresses(y, new - y)
-            size = float(np.max(np.abs(new - y) / self.scale))
-            y = new
-            if self.length(y - start) > farthest:
-                return Corrected(y, iteration, Ended.DIVERGED)
-            ended = verdict(self.system, y[:-1], float(y[-1]), self.newton, iteration, (size, last))
-            if ended is not None:
-                return Corrected(y, iteration, ended, (min(counts), max(counts)))
-            last = size
-        return Corrected(y, self.newton.iterations, Ended.EXHAUSTED)
+        problem = _InPlane(self, start, stresses, normal, farthest)
+        found = iterate(problem, self.newton)
+        return Corrected(problem.state, found.iterations, found.ended, problem.counts)
 
     def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:
         """Return the point y with the tangent that goes the way of `like` (n + 1,). Raises LinAlgError."""
-        _, along, factors = self._solve(y, None)
+        _, along, factors = self.solve(y, None)
         tangent = along / self.length(along)
         return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
 
@@ -177,8 +159,11 @@ class Continuation:
         right = (self.weights * mode)[free]
         return float(right @ factors.solve(right))
 
-    def _solve(self, y: np.ndarray, stresses: Stresses | None) -> tuple[np.ndarray, np.ndarray, Factorised]:
-        """Return the change of y that balances it at its load factor, the one with the load factor, and the factors."""
+    def solve(self, y: np.ndarray, stresses: Stresses | None) -> tuple[np.ndarray, np.ndarray, Factorised]:
+        """Return the change of y that balances it at its load factor, the one with the load factor, and the factors.
+
+        stresses: of the geometric tangent, None for those of the state. Raises LinAlgError.
+        """
         system, p, at = self.system, y[:-1], float(y[-1])
         rest, free, held = np.zeros(len(p)), system.free_dofs, system.held_dofs
         width = _SLOPE_WIDTH * self.load_scale
@@ -192,6 +177,63 @@ class Continuation:
         if not (np.isfinite(balance).all() and np.isfinite(along).all()):
             raise LinAlgError("the tangent is singular")
         return balance, along, factors
+
+
+class _InPlane:
+    """The equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,), at no fixed load factor.
+
+    stresses: of the first geometric tangent; farthest: length of the correction beyond which no equilibrium is looked
+    for; counts: fewest and most negative pivots so far.
+    """
+
+    counts_digits = False
+
+    def __init__(
+        self,
+        line: "Continuation",
+        start: np.ndarray,
+        stresses: Stresses | None,
+        normal: np.ndarray,
+        farthest: float,
+    ) -> None:
+        self.line, self.system, self.start = line, line.system, start
+        self.stresses, self.normal, self.farthest = stresses, normal, farthest
+        self.state = self.linear = line.hold(start)
+        self.counts = np.iinfo(int).max, 0
+        self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
+
+    def correct(self) -> Correction:
+        """Take the next correction. Raises LinAlgError where the tangent or the path is singular across the plane."""
+        line, y = self.line, self.state
+        balance, along, factors = line.solve(y, self.stresses)
+        negative = factors.negative_pivots
+        self.counts = min(self.counts[0], negative), max(self.counts[1], negative)
+        reach = line.dot(self.normal, along)
+        if reach == 0.0:
+            raise LinAlgError("the path lies in the plane")
+        change = -(line.dot(self.normal, y - self.start) + line.dot(self.normal, balance)) / reach
+        self.state = line.hold(y + balance + change * along)
+        self.stresses = line.stresses(y, self.state - y)
+        before, self.size = self.size, float(np.max(np.abs(self.state - y) / line.scale))
+        self.number += 1
+        if self.number == 1:
+            self.first, self.linear = self.size, self.state
+        elif self.number == 2:
+            self.second = negative
+        away = line.length(self.state - self.start) > self.farthest
+        return Correction(self.number, np.inf if away else self.size, before, negative)
+
+    def balance(self) -> Balance:
+        """Return what is left of the balance in the state reached."""
+        return balance_of(self.system, self.state[:-1], float(self.state[-1]))
+
+    def after_first(self) -> tuple[float, int]:
+        """Return the size of the first correction and the negative pivots of the second tangent."""
+        return self.first, self.second
+
+    def linear_state(self) -> np.ndarray:
+        """Return the state (n + 1,) after the first correction."""
+        return self.linear
 
 
 def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:

@@ -1,0 +1,71 @@
+"""Newton's iteration, the same for every problem: linearise, correct, check."""
+
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.system import System
+from beamfem.solve.newton.convergence import Balance, Correction, check_convergence
+from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+
+
+class Problem(Protocol):
+    """Equations in some state, and how they are solved when they are linearised there."""
+
+    system: System
+    start: np.ndarray
+    counts_digits: bool  # whether the balance tells how many digits of the forces are sure
+
+    @property
+    def state(self) -> np.ndarray:
+        """The state reached."""
+        ...
+
+    def correct(self) -> Correction:
+        """Take the next correction; or several, up to one that is small. Raises LinAlgError."""
+        ...
+
+    def balance(self) -> Balance:
+        """Return what is left of the balance in the state reached."""
+        ...
+
+    def after_first(self) -> tuple[float, int]:
+        """Return the size of the first correction and the negative pivots of the second tangent."""
+        ...
+
+    def linear_state(self) -> np.ndarray:
+        """Return the state (n,) after the first correction, where the second tangent has another count."""
+        ...
+
+
+def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> NewtonResult:
+    """Return where the iteration ends.
+
+    keep: stop where the tangent has another count of negative pivots, from the third iteration on; of the second, which
+    takes the stresses of a linear step, the result only tells it.
+    """
+    number = 0
+    while number < newton.iterations:
+        try:
+            correction = problem.correct()
+        except LinAlgError:
+            return NewtonResult(problem.start, number + 1, Ended.SINGULAR)
+        number, negative = correction.number, correction.negative_pivots
+        lost = keep not in (None, negative)
+        if number > 2 and lost:
+            return NewtonResult(problem.start, number, Ended.LOST, negative)
+        if correction.diverges:
+            return NewtonResult(problem.start, number, Ended.DIVERGED, negative)
+        if correction.is_small(newton):
+            balance = problem.balance()
+            ended = check_convergence(problem.system, balance, newton, correction)
+            if ended is not None and lost:
+                return NewtonResult(problem.start, number, Ended.LOST, negative)
+            if ended is not None:
+                first, second = problem.after_first()
+                linear = problem.linear_state() if number > 1 and keep not in (None, second) else None
+                state = problem.state if ended.good else problem.start
+                digits = balance.digits if problem.counts_digits else np.nan
+                return NewtonResult(state, number, ended, negative, digits, first, linear)
+    return NewtonResult(problem.state, number, Ended.EXHAUSTED)

@@ -6,11 +6,10 @@ import subprocess
 import sys
 
 import numpy as np
-import pendulum
-import pendulum_figures
 
 import beamfem as bf
 from beamfem.view.page import Part, write_page
+from studies.paper import pendulum, pendulum_figures
 
 
 def test_import_loads_no_pictures():

@@ -1,17 +1,12 @@
 """Every study runs small, and its headline numbers are those of closed forms and of references without elements."""
 
-import cantilever_small
-import curved
-import elastica
-import elements
-import locking
 import numpy as np
 import pytest
-import rollup
 
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.fields import Lagrange
+from studies.paper import cantilever_small, curved, elastica, elements, locking, rollup
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

@@ -8,6 +8,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
+from beamfem.kernels.compiling import Routine
 from beamfem.view.page import Part, write_page
 from studies.paper import cantilever_small, curved, elements, locking, pendulum_page, rollup
 from studies.stability import page as stability
@@ -26,6 +27,12 @@ LONGEST_FIRST = ("elements", "rollup", "pendulum-printed", "pendulum-thin", "fra
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
+def compile_kernels(first: int, apart: int) -> None:
+    """Compile, or load, some of the kernels: each process others, where it would else be each process all."""
+    for kernel in Routine.made[first::apart]:
+        _ = kernel.compiled
+
+
 def timed(folder: str) -> tuple[Part, float]:
     """Return a part of the page and the seconds that it took."""
     begun = time.perf_counter()
@@ -35,9 +42,10 @@ def timed(folder: str) -> tuple[Part, float]:
 def run_all() -> dict[str, Part]:
     """Run every part, side by side on the cores there are, each with one thread: the matrices are small."""
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the libraries of a process as it starts
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     parts = {}
     with ProcessPoolExecutor(cores, multiprocessing.get_context("spawn")) as pool:
+        list(pool.map(compile_kernels, range(cores), [cores] * cores))
         tasks = {pool.submit(timed, folder): folder for folder in LONGEST_FIRST}
         for task in as_completed(tasks):
             folder = tasks[task]

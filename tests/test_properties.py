@@ -39,11 +39,13 @@ def test_statics_do_not_know_where_and_how_a_model_is_drawn(recipe, view):
     one, other = solved(plain), solved(moved)
     assert apart(recipe, (plain, one), (moved, other)) < SAME
     assert other.energy().strain[-1] == pytest.approx(one.energy().strain[-1], rel=1e-6)
+    # loads that cancel leave reactions of their round-off
+    acting = sum(np.abs(load.values).max() for load in recipe.loads)
     for support in recipe.supports:
         if support.kind == "foundation":
             continue
         here, there = (s.reaction(b.point(support.place))[-1] for b, s in ((plain, one), (moved, other)))
-        size = np.abs(here).max() + np.abs(one.support_forces[-1]).max()
+        size = acting + np.abs(here).max() + np.abs(one.support_forces[-1]).max()
         assert there[:2] @ view.matrix == pytest.approx(here[:2], abs=1e-6 * size)
         assert view.sense * there[2] == pytest.approx(here[2], abs=1e-6 * size)
 

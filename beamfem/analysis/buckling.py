@@ -16,6 +16,7 @@ from beamfem.analysis.initial import resting_state
 from beamfem.analysis.iteration import Newton
 from beamfem.analysis.linearised import linearised_loads
 from beamfem.analysis.loading_path import LoadingPath, PathLostError
+from beamfem.analysis.movement import largest_movement
 from beamfem.analysis.newton import solve_equilibrium
 from beamfem.analysis.shapes import largest_translation, upright
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
@@ -103,7 +104,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         path = LoadingPath(system, p, load_factor)
         slope = path.start.tangent[:-1] / path.start.tangent[-1]
         linearised = linearised_loads(system, p, load_factor, slope, count)
-    linearised = linearised[(linearised - load_factor) * np.max(np.abs(slope) / system.scale) <= _LARGEST_CHANGE]
+    linearised = linearised[(linearised - load_factor) * largest_movement(system, slope) <= _LARGEST_CHANGE]
     if not len(linearised):
         raise InputError(
             "no positive load factor is critical as the loading path starts: the loads stiffen the model, or would "

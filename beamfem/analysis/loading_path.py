@@ -94,8 +94,9 @@ class LoadingPath:
 
     def moved(self, point: PathPoint) -> float:
         """Return the largest movement of a node from the start, in lengths of the model."""
-        places = np.concatenate([block.dof[:, :2].ravel() for block in self.system.blocks])
-        return float(np.max(np.abs(point.y - self.start.y)[places] / self.system.extent))
+        places = np.concatenate([block.dof[:, :2] for block in self.system.blocks])
+        x, y = (point.y - self.start.y)[places.T]
+        return float(np.hypot(x, y).max() / self.system.extent)
 
     def solution(self) -> Solution:
         """Return the points found, as a solution."""

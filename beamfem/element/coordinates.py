@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
+from beamfem.physics import kinematics
 from beamfem.validation import flag
 
 
@@ -50,49 +51,47 @@ class ShearFree:
 Coordinates = Gradients | Rotation | ShearFree
 
 
+KINEMATICS = {ROTATION: kinematics.ROTATION, STRETCH: kinematics.STRETCH, SHEAR_RIGID: kinematics.SHEAR_RIGID}
+_STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
+
+
 def labels(carrier: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
-    """Names of a node's coordinates: those of nodal vectors, the stretch "s", the angle "theta"; r_y comes last."""
-    if carrier in (STRETCH, SHEAR_RIGID):
-        return ("r^x", "r^y", *(("s",) if carrier == STRETCH else ()), "theta")
+    """Names of a node's coordinates: components of nodal vectors, then what turns the others, the angle last."""
+    kind = KINEMATICS.get(carrier)
     components = tuple(f"{vector}^{axis}" for vector in vectors for axis in "xy")
-    return (*components[:-2], "theta") if carrier == ROTATION else components
+    return components if kind is None else (*components[: -kind.size], *kind.coordinates)
 
 
 def nodal_vectors(carrier: int, vectors: tuple[str, ...], p: np.ndarray, frame: np.ndarray) -> np.ndarray:
     """Return e (steps, nodes, vectors, 2) of coordinates p (steps, nodes, npn); frame (nodes, 3), see `node_map`."""
-    result = np.empty((*p.shape[:2], len(vectors), 2))
-    names = labels(carrier, vectors)
-    turn = _turned(p[..., len(names) - 1], frame) if names[-1] == "theta" else None
-    for i, vector in enumerate(vectors):
-        if f"{vector}^x" in names:
-            first = names.index(f"{vector}^x")
-            result[:, :, i] = p[:, :, first : first + 2]
-        elif turn is not None:
-            size = p[..., 2, None] if "s" in names else frame[:, 2, None]
-            result[:, :, i] = across(turn) if vector == "r_y" else size * turn
+    kind = KINEMATICS.get(carrier)
+    p = p[..., : len(labels(carrier, vectors))]
+    if kind is not None:
+        angle = np.cos(p[..., -1]), np.sin(p[..., -1])
+        return _carried(kind, p, *_turned(*angle, frame), frame)
+    result = p.reshape(*p.shape[:2], len(vectors), 2).copy()
     if carrier == TURNED_GRADIENTS:
-        x, y = result[:, :, -1, 0].copy(), result[:, :, -1, 1].copy()
-        result[:, :, -1, 0] = frame[:, 0] * x - frame[:, 1] * y
-        result[:, :, -1, 1] = frame[:, 1] * x + frame[:, 0] * y
+        result[:, :, -1] = np.stack(_turned(result[:, :, -1, 0], result[:, :, -1, 1], frame), axis=-1)
     return result
 
 
 def nodal_rates(carrier: int, vectors: tuple[str, ...], p: np.ndarray, v: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return e' = B p' (steps, nodes, vectors, 2) of p and p' (steps, nodes, npn)."""
-    names = labels(carrier, vectors)
-    if names[-1] != "theta":
+    """Return e' = B p' (steps, nodes, vectors, 2) of p and p' (steps, nodes, npn): the part of e(p + i h p') in i h."""
+    kind, count = KINEMATICS.get(carrier), len(labels(carrier, vectors))
+    if kind is None:
         return nodal_vectors(carrier, vectors, v, frame)
-    result = nodal_vectors(carrier, vectors, p, frame)
-    spin = v[..., len(names) - 1, None]
-    for i, vector in enumerate(vectors):
-        if f"{vector}^x" in names:
-            first = names.index(f"{vector}^x")
-            result[:, :, i] = v[:, :, first : first + 2]
-        else:
-            result[:, :, i] = spin * across(result[:, :, i])
-            if vector == "r_x" and "s" in names:
-                result[:, :, i] += v[..., 2, None] * _turned(p[..., len(names) - 1], frame)
-    return result
+    p, v = p[..., :count], v[..., :count]
+    c, s = _turned(np.cos(p[..., -1]), np.sin(p[..., -1]), frame)
+    spin = 1j * _STEP * v[..., -1]
+    return _carried(kind, p + 1j * _STEP * v, c - spin * s, s + spin * c, frame).imag / _STEP
+
+
+def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.ndarray, frame: np.ndarray) -> np.ndarray:
+    """Return the nodal vectors (steps, nodes, vectors, 2) of nodes whose section points along (c, s)."""
+    own = len(kind.coordinates)
+    turned = kind.vectors(tuple(np.moveaxis(p[..., -own:], -1, 0)), c, s, frame[:, 2])
+    components = np.concatenate([p[..., :-own], np.stack(turned, axis=-1)], axis=-1)
+    return components.reshape(*p.shape[:2], -1, 2)
 
 
 def across(vector: np.ndarray) -> np.ndarray:
@@ -100,7 +99,6 @@ def across(vector: np.ndarray) -> np.ndarray:
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
 
 
-def _turned(angle: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Unit vectors (..., 2) along the reference angle plus `angle`."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * frame[:, 0] - s * frame[:, 1], s * frame[:, 0] + c * frame[:, 1]], axis=-1)
+def _turned(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the components of vectors (x, y) turned by the reference angle of each node."""
+    return frame[:, 0] * x - frame[:, 1] * y, frame[:, 1] * x + frame[:, 0] * y

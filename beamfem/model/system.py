@@ -264,9 +264,10 @@ class System:
 
     @cached_property
     def extent(self) -> float:
-        """Size of the model [m]: its longest beam, or the largest distance of its points along x or y."""
+        """Size of the model [m]: its longest beam, or twice the largest distance of a node from their mean."""
         position = np.concatenate([mesh.position for mesh in self.model.meshes])
-        return float(max(*np.ptp(position, axis=0), max(beam.curve.length for beam in self.model.beams)))
+        reach = float(np.linalg.norm(position - position.mean(axis=0), axis=1).max())
+        return max(2.0 * reach, *(beam.curve.length for beam in self.model.beams))
 
     @cached_property
     def scale(self) -> np.ndarray:

@@ -14,10 +14,11 @@ Number = Any  # a float, an array or a symbol
 
 
 class Kinematics(NamedTuple):
-    """The vectors of a node: names of the coordinates u, the angle last, and w(u, c, s, length of r_x)."""
+    """The vectors of a node: names of the coordinates u, the angle last, and `size` components w(u, c, s, |r_x|)."""
 
     name: str
     coordinates: tuple[str, ...]
+    size: int
     vectors: Callable[[tuple[Number, ...], Number, Number, Number], tuple[Number, ...]]
 
 
@@ -36,7 +37,7 @@ def _shear_rigid(u: tuple[Number, ...], c: Number, s: Number, length: Number) ->
     return length * c, length * s, -s, c
 
 
-ROTATION = Kinematics("rotation", ("theta",), _rotation)
-STRETCH = Kinematics("stretch", ("s", "theta"), _stretch)
-SHEAR_RIGID = Kinematics("shear_rigid", ("theta",), _shear_rigid)
+ROTATION = Kinematics("rotation", ("theta",), 2, _rotation)
+STRETCH = Kinematics("stretch", ("s", "theta"), 4, _stretch)
+SHEAR_RIGID = Kinematics("shear_rigid", ("theta",), 4, _shear_rigid)
 KINDS = (ROTATION, STRETCH, SHEAR_RIGID)

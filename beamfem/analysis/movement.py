@@ -1,0 +1,19 @@
+"""How far a change of the coordinates moves a model, however it is turned in the plane."""
+
+import numpy as np
+
+from beamfem.kernels.block import GRADIENTS, TURNED_GRADIENTS
+from beamfem.model.system import System
+
+
+def largest_movement(system: System, change: np.ndarray) -> float:
+    """Return the largest of a change (n,): displacements in sizes of the model, gradients, rotations [rad]."""
+    scaled = np.append(change / system.scale, 0.0)
+    largest = 0.0
+    for block in system.blocks:
+        plain = np.isin(block.carrier, (GRADIENTS, TURNED_GRADIENTS))
+        displacements, rotations = block.dof[:, :2], block.dof[~plain, 2:]
+        gradients = block.dof[plain, 2:].reshape(-1, 2)
+        moved = (np.hypot(*scaled[displacements].T), np.hypot(*scaled[gradients].T), np.abs(scaled[rotations]))
+        largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))
+    return largest

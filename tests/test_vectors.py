@@ -1,0 +1,53 @@
+"""Passes over rows of points run several at a time: losing that is silent, so the machine code is looked at."""
+
+import platform
+import re
+
+import pytest
+from numba.core.ccallback import CFunc
+
+from beamfem.kernels import field, inertia, linear_law, stiffness
+from beamfem.kernels.compiling import KINDS
+from beamfem.kernels.generated import elastic_line, green_lagrange, structural
+
+PASSES = [
+    *(stiffness.columns, stiffness.combine, stiffness.products, inertia.add_inertia, inertia.add_mass),
+    *(field.interpolate, field.spread, linear_law.four_resultants, linear_law.six_resultants),
+    *(getattr(forces, name) for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
+    *(forces.hessian for forces in (green_lagrange, structural)),
+]
+PACKED = {
+    "x86_64": r"\bv?(?:{})(?:\d+)?pd\b",
+    "AMD64": r"\bv?(?:{})(?:\d+)?pd\b",
+    "aarch64": r"\bf(?:{})\s+v\d+\.2d",
+    "arm64": r"\bf(?:{})\.2d",
+}
+pytestmark = pytest.mark.skipif(platform.machine() not in PACKED, reason="instructions of this processor are not known")
+
+
+def packed(routine, operations):
+    """How many packed instructions of some operations there are in a pass, compiled anew."""
+    types = tuple(KINDS[kind] for kind in routine.kinds)
+    compiled = CFunc(routine.function, (types, routine.returns), {}, {"error_model": "numpy", **routine.options})
+    compiled.compile()
+    return len(re.findall(PACKED[platform.machine()].format(operations), compiled._library.get_asm_str()))
+
+
+@pytest.mark.parametrize("routine", PASSES, ids=lambda routine: routine.name.removeprefix("beamfem.kernels."))
+def test_products_of_a_pass_are_packed(routine):
+    assert packed(routine, "mul|fmadd|fmsub|fnmadd|mla|mls")
+
+
+def test_divisions_and_roots_of_a_pass_are_packed():
+    for forces in (structural, elastic_line):
+        for name in ("strains", "forces", "rates", "hessian"):
+            routine = getattr(forces, name)
+            assert packed(routine, "div"), routine.name
+    assert packed(structural.strains, "sqrt")
+
+
+def test_a_loop_that_cannot_be_packed_is_told_apart():
+    """What the other tests look for is not in every machine code."""
+    from beamfem.kernels.band import band
+
+    assert not packed(band(3).solve_lower, "div")

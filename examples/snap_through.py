@@ -19,7 +19,7 @@ model = bf.Model(
     joints=[bf.Rigid(column.end, bar.start)],
     loads=[bf.PointForce(loaded, (0, -1.0))],
 )
-path = bf.trace_equilibrium(model, until=lambda state: state.displacement(loaded)[1] < -95.0)
+path = bf.trace_equilibrium(model, until=lambda state: state.displacement(loaded)[1] < -90.0)
 
 for point in path.limit_points:
     print(f"limit load {point.load_factor:.2f} N, {-point.displacement(loaded)[1]:.3f} cm down")

@@ -5,7 +5,7 @@ PYTHON ?= python3
 .PHONY: run test verify bench docs lint clean
 
 run: $(VENV)/.ready
-	$(BIN)/python studies/all.py
+	$(BIN)/python -m studies.all
 
 test: $(VENV)/.ready lint
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup
@@ -14,10 +14,10 @@ verify: $(VENV)/.ready
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup -m "slow or not slow"
 
 bench: $(VENV)/.bench
-	$(BIN)/python studies/peers.py
-	$(BIN)/python studies/chain_growth.py
-	$(BIN)/python studies/roofline.py
-	$(BIN)/python studies/compile_budget.py
+	$(BIN)/python -m studies.benchmarks.peers
+	$(BIN)/python -m studies.benchmarks.chain_growth
+	$(BIN)/python -m studies.benchmarks.roofline
+	$(BIN)/python -m studies.benchmarks.compile_budget
 
 docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs

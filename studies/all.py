@@ -1,67 +1,72 @@
-"""The main job: the paper's numerical examples as figures, ParaView files and a page in `out/`."""
+"""The main job, `make run`: the paper's examples as figures, ParaView files and a page in `out/`."""
 
+import multiprocessing
+import os
 import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
 
-import cantilever_small
-import curved
-import elements
-import frames_page
-import locking
-import pendulum
-import rollup
-from pendulum_figures import FIGURES, draw, table_of_times
-
+from beamfem.kernels.compiling import Routine
 from beamfem.view.page import Part, write_page
+from studies.paper import cantilever_small, curved, elements, locking, pendulum_page, rollup
+from studies.stability import page as stability
 
 OUT = Path("out")
-STUDIES = {
-    "cantilever": cantilever_small,
-    "elements": elements,
-    "locking": locking,
-    "curved": curved,
-    "rollup": rollup,
-    "frames": frames_page,
+PARTS: dict[str, Callable[[Path], Part]] = {  # by folder, as they stand on the page
+    **{f"pendulum-{name}": partial(pendulum_page.part, name) for name in pendulum_page.CASES},
+    "cantilever": cantilever_small.part,
+    "elements": elements.part,
+    "locking": locking.part,
+    "curved": curved.part,
+    "rollup": rollup.part,
+    "frames": stability.part,
 }
-CASES = {
-    "printed": (
-        pendulum.PRINTED,
-        "I = 8.533e-6 m^4 as printed: a rectangle 0.253 m deep. ANCF lets the thickness breathe, rotations hold it, "
-        "so the two converge to different motions (tip at 0.5 s: 0.324 and 0.301 m); this is physics, not error.",
-    ),
-    "thin": (
-        pendulum.THIN,
-        "I = 8.533e-9 m^4: the 0.2 m x 0.008 m section of the same area. The paper did not compute this one; "
-        "its claims are held against it all the same.",
-    ),
-}
+LONGEST_FIRST = ("elements", "rollup", "pendulum-printed", "pendulum-thin", "frames", "curved", "locking", "cantilever")
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def pendulum_part(name: str) -> Part:
-    """Run one case, draw its figures and write its ParaView files."""
-    second_moment, text = CASES[name]
-    runs = pendulum.main(second_moment)
-    folder = OUT / f"pendulum-{name}"
-    entries = [draw(figure, runs, folder) for figure in FIGURES]
-    for element in pendulum.ELEMENTS:
-        solution = runs[element.name, 12].solution
-        solution.to_vtk(folder / "paraview" / f"{element.name}.pvd")
-        solution.plot(folder / f"shapes-{element.name}.png")
-    return Part(f"Falling pendulum, {name} section", text, entries, [table_of_times(runs)])
+def compile_kernels(first: int, apart: int) -> None:
+    """Compile, or load, some of the kernels: each process others, where it would else be each process all."""
+    for kernel in Routine.made[first::apart]:
+        _ = kernel.compiled
+
+
+def timed(folder: str) -> tuple[Part, float]:
+    """Return a part of the page and the seconds that it took."""
+    begun = time.perf_counter()
+    return PARTS[folder](OUT / folder), time.perf_counter() - begun
+
+
+def run_all() -> dict[str, Part]:
+    """Run every part, side by side on the cores there are, each with one thread: the matrices are small."""
+    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # read by the libraries of a process as it starts
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    parts = {}
+    with ProcessPoolExecutor(cores, multiprocessing.get_context("spawn")) as pool:
+        list(pool.map(compile_kernels, range(cores), [cores] * cores))
+        tasks = {pool.submit(timed, folder): folder for folder in LONGEST_FIRST}
+        for task in as_completed(tasks):
+            folder = tasks[task]
+            parts[folder], seconds = task.result()
+            print(f"{folder:16s} {seconds:5.1f} s", flush=True)
+    return parts
 
 
 def main() -> None:
     """Run everything and say where to look."""
     begun = time.perf_counter()
     print("compiling kernels on first use (some seconds), then computing ...", flush=True)
-    parts = [pendulum_part(name) for name in CASES]
-    parts += [study.part(OUT / folder) for folder, study in STUDIES.items()]
-    page = write_page(OUT / "index.html", "The paper's examples, computed by beamfem", parts)
+    parts = run_all()
+    page = write_page(
+        OUT / "index.html", "The paper's examples, computed by beamfem", [parts[folder] for folder in PARTS]
+    )
     print(f"done in {time.perf_counter() - begun:.0f} s")
     print(f"page           {page}")
     print(f"figures        {OUT}/pendulum-printed/figure*.png, {OUT}/pendulum-thin/figure*.png")
-    print(f"               {', '.join(f'{OUT}/{folder}/' for folder in STUDIES)}")
-    print(f"ParaView files {OUT}/pendulum-*/paraview/*.pvd")
+    print(f"               {', '.join(f'{OUT}/{folder}/' for folder in PARTS if 'pendulum' not in folder)}")
+    print(f"ParaView files {OUT}/pendulum-*/paraview/*.vtkhdf (ParaView 5.12 or newer), *.pvd (fewer states)")
 
 
 if __name__ == "__main__":

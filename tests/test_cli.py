@@ -218,6 +218,29 @@ def test_studies_are_listed_and_run_with_their_parameters(studies):
     assert invoke("study", "nothing", "--elements", 3, "--quiet").stdout == ""
 
 
+def test_studies_in_sub_folders_go_by_their_file_or_with_their_folder(studies, monkeypatch):
+    """Of two with one file name, the folder tells which is meant; both ways of sharing code work."""
+    monkeypatch.delitem(sys.modules, "studies", raising=False)
+    (studies / "__init__.py").touch()
+    for name, factor in (("twice", 2), ("thrice", 3)):
+        (studies / name).mkdir()
+        (studies / name / "factor.py").write_text(f"FACTOR = {factor}\n")
+        head = f'"""Times {factor}."""\nfrom studies.{name}.factor import FACTOR\n'
+        code = f"{head}\ndef main(x: int = 1):\n    return FACTOR * x\n"
+        (studies / name / "times.py").write_text(code)
+    (studies / "twice" / "alone.py").write_text("from factor import FACTOR\n\ndef main():\n    return FACTOR\n")
+    names = [item["name"] for item in json.loads(invoke("study", "--json").stdout)]
+    assert names == ["nothing", "thrice/times", "twice/alone", "twice/times"]
+    assert json.loads(invoke("study", "--json", "alone").stdout)["result"] == 2
+    for name, expected in (("thrice/times", 12), ("twice/times", 8)):
+        assert json.loads(invoke("study", "--json", name, "--x", 4).stdout)["result"] == expected
+    done = invoke("study", "times")
+    assert done.exit_code == 2
+    assert "thrice/times or twice/times" in done.stderr
+    for name in [name for name in sys.modules if name.split(".")[0] in ("studies", "factor", "times", "alone")]:
+        monkeypatch.delitem(sys.modules, name)
+
+
 def test_help_of_a_study_comes_from_its_docstring(studies):
     text = " ".join(invoke("study", "nothing", "--help").stdout.replace("│", " ").split())
     for words in ("Return what was given.", "--elements", "how many", "of the beam (m)", "numbers of elements", "1,2"):
@@ -250,7 +273,7 @@ def test_mistakes_with_studies(studies, tmp_path):
 def test_the_studies_of_the_repository_have_options(monkeypatch):
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    assert "cantilever_small" in invoke("study").stdout
+    assert "paper/cantilever_small" in invoke("study").stdout
     done = invoke("study", "--json", "cantilever_small", "--meshes", "3,48")
     found = json.loads(done.stdout)["result"]
     assert found["ANCF-CRBF, continuum, plane stress"][1] == pytest.approx(0.01819510330389, rel=2e-4)

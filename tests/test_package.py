@@ -6,11 +6,12 @@ import subprocess
 import sys
 
 import numpy as np
-import pendulum
-import pendulum_figures
+from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
 from beamfem.view.page import Part, write_page
+from studies import all as main_job
+from studies.paper import pendulum, pendulum_figures, pendulum_page
 
 
 def test_import_loads_no_pictures():
@@ -28,6 +29,27 @@ def test_pendulum_study_draws_every_figure(tmp_path):
     table = pendulum_figures.table_of_times(runs)
     page = write_page(tmp_path / "index.html", "title", [Part("part", "text", entries, [table])])
     assert page.read_text().count("data:image/svg+xml") == 13
+
+
+def test_the_motion_for_paraview_takes_few_files(tmp_path, monkeypatch):
+    """Of 201 states 11 in one file for bodies and one for centrelines; 3 in as many files each for ParaView 5.11."""
+    runs = pendulum.main(duration=0.1, meshes=(6, 12))
+    monkeypatch.setattr(pendulum, "main", lambda second_moment: runs)
+    monkeypatch.setattr(pendulum_page, "FIGURES", pendulum_figures.FIGURES[:2])
+    part = pendulum_page.part("printed", tmp_path)
+    assert [len(part.entries), len(part.tables)] == [2, 1]
+    files = [path for path in (tmp_path / "paraview").rglob("*") if path.is_file()]
+    kinds = [path.suffix for path in files]
+    assert (kinds.count(".vtkhdf"), kinds.count(".pvd"), kinds.count(".vtu")) == (6, 6, 6 * 3)
+    reader = vtkHDFReader()
+    reader.SetFileName(str(tmp_path / "paraview" / "ANCF.vtkhdf"))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == 11
+    assert sum(path.stat().st_size for path in files) < 2e6
+
+
+def test_the_main_job_runs_each_part_once():
+    assert sorted(main_job.LONGEST_FIRST) == sorted(main_job.PARTS)
 
 
 def test_figure_12_shows_the_difference_the_paper_states():

@@ -3,16 +3,12 @@
 import sys
 
 import numpy as np
-import peer_cases
-import peer_clock
-import peer_figures
-import peer_precision
-import peers
 import pytest
-from peer_precision import Run
-from peer_ratios import row
 
 import beamfem as bf
+from studies.benchmarks import peer_cases, peer_clock, peer_figures, peer_precision, peers
+from studies.benchmarks.peer_precision import Run
+from studies.benchmarks.peer_ratios import row
 
 
 def test_without_exudyn_it_says_so_and_writes_nothing(monkeypatch, capsys, tmp_path):

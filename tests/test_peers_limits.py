@@ -1,11 +1,9 @@
 """Growth, roofline and compile budget: what is counted is what closed forms say."""
 
-import chain_growth
-import flop_counts
 import numpy as np
 import pytest
-import roofline
-import roofline_cases
+
+from studies.benchmarks import chain_growth, flop_counts, roofline, roofline_cases
 
 
 def test_operations_of_plain_numbers():

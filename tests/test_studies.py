@@ -1,17 +1,14 @@
 """Every study runs small, and its headline numbers are those of closed forms and of references without elements."""
 
-import cantilever_small
-import curved
-import elastica
-import elements
-import locking
 import numpy as np
 import pytest
-import rollup
+from threadpoolctl import threadpool_limits
 
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation
 from beamfem.element.fields import Lagrange
+from studies.paper import cantilever_small, curved, elastica, elements, locking, rollup
+from studies.stability import page as stability
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 
@@ -204,6 +201,17 @@ def test_the_tapered_ring_by_all_kinds():
     for name in ("ANCF/CRBF, structural", "shear-rigid", "shear-rigid, stretchable", "order 4, gradients, structural"):
         assert runs[name] == pytest.approx(exact, abs=1e-4)
     assert runs["CRBF, order 4, split"] == pytest.approx(exact, abs=1e-4)
+
+
+def test_paths_and_stability_are_those_of_the_literature(tmp_path):
+    """The table of the page, against collocation, shooting and elliptic integrals; Beck's load is known to 6 digits."""
+    with threadpool_limits(1):
+        part = stability.part(tmp_path)
+    (table,) = part.tables
+    assert len(table.rows) == 16
+    for name, _, _, difference in table.rows:
+        assert abs(float(difference)) < (6e-6 if "Beck" in name else 1.5e-6), name
+    assert [entry.picture.stat().st_size > 0 for entry in part.entries] == [True] * 6
 
 
 def test_twelve_bilinear_elements_turn_0_924_of_a_circle():

@@ -16,7 +16,7 @@ from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 @dataclass(frozen=True)
 class Study:
-    """A study as a file: its name and what its docstring says first."""
+    """A study as a file: its name, with its sub-folder if it is in one, and what its docstring says first."""
 
     name: str
     title: str
@@ -40,26 +40,26 @@ def study(
                 width = max(len(item.name) for item in studies)
                 print("\n".join(f"{item.name:{width}s}  {item.title}" for item in studies))
             return
-        main = _main_of(_named(name, studies, folder))
+        main = _main_of(_named(name, studies, folder), folder)
         _run(name, main, context.args, as_json, quiet)
 
 
 def find_studies(folder: Path) -> list[Study]:
-    """Return the files of a folder that have a function main. Raises InputError where there are none."""
+    """Return the files of a folder and its sub-folders with a function main. Raises InputError where there are none."""
     from beamfem.errors import InputError
 
     right = "give the folder of the studies with --folder, or start beamfem where it is; they come with the sources"
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder} here ({Path.cwd()}): {right}")
     found = []
-    for file in sorted(folder.glob("*.py")):
+    for file in sorted(folder.rglob("*.py")):
         try:
             tree = ast.parse(file.read_bytes())
         except SyntaxError:
             continue
         if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in tree.body):
             title = (ast.get_docstring(tree) or "").strip().split("\n")[0]
-            found.append(Study(file.stem, title, file))
+            found.append(Study(file.relative_to(folder).with_suffix("").as_posix(), title, file))
     if not found:
         raise InputError(f"no file in {folder} has a function main, which makes a study: {right}")
     return found
@@ -69,30 +69,38 @@ def _named(name: str, studies: list[Study], folder: Path) -> Study:
     from beamfem.errors import InputError
     from beamfem.validation import nearest
 
-    for item in studies:
-        if item.name == name.removesuffix(".py"):
-            return item
-    raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, [item.name for item in studies])}")
+    wanted = name.removesuffix(".py")
+    found = [item for item in studies if wanted in (item.name, item.file.stem)]
+    if len(found) > 1 and not any(item.name == wanted for item in found):
+        raise InputError(f"{name!r} may be {' or '.join(item.name for item in found)}; give it with its folder")
+    if not found:
+        known = [text for item in studies for text in dict.fromkeys((item.file.stem, item.name))]
+        raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, known)}")
+    return min(found, key=lambda item: item.name != wanted)
 
 
-def _main_of(item: Study) -> Any:
-    """Import a study with its folder on the path, for studies share code, and return its main."""
-    folder = str(item.file.parent.resolve())
-    if folder not in sys.path:
-        sys.path.insert(0, folder)
+def _main_of(item: Study, folder: Path) -> Any:
+    """Import a study and return its main.
+
+    Studies share code: its own folder, and that which holds the folder of all studies, are put on the path.
+    """
+    for place in (str(folder.resolve().parent), str(item.file.parent.resolve())):
+        if place not in sys.path:
+            sys.path.insert(0, place)
     return _imported(item).main
 
 
 def _imported(item: Study) -> ModuleType:
-    known = sys.modules.get(item.name)
+    name = item.file.stem
+    known = sys.modules.get(name)
     if known is not None and Path(getattr(known, "__file__", None) or "").resolve() == item.file.resolve():
         return known
-    spec = importlib.util.spec_from_file_location(item.name, item.file)
+    spec = importlib.util.spec_from_file_location(name, item.file)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     # under its own name, so that its functions can be sent to other processes
-    sys.modules[item.name] = module
+    sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
 

@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from peer_precision import Run, envelope
-from peer_ratios import Row
 
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.benchmarks.peer_precision import Run, envelope
+from studies.benchmarks.peer_ratios import Row
 
 _MARKERS = "osD^vP*"
 

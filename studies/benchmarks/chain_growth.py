@@ -14,11 +14,11 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from peer_cases import STRUCTURAL, cantilever, pendulum, static_error
 from threadpoolctl import threadpool_limits
 
 import beamfem as bf
 from beamfem.tabulate import as_text, write_csv
+from studies.benchmarks.peer_cases import STRUCTURAL, cantilever, pendulum, static_error
 
 OUT = Path("out/bench")
 SIZES = (1000, 10_000, 100_000, 1_000_000)

@@ -8,13 +8,13 @@ digits, independent of elements): not P L^3 / (3 E I), because the transverse st
 from pathlib import Path
 
 import numpy as np
-from elastica import tip_displacement
-from terminal import show
 
 import beamfem as bf
 from beamfem.convergence.orders import fit_order
 from beamfem.view.page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.paper.elastica import tip_displacement
+from studies.paper.terminal import show
 
 FORCE, HEIGHT, MODULUS = 10.0, 0.01, 2e11
 BENDING = MODULUS * HEIGHT**4 / 12.0  # E I [N m^2]

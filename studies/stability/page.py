@@ -3,15 +3,10 @@
 import os
 from pathlib import Path
 
-import becks_column
-import column
-import deep_arches
-import follower_cantilever
-import lee_frame
 import numpy as np
-import williams_toggle
 
 from beamfem.view.page import Entry, Part, Table
+from studies.stability import becks_column, column, deep_arches, follower_cantilever, lee_frame, williams_toggle
 
 
 def part(folder: str | os.PathLike[str]) -> Part:

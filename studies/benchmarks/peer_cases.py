@@ -8,7 +8,7 @@ import numpy as np
 import beamfem as bf
 
 if TYPE_CHECKING:
-    from exudyn_models import Peer
+    from studies.benchmarks.exudyn_models import Peer
 
 TWO_NODES, THREE_NODES, CABLE = "geometrically exact, 2 nodes", "geometrically exact, 3 nodes", "ANCF cable"
 DENSE, SPARSE = "EXUdense", "EigenSparse"
@@ -100,7 +100,7 @@ def cantilever(element: bf.Element, elements: int) -> bf.Model:
 
 def peer(kind: str, elements: int, chain: Chain) -> "Peer":
     """Return the same in Exudyn."""
-    from exudyn_models import Peer
+    from studies.benchmarks.exudyn_models import Peer
 
     return Peer(kind, elements, chain)
 

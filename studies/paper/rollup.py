@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 from scipy.optimize import brentq, root
-from terminal import show
 
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
@@ -21,6 +20,7 @@ from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import Forces
 from beamfem.view.page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.paper.terminal import show
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 FIELDS = {Cubic(): 48, Lagrange(1): 48, Lagrange(2): 24, Lagrange(4): 8, Lagrange(6): 4}

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from dataclasses import astuple, dataclass
 
 import numpy as np
-from peer_cases import (
+
+import beamfem as bf
+from studies.benchmarks.peer_cases import (
     CABLE,
     CANTILEVER,
     DENSE,
@@ -26,9 +28,7 @@ from peer_cases import (
     tips_known,
     tips_of,
 )
-from peer_clock import Timing, fastest, in_turns
-
-import beamfem as bf
+from studies.benchmarks.peer_clock import Timing, fastest, in_turns
 
 Task = Callable[[], object]
 LOAD_STEPS = (1, 2, 3, 5, 10)

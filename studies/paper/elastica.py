@@ -4,6 +4,7 @@ N = E A (stretch - 1), Q = k_s G A shear, M = E I (theta' - curvature); without 
 elastica. Source: E. Reissner, J. Appl. Math. Phys. 23 (1972) 795-804.
 """
 
+from functools import cache
 from math import inf
 
 import numpy as np
@@ -14,6 +15,7 @@ DIGITS = 1e-13  # tolerance of the integration; the tip is right to about 1e-12 
 LOAD_STEPS = 5
 
 
+@cache
 def tip_displacement(
     length: float,
     force: tuple[float, float],

@@ -10,8 +10,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from elastica import tip_displacement
-from terminal import show
 
 import beamfem as bf
 from beamfem.convergence.orders import fit_order
@@ -19,6 +17,8 @@ from beamfem.element.coordinates import Gradients
 from beamfem.element.fields import Lagrange
 from beamfem.view.page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.paper.elastica import tip_displacement
+from studies.paper.terminal import show
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SMALL = 1e-5  # H R^2 / (E I) of the linear problem

@@ -9,13 +9,23 @@ other: chains, divisions, sines.
 from pathlib import Path
 
 import numpy as np
-from ceilings import Ceilings, least_seconds, measure
-from flop_counts import count_all
-from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, least_traffic, place
 
 from beamfem.kernels.band import band
 from beamfem.kernels.model_passes import balance
 from beamfem.tabulate import as_text, write_csv
+from studies.benchmarks.ceilings import Ceilings, least_seconds, measure
+from studies.benchmarks.flop_counts import count_all
+from studies.benchmarks.roofline_cases import (
+    FACTOR,
+    FORMS,
+    KERNELS,
+    RESIDUAL,
+    SOLVE,
+    TANGENT,
+    case,
+    least_traffic,
+    place,
+)
 
 OUT = Path("out/bench")
 SIZES = (1000, 100_000)

@@ -3,13 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from peer_cases import STRUCTURAL, pendulum
 
 import beamfem as bf
 from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.system import System, system_of
 from beamfem.kernels import record
 from beamfem.kernels.block import Block, Layout
+from studies.benchmarks.peer_cases import STRUCTURAL, pendulum
 
 FORMS = {"bilinear, structural": STRUCTURAL, "order 2, structural": bf.CRBF(2), "ANCF, continuum": bf.ANCF()}
 RESIDUAL, TANGENT, FACTOR, SOLVE = "residual", "residual and tangent", "factorisation", "solution"

@@ -5,7 +5,8 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
-from peer_cases import CABLE, LINEAR_SOLVERS, THREE_NODES, Chain
+
+from studies.benchmarks.peer_cases import CABLE, LINEAR_SOLVERS, THREE_NODES, Chain
 
 
 class Peer:

@@ -18,7 +18,7 @@ from beamfem.io.mesh import read_mesh
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.view.plots import new_figure, save_figure
 
-MESHES = Path(__file__).parents[1] / "meshes"
+MESHES = Path(__file__).parents[2] / "meshes"
 SECTION = bf.Rectangle(0.05, 0.05)
 MATERIAL = bf.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000.0)
 PRESSURE = 50.0  # [N/m]

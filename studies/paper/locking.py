@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import simpson
-from terminal import show
 
 import beamfem as bf
 from beamfem.results import postprocess
 from beamfem.view.page import Entry, Part, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.paper.terminal import show
 
 MODULUS, SHEAR_FACTOR = 2e11, 5.0 / 6.0
 FORCES = {

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
-from uncompiled import Memory, uncompiled
 
 from beamfem.kernels.band import band
 from beamfem.kernels.model_passes import balance
+from studies.benchmarks.roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
+from studies.benchmarks.uncompiled import Memory, uncompiled
 
 _CHAINS = (5, 9)  # elements; their difference leaves the ends out
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pendulum import Run
 
 from beamfem.view.page import Entry, Table
 from beamfem.view.plots import COLOURS, new_figure, save_figure
+from studies.paper.pendulum import Run
 
 ANCF, CRBF, BILINEAR = "ANCF", "ANCF-CRBF", "bilinear-CRBF"
 Runs = dict[tuple[str, int], Run]
@@ -171,4 +171,4 @@ def table_of_times(runs: Runs) -> Table:
         f"{'holds' if large < 1.0 else 'does not hold here'}: the mass matrix in terms of rotations costs little where "
         "the reduction is done inside the compiled element loop, and each step is implicit for all of them."
     )
-    return Table("Table 1. Computing times", ["element", *(f"{count} elements" for count in meshes)], rows, remark)
+    return Table("Table 1. Computing times, CPU", ["element", *(f"{count} elements" for count in meshes)], rows, remark)

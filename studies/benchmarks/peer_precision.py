@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from peer_cases import (
+
+import beamfem as bf
+from studies.benchmarks.peer_cases import (
     CANTILEVER,
     DENSE,
     PENDULUM,
@@ -28,10 +30,8 @@ from peer_cases import (
     swing,
     tips_of,
 )
-from peer_clock import in_turns, once
-from peer_ratios import LOAD_STEPS, Row, row
-
-import beamfem as bf
+from studies.benchmarks.peer_clock import in_turns, once
+from studies.benchmarks.peer_ratios import LOAD_STEPS, Row, row
 
 STATIC_MESHES = {
     1: (8, 16, 32, 64, 128, 256, 512),

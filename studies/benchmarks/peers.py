@@ -23,9 +23,9 @@ def main(folder: Path = OUT) -> int:
     except ImportError:
         print("Exudyn cannot be imported here (pip install exudyn, or the extra bench): nothing to compare with")
         return 0
-    from peer_figures import draw_cost, draw_precision
-    from peer_precision import equal_accuracy, motion_runs, static_runs
-    from peer_ratios import HEADER, THREADS_HEADER, as_tuples, default_threads, same_mesh
+    from studies.benchmarks.peer_figures import draw_cost, draw_precision
+    from studies.benchmarks.peer_precision import equal_accuracy, motion_runs, static_runs
+    from studies.benchmarks.peer_ratios import HEADER, THREADS_HEADER, as_tuples, default_threads, same_mesh
 
     begun = time.perf_counter()
     with threadpool_limits(1):

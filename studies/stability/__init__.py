@@ -1,0 +1,1 @@
+"""Equilibrium paths, buckling and flutter of frames and columns from the literature."""

@@ -1,0 +1,153 @@
+"""Every example runs as it stands, writes its files, and prints what closed forms, shooting and literature say."""
+
+import contextlib
+import io
+import re
+import runpy
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+import beamfem as bf
+from studies.benchmarks.peer_cases import REISSNER_TIPS
+from studies.paper.elastica import tip_displacement
+from studies.stability import column, lee_frame
+
+FOLDER = Path(__file__).parent.parent / "examples"
+NAMES = sorted(path.stem for path in FOLDER.glob("*.py"))
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """Return what an example prints, line by line, and where it wrote its files."""
+
+    @cache
+    def run(name):
+        folder, text = tmp_path_factory.mktemp(name), io.StringIO()
+        with contextlib.chdir(folder), contextlib.redirect_stdout(text):
+            runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
+        return text.getvalue().splitlines(), folder / "out" / "examples"
+
+    return run
+
+
+def numbers(line):
+    """Return the numbers after the words of a line, which may hold some in names."""
+    return [float(text) for text in _NUMBER.findall(line)]
+
+
+def test_examples_are_short():
+    assert len(NAMES) == 8
+    assert all(len((FOLDER / f"{name}.py").read_text().splitlines()) < 40 for name in NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_example_writes_its_files(name, printed):
+    _, folder = printed(name)
+    named = re.findall(r'"out/examples/([\w.]+)"', (FOLDER / f"{name}.py").read_text())
+    assert named
+    for file in named:
+        assert (folder / file).exists(), file
+
+
+def test_the_cantilever_is_reissners(printed):
+    """Tip by shooting; the clamp's moment is the force times its lever."""
+    lines, _ = printed("cantilever")
+    section = bf.Rectangle(0.01, 0.01)
+    rigidity, force = section.rigidity(STEEL), 5.0 * STEEL.youngs_modulus * section.second_moment
+    tip = tip_displacement(1.0, (0.0, force), rigidity.bending, rigidity.axial, rigidity.shear)
+    assert numbers(lines[0]) == pytest.approx(tip, abs=1e-6)
+    moment = force * (1.0 + tip[0])
+    assert numbers(lines[1]) == pytest.approx([0.0, -force, -moment], abs=6e-3)
+    assert numbers(lines[2]) == pytest.approx([moment], abs=6e-3)
+
+
+def test_the_bracket_sinks_as_a_beam_column(printed):
+    """The column carries P and, at its top, P L: it turns there by P L tan(k h) / (k EI) with k^2 = P / EI and moves by
+    L (sec(k h) - 1); the bar bends by P L^3 / (3 EI), shear and stretch add P L / (k_s G A) and P h / EA."""
+    lines, _ = printed("frame")
+    rigidity = bf.Tube(0.1, 0.005).rigidity(bf.Material(2.1e11, 0.3, 7850.0))
+    height, reach, weight = 3.0, 1.5, 50.0
+    k = np.sqrt(weight / rigidity.bending)
+    sag = reach * weight * reach * np.tan(k * height) / (k * rigidity.bending)
+    sag += weight * (reach**3 / (3.0 * rigidity.bending) + height / rigidity.axial + reach / rigidity.shear)
+    assert numbers(lines[0])[0] == pytest.approx(1e3 * sag, abs=2e-4)
+    assert numbers(lines[1]) == pytest.approx([0.0, weight, weight * reach / np.cos(k * height)], abs=1e-3)
+
+
+def test_the_frame_snaps_where_collocation_says(printed):
+    lines, _ = printed("snap_through")
+    for line, (load, _, down) in zip(lines, lee_frame.LIMITS, strict=True):
+        assert numbers(line) == pytest.approx([load, down], abs=6e-3)
+
+
+def test_the_column_buckles_and_bends_as_reissner_and_the_elastica(printed):
+    """Of L/h = 500; the elastica's column is hinged at both ends: P / Euler = (2 K(sin a/2) / pi)^2."""
+    lines, _ = printed("buckling")
+    assert numbers(lines[0])[0] == pytest.approx(column.reissner("hinged-hinged", 500.0) / np.pi**2, abs=6e-7)
+    degrees, load = numbers(lines[1])
+    assert 57.0 < degrees < 120.0
+    # stretch and shear change the load of the elastica by as much as the critical one, 7e-6
+    assert load == pytest.approx((2.0 / np.pi * ellipk(np.sin(np.radians(degrees) / 2.0) ** 2)) ** 2, rel=2e-5)
+
+
+def test_the_modes_are_timoshenkos(printed):
+    """Sines between two hinges: (k G A q^2 - m w^2)(E I q^2 + k G A - J w^2) = (k G A q)^2 with q = n pi / L."""
+    lines, _ = printed("modes")
+    section = bf.Rectangle(0.05, 0.05)
+    rigidity, inertia = section.rigidity(STEEL), section.inertia(STEEL)
+    expected = []
+    for q in np.pi * np.arange(1, 4):
+        sway, turn = rigidity.shear * q**2, rigidity.bending * q**2 + rigidity.shear
+        product = [
+            inertia.mass * inertia.rotary,
+            -(inertia.mass * turn + inertia.rotary * sway),
+            sway * turn - (rigidity.shear * q) ** 2,
+        ]
+        expected.append(np.sqrt(np.roots(product).min()) / (2.0 * np.pi))
+    assert numbers(lines[0]) == pytest.approx(expected, abs=6e-4)
+    slender = 0.5 * np.pi * np.arange(1, 4) ** 2 * np.sqrt(rigidity.bending / inertia.mass)
+    assert numbers(lines[1]) == pytest.approx(slender, abs=6e-4)
+    assert np.all((expected / slender > 0.96) & (expected / slender < 0.996))
+
+
+def test_the_pendulum_falls_as_reissners_beam(printed):
+    """Tip at 0.5 s by spectral elements in time; nothing dissipates."""
+    lines, folder = printed("motion")
+    assert numbers(lines[0].removeprefix("tip at 0.5 s")) == pytest.approx(REISSNER_TIPS[4], abs=1e-4)
+    most, change = numbers(lines[1])
+    assert most > 50.0
+    assert change < 1e-4 * most
+    kept = bf.load(folder / "pendulum.h5")
+    assert kept.position(kept.model.beams[0].end)[25] == pytest.approx(REISSNER_TIPS[4], abs=1e-4)
+
+
+def test_the_sweep_is_reissners_beam(printed):
+    lines, _ = printed("sweep")
+    assert len(lines) == 6
+    for line in lines:
+        load, slenderness, found = (numbers(part)[-1] for part in re.split("[,:]", line))
+        rigidity = bf.Rectangle(1.0 / slenderness, 1.0 / slenderness).rigidity(STEEL)
+        force = (0.0, load * rigidity.bending)
+        expected = tip_displacement(1.0, force, rigidity.bending, rigidity.axial, rigidity.shear)[1]
+        assert found == pytest.approx(expected, abs=2e-6)
+
+
+def test_the_portal_sways_as_slope_and_deflection_say(printed):
+    """Half of the force on each column: 12 EI/h^3 u - 6 EI/h^2 t, and no moment is left at the corner, where the beam
+    resists with 6 EI_b/L t. Stretch and shear add 0.2 %."""
+    lines, _ = printed("own_mesh")
+    height, width, force, modulus = 4.0, 6.0, 1000.0, 2.1e11
+    post, beam = modulus * 0.1**4 / 12.0, modulus * 0.1 * 0.12**3 / 12.0
+    matrix = [
+        [12.0 * post / height**3, -6.0 * post / height**2],
+        [-6.0 * post / height**2, 4.0 * post / height + 6.0 * beam / width],
+    ]
+    sway = 1e3 * np.linalg.solve(matrix, [0.5 * force, 0.0])[0]
+    assert lines[0] == "member sets: columns, beam - point sets: feet, corners, midspan"
+    assert numbers(lines[1])[0] == pytest.approx(sway, rel=3e-3)

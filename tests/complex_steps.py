@@ -138,7 +138,7 @@ def accelerations(mesh, solution: bf.Solution, row: int) -> np.ndarray:
     p, v, a = (mesh.table(values[row][None]) for values in (solution.p, solution.v, solution.a))
     e = nodal_vectors(mesh, solution.p[row][None])
     result = np.zeros(e.shape[1:])
-    for carrier, nodes in mesh.carriers:
+    for carrier, nodes in mesh.node_kinds:
         names = labels(carrier, mesh.vectors)
         frame = mesh.carried.frame[nodes]
         result[nodes] = nodal_rates(carrier, mesh.vectors, p[:, nodes], a[:, nodes], frame)[0]
@@ -182,7 +182,7 @@ def to_coordinates(mesh, p: np.ndarray, force: np.ndarray, size: int) -> np.ndar
     nodal = np.zeros((mesh.nodes, len(mesh.vectors), 2))
     np.add.at(nodal, mesh.node, force.reshape(mesh.elements, mesh.node.shape[1], -1, 2))
     table, result = mesh.table(p[None]), np.zeros(size)
-    for carrier, nodes in mesh.carriers:
+    for carrier, nodes in mesh.node_kinds:
         names, frame = labels(carrier, mesh.vectors), mesh.carried.frame[nodes]
         for column in range(len(names)):
             unit = np.zeros(table[:, nodes].shape)

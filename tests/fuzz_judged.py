@@ -135,7 +135,7 @@ def _shape_is_near(at: bf.Solution, shape: np.ndarray, left: np.ndarray) -> bool
     system, rest = system_of(at.model, True), np.zeros(len(shape))
     _, tangent = linearise(system, at.p[0], rest, rest, float(at.at[0]), STATICS)
     try:
-        factors = tangent.factorised(system.turned)
+        factors = tangent.factorised(system.rotated)
         away = [np.abs(factors.solve(part[system.free_dofs])) for part in (left.real, left.imag)]
     except (LinAlgError, ValueError):
         return False
@@ -197,7 +197,7 @@ def _stiffness(at: bf.Solution, shape: np.ndarray) -> tuple[np.ndarray, np.ndarr
             moved = replace(at, p=at.p + place * h * part)
             result = result + unit * weight / h * residual(moved)
     rest = np.zeros(len(shape))
-    tangent = linearise(system, at.p[0], rest, rest, float(at.at[0]), STATICS)[1].sparse(system.turned)
+    tangent = linearise(system, at.p[0], rest, rest, float(at.at[0]), STATICS)[1].sparse(system.rotated)
     cut_off = np.zeros(len(shape))  # the difference is of fourth order, of each part of a row that may cancel
     cut_off[system.free_dofs] = _STRAIN**4 * (abs(tangent) @ np.abs(shape[system.free_dofs]))
     noise = (floor_of(at) / width + cut_off) * system.scale

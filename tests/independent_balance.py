@@ -101,7 +101,7 @@ def _away(solution: bf.Solution, row: int, left: np.ndarray) -> float:
     inertia = 0.0 if solution.static else 4.0 / float(np.diff(solution.at).min()) ** 2
     _, tangent = linearise(system, *state, at, (1.0, 0.0, inertia))
     try:
-        step = tangent.factorised(system.turned).solve(left[system.free_dofs])
+        step = tangent.factorised(system.rotated).solve(left[system.free_dofs])
     except (LinAlgError, ValueError):
         return np.inf
     turn = np.maximum(np.abs(state[0]), 1.0)

@@ -91,7 +91,7 @@ def _unstable(state: bf.PathState) -> int:
     system = system_of(state.model, static=True)
     rest = np.zeros(len(state.p))
     _, tangent = linearise(system, state.p, rest, rest, state.at, STATICS)
-    return tangent.factorised(system.turned).negative_pivots if system.symmetric else 0
+    return tangent.factorised(system.rotated).negative_pivots if system.symmetric else 0
 
 
 def reference(recipe: Recipe, meshes: bool = True) -> Reference | NoReference:

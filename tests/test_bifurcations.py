@@ -9,7 +9,7 @@ from test_path import LIMIT_HEIGHT, SOFT, bar_force
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import system_of
-from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.modes.pencil import UNROTATED
 from beamfem.solve.paths.trace import trace_equilibrium
 
 FOUNDATION = 4.0 * np.pi**4  # where the first two modes of a hinged column with E I = L = 1 buckle together
@@ -128,7 +128,7 @@ def test_the_tangent_loses_an_eigenvalue_at_each_bifurcation(gap):
     for load in loads_of(path):
         for beside in (load - width, load + width):
             p = trace_equilibrium(model, beside).p[-1]
-            tangent = linearise(system, p, 0.0 * p, 0.0 * p, beside, STATICS)[1].sparse(UNTURNED)
+            tangent = linearise(system, p, 0.0 * p, 0.0 * p, beside, STATICS)[1].sparse(UNROTATED)
             counts.append(int((np.linalg.eigvalsh(tangent.toarray()) < 0.0).sum()))
     assert counts == [0, 1, 1, 2]
 

@@ -78,7 +78,7 @@ def test_softness_of_a_change_is_its_product_with_the_inverse_of_the_tangent():
     system = System(model, static=True)
     line, start = begin(system, system.reference, 0.0, Newton())
     rest = np.zeros(system.model.size)
-    tangent = linearise(system, start.y[:-1], rest, rest, 0.0, STATICS)[1].sparse(system.turned).toarray()
+    tangent = linearise(system, start.y[:-1], rest, rest, 0.0, STATICS)[1].sparse(system.rotated).toarray()
     change = np.random.default_rng(3).standard_normal(len(start.y))
     right = (line.weights * change)[system.free_dofs]
     assert line.softness(start.factors, change) == pytest.approx(right @ np.linalg.solve(tangent, right), rel=1e-9)
@@ -160,5 +160,5 @@ def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_t
     monkeypatch.setattr(found_by, "turning", lambda segment, x: crossing(x))
     monkeypatch.setattr(found_by, "_search", lambda segment, start, end: iter([crossing(0.5 * (start + end))]))
     segment = SimpleNamespace(turned=[0.6], change=lambda start, end: 0)
-    shares = [found.share for found in found_by.bifurcations(segment, [])]
+    shares = [found.fraction for found in found_by.bifurcations(segment, [])]
     assert shares == pytest.approx([0.3, 0.6, 0.8], abs=1e-3)

@@ -6,7 +6,7 @@ import pytest
 import beamfem as bf
 from beamfem.assembly.system import System
 from beamfem.solve.start import body_motions
-from beamfem.solve.start.body_motions import Conditions, bodies_of, free_motions
+from beamfem.solve.start.body_motions import Conditions, bodies_of, mechanisms
 
 
 @pytest.mark.parametrize("dense_up_to", [300, 3], ids=["dense", "sparse"])
@@ -18,7 +18,7 @@ def test_every_bar_that_is_pinned_only_may_turn_about_its_pin(monkeypatch, dense
     supports = [(bf.Pin if i in pinned else bf.Clamp)(bar.start) for i, bar in enumerate(bars)]
     system = System(bf.Model(bars, supports), static=True)
     conditions = Conditions(system, bodies_of(system.model), system.reference)
-    motions = free_motions(conditions)
+    motions = mechanisms(conditions)
     assert motions @ motions.T == pytest.approx(np.eye(len(pinned)), abs=1e-9)
     # a, b in lengths of the model and the turn about its centre: b = -turn x of the pin
     expected = np.zeros((len(pinned), 36))

@@ -8,7 +8,7 @@ from test_snap import toggle
 import beamfem as bf
 from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import system_of
-from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.modes.pencil import UNROTATED
 from beamfem.solve.statics import snap
 
 SECTION, STEEL = bf.Rectangle(0.05, 0.05), bf.Material(2e11, 0.3, 7800.0)
@@ -57,7 +57,7 @@ def test_a_step_of_a_jump_so_long_that_it_could_end_in_another_valley_is_refused
     system = system_of(model, static=True)
     p, rest, at = path.p[row], np.zeros(model.size), float(path.at[row])
     stiffness, mass = (
-        linearise(system, p, rest, rest, at, of)[1].sparse(UNTURNED).toarray() for of in (STATICS, INERTIA)
+        linearise(system, p, rest, rest, at, of)[1].sparse(UNROTATED).toarray() for of in (STATICS, INERTIA)
     )
     lowest = float(eigh(stiffness, mass, eigvals_only=True)[0])
     assert lowest < 0.0

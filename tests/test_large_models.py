@@ -52,7 +52,7 @@ def test_the_order_of_a_lattice_fills_in_no_more_than_that_of_its_coordinates():
     """Nodes are ordered instead of coordinates; both orders are of minimum degree."""
     model, _ = grid(30, 30)
     system, tangent = tangent_at(model, System(model, static=True).reference)
-    factors = tangent.factorised(system.turned)
+    factors = tangent.factorised(system.rotated)
     options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
     assert factors.lu.nnz < 1.1 * splu(tangent.matrix, **options).nnz
 

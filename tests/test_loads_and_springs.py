@@ -136,7 +136,7 @@ def test_the_tangent_of_all_that_acts_is_the_derivative_of_the_residual(element,
     system = System(model, static=True)
     p = system.reference + 0.05 * rng.standard_normal(model.size)
     rest, free = np.zeros(model.size), system.free_dofs
-    tangent = linearise(system, p, rest, rest, 1.0, STATICS)[1].sparse(system.turned).toarray()
+    tangent = linearise(system, p, rest, rest, 1.0, STATICS)[1].sparse(system.rotated).toarray()
     change = rng.standard_normal(len(free))
     step = np.zeros(model.size)
     step[free] = change
@@ -147,7 +147,7 @@ def test_the_tangent_of_all_that_acts_is_the_derivative_of_the_residual(element,
     expected = (4 * slope[0] - slope[1]) / 3
     assert tangent @ change == pytest.approx(expected, rel=1e-6, abs=1e-7 * np.abs(expected).max())
     # loads alone, so that the stiffness of the beams hides nothing
-    loads = linearise(system, p, rest, rest, 0.0, STATICS)[1].sparse(system.turned).toarray()
+    loads = linearise(system, p, rest, rest, 0.0, STATICS)[1].sparse(system.rotated).toarray()
     unloaded = [residual(system, p + side * 1e-4 * step, rest, rest, 0.0)[free] for side in (1, -1)]
     loaded = [residual(system, p + side * 1e-4 * step, rest, rest, 1.0)[free] for side in (1, -1)]
     acting = ((loaded[0] - unloaded[0]) - (loaded[1] - unloaded[1])) / 2e-4

@@ -111,7 +111,7 @@ def test_only_rigid_motions_cost_nothing(forces, coordinates, curve, elements):
     system = System(bf.Model([beam]), static=True)
     rest = np.zeros(system.model.size)
     tangent = linearise(system, system.reference, rest, rest, 0.0, (1.0, 0.0, 0.0))[1]
-    found = np.linalg.eigvalsh(tangent.sparse(system.turned).toarray())
+    found = np.linalg.eigvalsh(tangent.sparse(system.rotated).toarray())
     assert np.abs(found[:3]).max() < 1e-12 * found[-1]
     assert found[3] > 1e-5 * found[-1]
 

@@ -10,7 +10,7 @@ from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import System, system_of
 from beamfem.linalg.eigenpairs import first_that_works, general_pairs, nothing_known
 from beamfem.solve.modes.modes import _rates
-from beamfem.solve.modes.pencil import UNTURNED, Pencil
+from beamfem.solve.modes.pencil import UNROTATED, Pencil
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 # 9.timoshenko.clamped-free.L/h=10.ks=5/6 [Hz]
@@ -104,7 +104,7 @@ def test_frequencies_and_shapes_are_those_of_the_full_matrices(element):
     system = System(model, static=True)
     rest = np.zeros_like(state.p)
     stiffness, mass = (
-        linearise(system, state.p, rest, rest, 1.0, weights)[1].sparse(UNTURNED).toarray()
+        linearise(system, state.p, rest, rest, 1.0, weights)[1].sparse(UNROTATED).toarray()
         for weights in (STATICS, INERTIA)
     )
     exact = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:5]) / (2 * np.pi)
@@ -195,7 +195,7 @@ def test_modes_under_a_follower_force_have_a_mass_of_one():
     model = bf.Model([beam], [bf.Clamp(beam.start)], [force])
     modes = bf.solve_modes(model, 3, about=bf.solve_static(model))
     system, rest = system_of(model, static=True), np.zeros(model.size)
-    mass = linearise(system, modes.state.p, rest, rest, 1.0, INERTIA)[1].sparse(UNTURNED)
+    mass = linearise(system, modes.state.p, rest, rest, 1.0, INERTIA)[1].sparse(UNROTATED)
     shapes = modes.modes[:, system.free_dofs]
     assert np.abs(np.conj(shapes) @ (mass @ shapes.T)).diagonal() == pytest.approx(1.0, rel=1e-9)
 

@@ -159,7 +159,7 @@ def test_the_tangent_of_pressures_is_the_derivative_of_their_residual(element, r
     change = rng.standard_normal(len(free))
     step = np.zeros(model.size)
     step[free] = change
-    tangents = [linearise(system, p, rest, rest, at, STATICS)[1].sparse(system.turned) for at in (2.0, 0.0)]
+    tangents = [linearise(system, p, rest, rest, at, STATICS)[1].sparse(system.rotated) for at in (2.0, 0.0)]
     slopes = []
     for at in (2.0, 0.0):
         ends = [residual(system, p + side * 1e-4 * step, rest, rest, at)[free] for side in (1, -1)]
@@ -189,7 +189,7 @@ def test_compiled_pressure_is_the_readable_form(element, rng):
         assert force @ rate == pytest.approx(nodal @ moving[numbers], rel=1e-9)
 
 
-HELD = {
+PRESCRIBED = {
     "clamped and pinned": (lambda b: [bf.Clamp(b.start), bf.Pin(b.end)], True),
     "on rollers": (lambda b: [bf.Pin(b.start), bf.Roller(b.end)], True),
     "on an inclined roller": (lambda b: [bf.Pin(b.start), bf.Roller(b.end, (1.0, 2.0))], True),
@@ -198,14 +198,14 @@ HELD = {
 }
 
 
-@pytest.mark.parametrize("name", HELD)
+@pytest.mark.parametrize("name", PRESCRIBED)
 def test_the_tangent_is_symmetric_where_pressure_has_a_potential(name, rng):
-    supports, expected = HELD[name]
+    supports, expected = PRESCRIBED[name]
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, bf.CRBF(2), bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0))
     system = System(bf.Model([beam], supports(beam), [bf.Pressure(beam, 500.0)]), static=True)
     p = system.reference + 0.05 * rng.standard_normal(system.model.size)
     rest = np.zeros(len(p))
-    matrix = linearise(system, p, rest, rest, 1.0, STATICS)[1].sparse(system.turned).toarray()
+    matrix = linearise(system, p, rest, rest, 1.0, STATICS)[1].sparse(system.rotated).toarray()
     if name == "on an inclined roller":
         first, normal = system.inclined[0]
         place, along = system.unknowns.free[first], np.array([-normal[1], normal[0]])

@@ -87,7 +87,7 @@ def asymmetry(solution):
     system = system_of(solution.model, True)
     rest = np.zeros(solution.model.size)
     _, tangent = linearise(system, solution.p[-1], rest, rest, 1.0, STATICS)
-    matrix = tangent.sparse(system.turned)
+    matrix = tangent.sparse(system.rotated)
     return abs(matrix - matrix.T).max() / abs(matrix).max(), system.symmetric
 
 

@@ -20,7 +20,7 @@ def test_no_row_feels_more_of_errors_of_positions_than_is_foreseen(kind, forces)
     system = System(bf.Model([beam]), static=True)
     (mesh,), p = system.model.meshes, system.reference
     rest = np.zeros(len(p))
-    tangent = linearise(system, p, rest, rest, 0.0, STATICS)[1].sparse(system.turned).toarray()
+    tangent = linearise(system, p, rest, rest, 0.0, STATICS)[1].sparse(system.rotated).toarray()
     assert len(tangent) == len(p)
     positions = [dofs for label, _, dofs in coordinate_columns(mesh) if label.startswith("r^")]
     worst = np.abs(tangent[:, np.concatenate(positions)]).sum(axis=1)

@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import System
-from beamfem.solve.newton.iteration import Ended, NewtonResult
+from beamfem.solve.newton.iteration import NewtonResult, Termination
 from beamfem.solve.statics import snap
 
 
@@ -174,8 +174,8 @@ def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_moti
     beyond = limit.copy()
     beyond[system.free_dofs] += 1e-4 * system.scale[system.free_dofs]
     far = system.reference + 0.5 * system.scale
-    ends = iter([(Ended.EXHAUSTED, 0, None), (Ended.CONVERGED, 1, None), (Ended.CONVERGED, 0, far)])
-    found = NewtonResult(system.reference, 3, Ended.CONVERGED)
+    ends = iter([(Termination.EXHAUSTED, 0, None), (Termination.CONVERGED, 1, None), (Termination.CONVERGED, 0, far)])
+    found = NewtonResult(system.reference, 3, Termination.CONVERGED)
 
     def solved(system, p, *given, **named):
         end = next(ends, None)
@@ -184,7 +184,7 @@ def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_moti
     monkeypatch.setattr(snap, "_step", lambda system, p, load_factor, time: (p + 1e-5 * system.scale, 1))
     monkeypatch.setattr(snap, "solve_equilibrium", solved)
     rest = snap.rest_state(system, limit, beyond, bf.Newton())
-    assert rest.ended is Ended.CONVERGED
+    assert rest.ended is Termination.CONVERGED
     assert rest.state is found.state
     assert rest.iterations == 4 * (1 + 3)
 

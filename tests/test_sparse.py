@@ -82,9 +82,9 @@ def disturbed(model, size, seed=1):
 def allowed(system):
     """Basis (unknown, m) of the changes that inclined rollers let through."""
     basis = np.eye(len(system.free_dofs))
-    for first, (c, s) in zip(*system.turned, strict=True):
+    for first, (c, s) in zip(*system.rotated, strict=True):
         basis[[first, first + 1], first + 1] = -s, c
-    return np.delete(basis, system.turned[0], axis=1)
+    return np.delete(basis, system.rotated[0], axis=1)
 
 
 def test_the_sparse_tangent_has_the_entries_of_the_band(force_sparse):
@@ -107,12 +107,12 @@ def test_a_sparse_solve_is_that_of_dense_matrices(force_sparse, factor, rng):
     force_sparse()
     model = portal()
     system, tangent = tangent_at(model, disturbed(model, 0.01), factor)
-    assert len(system.turned[0]) == 2
+    assert len(system.rotated[0]) == 2
     nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 2))
     dense, basis = tangent.sparse(nothing).toarray(), allowed(system)
     right = rng.standard_normal(len(dense))
     expected = basis @ np.linalg.solve(basis.T @ dense @ basis, basis.T @ right)
-    for x in (tangent.solve(right, system.turned), tangent.factorised(system.turned).solve(right)):
+    for x in (tangent.solve(right, system.rotated), tangent.factorised(system.rotated).solve(right)):
         assert np.abs(x - expected).max() < 1e-9 * np.abs(expected).max()
 
 
@@ -156,7 +156,7 @@ def test_negative_pivots_are_the_negative_eigenvalues(force_sparse, size, seed):
     dense, basis = tangent.sparse(nothing).toarray(), allowed(system)
     assert np.abs(dense - dense.T).max() < 1e-12 * np.abs(dense).max()
     expected = int((np.linalg.eigvalsh(basis.T @ dense @ basis) < 0.0).sum())
-    assert tangent.factorised(system.turned).negative_pivots == expected
+    assert tangent.factorised(system.rotated).negative_pivots == expected
     assert (expected > 0) == (size > 0.0)
 
 

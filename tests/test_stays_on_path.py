@@ -11,7 +11,7 @@ from shooting import Member, solved
 
 import beamfem as bf
 from beamfem.assembly.system import System
-from beamfem.solve.newton.iteration import Ended, NewtonResult
+from beamfem.solve.newton.iteration import NewtonResult, Termination
 from beamfem.solve.statics.skipped import skips_limit_points
 from beamfem.solve.statics.static_record import StaticRecord
 
@@ -327,9 +327,11 @@ def test_a_load_step_whose_first_correction_goes_far_beyond_its_end_is_a_gap_in_
     (mesh,), moved = system.model.meshes, system.reference.copy()
     moved[mesh.coordinates_of(1)["r^y"]] += 0.1 * unit
     done = StaticRecord(system.model, system.symmetric)
-    done.add(0.5, system.reference, 0, Ended.CONVERGED)
+    done.add(0.5, system.reference, 0, Termination.CONVERGED)
     for first, gap in ((1.0, True), (0.2, False)):
         assert (
-            skips_limit_points(system, done, 1.0, NewtonResult(moved, 3, Ended.CONVERGED, first=first), bf.Newton())
+            skips_limit_points(
+                system, done, 1.0, NewtonResult(moved, 3, Termination.CONVERGED, first=first), bf.Newton()
+            )
             == gap
         )

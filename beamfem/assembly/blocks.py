@@ -62,7 +62,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     return {
         "node": node,
         "beam": np.repeat([number for number, _ in meshes], elements),
-        "carrier": _joined([mesh.carried.carrier for mesh in own]),
+        "node_kind": _joined([mesh.carried.node_kind for mesh in own]),
         "frame": _joined([mesh.carried.frame for mesh in own]),
         "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),
         "home": home,

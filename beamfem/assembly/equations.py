@@ -72,8 +72,8 @@ def with_stresses(
     """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
     p = state[0]
     known = stresses or _sure_stresses(system, p)
-    loads, rest = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
-    return mixed(system, p, coefficients[0], loads, rest, plain)
+    loads, zeros = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
+    return mixed(system, p, coefficients[0], loads, zeros, plain)
 
 
 def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -112,11 +112,11 @@ def load_slope(system: System, p: np.ndarray, load_factor: float, width: float =
 
     A central difference of the given width, exact to round-off where loads are proportional to the load factor.
     """
-    rest = np.zeros(len(p))
-    held, slopes = system.held_dofs, []
+    zeros = np.zeros(len(p))
+    held, slopes = system.prescribed_dofs, []
     for side in (1.0, -1.0):
         at = load_factor + side * width
         moved = p.copy()
-        moved[held] += system.held_values(at) - system.held_values(load_factor)
-        slopes.append(side * residual(system, moved, rest, rest, at))
+        moved[held] += system.prescribed_values(at) - system.prescribed_values(load_factor)
+        slopes.append(side * residual(system, moved, zeros, zeros, at))
     return np.asarray(sum(slopes) / (2.0 * width))

@@ -30,14 +30,14 @@ class Held:
         return self.value * (time if static else 1.0)
 
 
-def held_coordinates(model: Model) -> tuple[Held, ...]:
+def prescribed_coordinates(model: Model) -> tuple[Held, ...]:
     """Return the held coordinates, ordered by number. Raises InputError where two supports hold the same one."""
     held: dict[int, Held] = {}
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)
         dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
         for direction, value in support.held().items():
-            name = held_coordinate(support, direction)
+            name = prescribed_coordinate(support, direction)
             if name is None:
                 continue
             if dofs[name] in held:
@@ -63,7 +63,7 @@ def inclined_rollers(model: Model, held: set[int]) -> tuple[tuple[int, np.ndarra
     return tuple(found)
 
 
-def held_coordinate(support: PointSupport, direction: str) -> str | None:
+def prescribed_coordinate(support: PointSupport, direction: str) -> str | None:
     """Name the coordinate that holds a direction of a support; None for an inclined roller."""
     if direction == "rotation":
         return "theta"

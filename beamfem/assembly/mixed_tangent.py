@@ -17,7 +17,7 @@ from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Block
 from beamfem.linalg.lapack import LinAlgError, symmetric_factors
-from beamfem.linalg.tangent import Stresses, Tangent, Turned, turning
+from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
 
 _REFINEMENTS = 2  # each equation then holds to the digits of its own terms, however large others are (Skeel 1980)
 _COUNTED = 3000  # unknowns and stress resultants; of more, the pivots of the plain tangent are counted
@@ -35,13 +35,13 @@ class MixedFactors:
     matrix: csc_array
     kept: np.ndarray
     tangent: "MixedTangent"
-    turned: Turned
+    rotated: Rotated
 
     @property
     def negative_pivots(self) -> int:
         """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
         if self.matrix.shape[0] > _COUNTED:
-            return self.tangent.plain.factorised(self.turned).negative_pivots
+            return self.tangent.plain.factorised(self.rotated).negative_pivots
         return negative_eigenvalues(self.matrix.toarray()) - (self.matrix.shape[0] - int(self.kept.sum()))
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ class MixedFactors:
         return x, tuple(stresses)
 
     def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        turn = turning(len(right), self.turned)
+        turn = turning(len(right), self.rotated)
         n = int(self.kept.sum())
         known = np.concatenate([(turn @ right)[self.kept], strain])
         known = self.scale * known
@@ -86,7 +86,7 @@ class MixedTangent:
     of each block's stress resultants and which of them resist; plain: the same tangent as one matrix.
     """
 
-    rest: csr_array
+    zeros: csr_array
     slopes: csr_array
     flexibility: csr_array
     weight: np.ndarray
@@ -95,15 +95,15 @@ class MixedTangent:
     places: tuple[tuple[tuple[int, ...], np.ndarray], ...]
     plain: Tangent
 
-    def factorised(self, turned: Turned) -> MixedFactors:
+    def factorised(self, rotated: Rotated) -> MixedFactors:
         """Return the factors. Raises LinAlgError."""
-        n = self.rest.shape[0]
-        turn, kept = turning(n, turned), np.ones(n, dtype=bool)
-        kept[turned[0]] = False
-        rest = (turn @ self.rest @ turn.T)[kept][:, kept]
+        n = self.zeros.shape[0]
+        turn, kept = turning(n, rotated), np.ones(n, dtype=bool)
+        kept[rotated[0]] = False
+        zeros = (turn @ self.zeros @ turn.T)[kept][:, kept]
         couples = dia_array((self.weight[None], [0]), shape=(len(self.weight),) * 2) @ self.slopes @ turn.T
         couples = csr_array(couples)[:, kept]
-        placed = coo_array(block_array([[rest, couples.T], [couples, -self.flexibility]]))
+        placed = coo_array(block_array([[zeros, couples.T], [couples, -self.flexibility]]))
         (row, column), sizes = placed.coords, np.abs(placed.data)
         scale = np.ones(placed.shape[0])
         for _ in range(3):
@@ -113,27 +113,27 @@ class MixedTangent:
             scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
         matrix = csc_array(coo_array((scale[row] * placed.data * scale[column], (row, column)), shape=placed.shape))
         try:
-            return MixedFactors(splu(matrix), scale, matrix, kept, self, turned)
+            return MixedFactors(splu(matrix), scale, matrix, kept, self, rotated)
         except RuntimeError as error:
             raise LinAlgError("the tangent is singular") from error
 
-    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(turned).solve(right)
+        return self.factorised(rotated).solve(right)
 
-    def lost(self, turned: Turned) -> float:
+    def lost(self, rotated: Rotated) -> float:
         """Return the relative error of a solution by the plain tangent, measured by the elements one by one.
 
         Forces act on all coordinates; what they move strains the elements, whose stresses ought to balance them. This
         depends neither on the order of elimination nor on that of the beams. Raises LinAlgError.
         """
-        force = np.random.default_rng(0).standard_normal(self.rest.shape[0])
-        plain, exact = self.plain.factorised(turned), self.factorised(turned).solve(force)
+        force = np.random.default_rng(0).standard_normal(self.zeros.shape[0])
+        plain, exact = self.plain.factorised(rotated), self.factorised(rotated).solve(force)
         return float(np.max(np.abs(plain.solve(force) - exact)) / np.max(np.abs(exact)))
 
-    def sparse(self, turned: Turned) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        return self.plain.sparse(turned)
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        return self.plain.sparse(rotated)
 
 
 def negative_eigenvalues(matrix: np.ndarray) -> int:
@@ -153,7 +153,7 @@ def without_stiffness(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
 
 
 def mixed(
-    system: System, p: np.ndarray, factor: float, loads: np.ndarray, rest: Tangent, plain: Tangent
+    system: System, p: np.ndarray, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
 ) -> MixedTangent:
     """Return the tangent of a state p (n,).
 
@@ -168,7 +168,7 @@ def mixed(
     stacked = csr_array(block_array([[own] for own in slopes]))
     elastic = stacked, csr_array(placed) / factor, np.concatenate(weight)
     shapes = tuple(((len(own.node), *own.reference.shape[1:]), resisting(own)) for own in system.blocks)
-    return MixedTangent(rest.sparse(none), *elastic, loads[system.free_dofs], np.concatenate(strain), shapes, plain)
+    return MixedTangent(zeros.sparse(none), *elastic, loads[system.free_dofs], np.concatenate(strain), shapes, plain)
 
 
 def resisting(block: Block) -> np.ndarray:
@@ -187,7 +187,7 @@ def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, cs
     part = block._replace(
         node=np.arange(len(own)).reshape(elements, nodes),
         dof=apart,
-        carrier=block.carrier[own],
+        node_kind=block.node_kind[own],
         frame=block.frame[own],
         stiffness=np.ascontiguousarray(np.broadcast_to(np.eye(strains), block.stiffness.shape)),
     )
@@ -200,7 +200,7 @@ def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, cs
     loose = np.abs(block.stiffness).max(axis=3) == 0.0
     resists = resisting(block)
     loose = loose[:, :, resists]
-    rest = measured(np.zeros(len(at)))
+    zeros = measured(np.zeros(len(at)))
     number = np.arange(elements * points * len(resists)).reshape(elements, points, len(resists))
     entries: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     for place in range(nodes * width):
@@ -208,7 +208,7 @@ def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, cs
         step[:, place] = 1.0
         column = system.unknowns.free[dof.reshape(elements, -1)[:, place]]
         known = (dof.reshape(elements, -1)[:, place] >= 0) & (column >= 0)
-        values = np.where(loose[block.kind], 0.0, (measured(step.ravel()) - rest)[:, :, resists])[known]
+        values = np.where(loose[block.kind], 0.0, (measured(step.ravel()) - zeros)[:, :, resists])[known]
         columns = np.broadcast_to(column[known][:, None, None], values.shape)
         entries.append((values.ravel(), number[known].ravel(), columns.ravel()))
     values, row, column = (np.concatenate(part) for part in zip(*entries, strict=True))
@@ -220,5 +220,5 @@ def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, cs
     i = np.broadcast_to(number[..., :, None], inverse.shape).ravel()
     j = np.broadcast_to(number[..., None, :], inverse.shape).ravel()
     flexible = coo_array(((weight[..., None] * inverse).ravel(), (i, j)), shape=(number.size, number.size))
-    strain = np.where(loose[block.kind], 0.0, rest[:, :, resists])
+    strain = np.where(loose[block.kind], 0.0, zeros[:, :, resists])
     return slopes, csr_array(flexible), weight.ravel(), strain.ravel()

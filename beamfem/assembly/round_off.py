@@ -64,14 +64,14 @@ def differentiated(
 
 def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
     """Return the change of the residual (n,) with a step (n,) that may be below the last digit of p."""
-    rest = np.zeros(len(p))
-    return differentiated(system, lambda q: residual(system, q, rest, rest, load_factor), p, step)
+    zeros = np.zeros(len(p))
+    return differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, step)
 
 
 def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return how many digits of the forces are sure in a state p (n,) as it stands; all where nothing acts."""
-    rest = np.zeros(len(p))
-    found = residual(system, p, rest, rest, load_factor)
+    zeros = np.zeros(len(p))
+    found = residual(system, p, zeros, zeros, load_factor)
     return _digits(system, p, found, load_factor)
 
 
@@ -91,16 +91,16 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     """Return the best that further corrections by the present kind of tangent give."""
-    rest, free = np.zeros(len(p)), system.free_dofs
-    found = residual(system, p, rest, rest, load_factor)
+    zeros, free = np.zeros(len(p)), system.free_dofs
+    found = residual(system, p, zeros, zeros, load_factor)
     best = Remainder(np.zeros(len(p)), _digits(system, p, found, load_factor))
     step, unbalanced = np.zeros(len(p)), found
     try:
-        factors = linearise(system, p, rest, rest, load_factor, STATICS)[1].factorised(system.turned)
+        factors = linearise(system, p, zeros, zeros, load_factor, STATICS)[1].factorised(system.rotated)
         _, stresses = factors.correction(found[free])
         if stresses is not None:
             # those of the state itself are as wrong as its last digits are
-            factors = linearise(system, p, rest, rest, load_factor, STATICS, stresses)[1].factorised(system.turned)
+            factors = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)[1].factorised(system.rotated)
         for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
             if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
@@ -121,10 +121,10 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
     if MIXED in system.proven or _KEEPS in system.proven:
         return False
-    state, rest = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
+    state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
     try:
-        plain = linearise(system, p, rest, rest, load_factor, STATICS)[1]
-        lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.turned)
+        plain = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+        lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.rotated)
     except LinAlgError:
         return False
     system.proven.add(_KEEPS if lost <= _LOSES else MIXED)
@@ -143,7 +143,7 @@ def load_size(system: System, values: Sequence[np.ndarray]) -> float:
 
 def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
     """Return the largest force, times the size of the model, or moment [N m] of loads, supports and springs."""
-    held, springs = system.held_dofs, system.springs
+    held, springs = system.prescribed_dofs, system.springs
     reactions = float(np.max(np.abs(unbalanced[held] * system.scale[held]), initial=0.0))
     for dof, normal in system.inclined:
         reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))

@@ -30,11 +30,11 @@ def residual_errors(
         for element, position, spring in zip(loads.element, loads.position, loads.spring, strict=True):
             own = block.node[element]
             nodes[0][own] += spring.max() * np.abs(position).reshape(len(own), -1)
-        for carrier in np.unique(block.carrier).tolist():
-            here = np.flatnonzero(block.carrier == carrier)
-            for column, label in enumerate(labels(carrier, names)):
+        for node_kind in np.unique(block.node_kind).tolist():
+            here = np.flatnonzero(block.node_kind == node_kind)
+            for column, label in enumerate(labels(node_kind, names)):
                 slots = [_slot(label, names)]
-                if label == "theta" and carrier in (STRETCH, SHEAR_RIGID):
+                if label == "theta" and node_kind in (STRETCH, SHEAR_RIGID):
                     slots.append(1)
                 # nodes that share a coordinate add what they leave in it
                 for part, values in zip(result, nodes, strict=True):
@@ -104,7 +104,7 @@ def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nd
 
 def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
     """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv) of the classes of elements."""
-    count, nodes = block.node.shape[1], len(block.carrier)
+    count, nodes = block.node.shape[1], len(block.node_kind)
     own = errors.reshape(len(errors), errors.shape[1], count, -1)
     result = np.zeros((len(errors), nodes, own.shape[3]))
     for place in range(count):

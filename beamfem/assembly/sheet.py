@@ -61,7 +61,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     size = 2 * vectors
     classes, points, measures = block.reference.shape
     bends = int(block.measures == ELASTIC_LINE)
-    kinds = np.unique(block.carrier) if len(block.carrier) else np.empty(0, dtype=int)
+    kinds = np.unique(block.node_kind) if len(block.node_kind) else np.empty(0, dtype=int)
     turned = 4 if np.isin(kinds, (STRETCH, SHEAR_RIGID)).any() else (0 if (kinds == GRADIENTS).all() else 2)
     turning = coordinates - (size - turned) if turned else 0
     upper = np.triu_indices(measures)
@@ -101,7 +101,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.PLACE: place.T,
         record.DOF: block.dof.T,
         record.FRAME: block.frame.T,
-        record.RUNS: _runs(block.carrier),
+        record.RUNS: _runs(block.node_kind),
         record.NUMBER: number.T,
         record.SLOT: layout.slot,
         record.FREE: layout.free,
@@ -161,23 +161,23 @@ def _places(node: np.ndarray, rows: int) -> np.ndarray:
     return np.asarray(node // LANES * (rows * ROW) + node % LANES)
 
 
-def _runs(carrier: np.ndarray) -> np.ndarray:
+def _runs(node_kind: np.ndarray) -> np.ndarray:
     """Return kind, first node and number of nodes (runs, 3) of neighbours of one kind."""
-    first = np.flatnonzero(np.diff(carrier, prepend=-1))
-    return np.column_stack([carrier[first], first, np.diff(first, append=len(carrier))])
+    first = np.flatnonzero(np.diff(node_kind, prepend=-1))
+    return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])
 
 
 def _constant(block: Block, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
     """Return chunks with what does not change in them: B of nodes whose coordinates are nodal vectors."""
     chunks = np.zeros(shape)
     whole = np.zeros((shape[0] * LANES, turned, turning))
-    carrier, linear = block.carrier, size - turned
-    own = np.arange(len(carrier))
+    node_kind, linear = block.node_kind, size - turned
+    own = np.arange(len(node_kind))
     for part in range(turned):
-        straight = carrier == GRADIENTS
-        straight |= np.isin(carrier, (ROTATION, TURNED_GRADIENTS)) & (linear + part < size - 2)
+        straight = node_kind == GRADIENTS
+        straight |= np.isin(node_kind, (ROTATION, TURNED_GRADIENTS)) & (linear + part < size - 2)
         whole[own[straight], part, part if part < turning else 0] = 1.0
-    turns = own[carrier == TURNED_GRADIENTS]
+    turns = own[node_kind == TURNED_GRADIENTS]
     c, s = block.frame[turns, 0], block.frame[turns, 1]
     for part, column, value in ((2, 2, c), (2, 1, -s), (1, 2, s), (1, 1, c)):
         whole[turns, turned - part, turning - column] = value

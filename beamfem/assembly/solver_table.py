@@ -14,16 +14,16 @@ from beamfem.kernels.compiling import Routine
 class SolverTable:
     """What does not change of a table for `kernels.newton` and `kernels.march`: the unknowns (unknown,) of a band.
 
-    turned: numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): of the coordinates.
+    rotated: numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): of the coordinates.
     """
 
     def __init__(
-        self, free_dofs: np.ndarray, half_width: int, turned: tuple[np.ndarray, np.ndarray], scale: np.ndarray
+        self, free_dofs: np.ndarray, half_width: int, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray
     ) -> None:
         self.half_width = half_width
         self._kept = (
-            *(np.ascontiguousarray(each, dtype=np.int64) for each in (free_dofs, turned[0])),
-            *(np.ascontiguousarray(each, dtype=float) for each in (turned[1], scale)),
+            *(np.ascontiguousarray(each, dtype=np.int64) for each in (free_dofs, rotated[0])),
+            *(np.ascontiguousarray(each, dtype=float) for each in (rotated[1], scale)),
         )
         self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
         for field, values in zip(
@@ -31,7 +31,7 @@ class SolverTable:
         ):
             self._table[field] = address_of(values)
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), half_width
-        self._table[record.ROLLERS] = len(turned[0])
+        self._table[record.ROLLERS] = len(rotated[0])
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
         """Return the table with more of its fields filled."""
@@ -54,8 +54,8 @@ def _driver_routines(half_width: int, moving: bool) -> np.ndarray:
         record.FACTOR: own.factor,
         record.SOLVE_UPPER: own.solve_upper,
         record.HOLD_NORMALS: rollers.hold_normals,
-        record.TURN_IN: rollers.turn_in,
-        record.TURN_BACK: rollers.turn_back,
+        record.ROTATE_IN: rollers.rotate_in,
+        record.ROTATE_BACK: rollers.rotate_back,
     }
     found |= _of_motions(own) if moving else _OF_STATICS
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
-from beamfem.assembly.held import Held, held_coordinates, inclined_rollers
+from beamfem.assembly.held import Held, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
@@ -64,7 +64,7 @@ class System:
                 np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
             )
             values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
-            for label, nodes, dofs in _columns(block.carrier, block.dof, element.field.vectors):
+            for label, nodes, dofs in _columns(block.node_kind, block.dof, element.field.vectors):
                 if label == "s":
                     p[dofs] = speed[nodes]
                 elif label != "theta":
@@ -101,7 +101,7 @@ class System:
     @cached_property
     def solver_table(self) -> SolverTable:
         """The unknowns of a band, as compiled drivers take them."""
-        return SolverTable(self.free_dofs, self.layouts[0].half_width, self.turned, self.scale)
+        return SolverTable(self.free_dofs, self.layouts[0].half_width, self.rotated, self.scale)
 
     @cached_property
     def residual_errors(self) -> np.ndarray:
@@ -179,22 +179,22 @@ class System:
         """Whether the tangent is symmetric: no load follows the sections, and every pressure has a potential."""
         following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
         directed = [dof for dof, _ in self.inclined]
-        return not following and pressures_have_potential(self.model, {*self.held_dofs.tolist(), *directed})
+        return not following and pressures_have_potential(self.model, {*self.prescribed_dofs.tolist(), *directed})
 
     @cached_property
     def held(self) -> tuple[Held, ...]:
         """Held coordinates, ordered by number. Raises InputError where two supports hold the same one."""
-        return held_coordinates(self.model)
+        return prescribed_coordinates(self.model)
 
     @cached_property
-    def held_dofs(self) -> np.ndarray:
+    def prescribed_dofs(self) -> np.ndarray:
         return np.array([item.dof for item in self.held], dtype=np.int64)
 
-    def held_values(self, time: float) -> np.ndarray:
+    def prescribed_values(self, time: float) -> np.ndarray:
         """Values of the held coordinates at a time, in statics at a load factor."""
-        return self.reference[self.held_dofs] + self.held_changes(time)
+        return self.reference[self.prescribed_dofs] + self.prescribed_changes(time)
 
-    def held_changes(self, time: float) -> np.ndarray:
+    def prescribed_changes(self, time: float) -> np.ndarray:
         """Changes of the held coordinates from the reference (nh,) at a time, in statics at a load factor."""
         return np.array([item.change(time, self.static) for item in self.held], dtype=float)
 
@@ -211,7 +211,7 @@ class System:
     @cached_property
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not held."""
-        return order_unknowns(self.blocks, self.model.size, self.held_dofs, bool(self.model.joints))
+        return order_unknowns(self.blocks, self.model.size, self.prescribed_dofs, bool(self.model.joints))
 
     @property
     def layouts(self) -> tuple[Layout, ...]:
@@ -221,10 +221,10 @@ class System:
     @cached_property
     def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
         """First coordinate of r and unit normal of each roller that neither x nor y describes."""
-        return inclined_rollers(self.model, set(self.held_dofs.tolist()))
+        return inclined_rollers(self.model, set(self.prescribed_dofs.tolist()))
 
     @cached_property
-    def turned(self) -> tuple[np.ndarray, np.ndarray]:
+    def rotated(self) -> tuple[np.ndarray, np.ndarray]:
         """Numbers among the unknown (nt,) and unit normals (nt, 2) of inclined rollers."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
@@ -240,20 +240,20 @@ class System:
             vectors = block.scale.shape[1] // block.node.shape[1]
             for slot in range(vectors):
                 turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
-                nodes = np.flatnonzero(np.isin(block.carrier, turning))
+                nodes = np.flatnonzero(np.isin(block.node_kind, turning))
                 x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
                 known = (x >= 0) & (y >= 0)
                 found.append(np.column_stack([x, y, first + nodes])[known])
             first += len(block.dof)
         pairs = np.concatenate(found)
         _, once = np.unique(pairs[:, 0], return_index=True)
-        inclined = np.isin(pairs[once, 0], self.turned[0])
+        inclined = np.isin(pairs[once, 0], self.rotated[0])
         return np.ascontiguousarray(pairs[once[~inclined]])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknown directions: reactions of inclined rollers are taken out."""
         result = residual[self.free_dofs]
-        for first, normal in zip(*self.turned, strict=True):
+        for first, normal in zip(*self.rotated, strict=True):
             result[first : first + 2] -= normal * (normal @ result[first : first + 2])
         return result
 
@@ -296,16 +296,16 @@ def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray
 
     A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
     """
-    return _columns(mesh.carried.carrier, mesh.carried.dof, mesh.vectors)
+    return _columns(mesh.carried.node_kind, mesh.carried.dof, mesh.vectors)
 
 
 def _columns(
-    carriers: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
+    node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
 ) -> list[tuple[str, np.ndarray, np.ndarray]]:
     result = []
-    for carrier in np.unique(carriers).tolist():
-        nodes = np.flatnonzero(carriers == carrier)
-        for column, label in enumerate(labels(carrier, vectors)):
-            if carrier != TURNED_GRADIENTS or not label.startswith("r_y"):
+    for node_kind in np.unique(node_kinds).tolist():
+        nodes = np.flatnonzero(node_kinds == node_kind)
+        for column, label in enumerate(labels(node_kind, vectors)):
+            if node_kind != TURNED_GRADIENTS or not label.startswith("r_y"):
                 result.append((label, nodes, dof[nodes, column]))
     return result

@@ -92,10 +92,10 @@ def bernstein(coefficients: np.ndarray) -> np.ndarray:
     """Return Bezier points (degree + 1, ...) of the polynomials with Chebyshev coefficients (degree + 1, ...)."""
     degree = len(coefficients) - 1
     nodes = chebyshev.chebpts1(degree + 1)
-    share = (nodes[:, None] + 1.0) / 2.0
+    fraction = (nodes[:, None] + 1.0) / 2.0
     binomials = np.append(1.0, np.cumprod([(degree - i) / (i + 1) for i in range(degree)]))
     power = np.arange(degree + 1)
-    collocation = binomials * share**power * (1.0 - share) ** (degree - power)
+    collocation = binomials * fraction**power * (1.0 - fraction) ** (degree - power)
     matrix = np.linalg.solve(collocation, chebyshev.chebvander(nodes, degree))
     # the constant is put in afterwards: it needs no conversion, and no round-off of its size
     points = np.tensordot(matrix[:, 1:], coefficients[1:], axes=1)

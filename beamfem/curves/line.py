@@ -31,8 +31,8 @@ class Line:
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        share = np.asarray(arc_length)[:, None] / self.length
-        return (1.0 - share) * np.array(self.start) + share * np.array(self.end)
+        fraction = np.asarray(arc_length)[:, None] / self.length
+        return (1.0 - fraction) * np.array(self.start) + fraction * np.array(self.end)
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         direction = (np.array(self.end) - np.array(self.start)) / self.length

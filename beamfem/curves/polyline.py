@@ -36,9 +36,9 @@ class Polyline:
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         piece = self._piece(arc_length)
-        share = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
+        fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
-        return (1.0 - share) * table[piece] + share * table[piece + 1]
+        return (1.0 - fraction) * table[piece] + fraction * table[piece + 1]
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         return self._directions[self._piece(arc_length)]

@@ -55,31 +55,33 @@ KINEMATICS = {ROTATION: kinematics.ROTATION, STRETCH: kinematics.STRETCH, SHEAR_
 _STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
 
 
-def labels(carrier: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
+def labels(node_kind: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
     """Names of a node's coordinates: components of nodal vectors, then what turns the others, the angle last."""
-    kind = KINEMATICS.get(carrier)
+    kind = KINEMATICS.get(node_kind)
     components = tuple(f"{vector}^{axis}" for vector in vectors for axis in "xy")
     return components if kind is None else (*components[: -kind.size], *kind.coordinates)
 
 
-def nodal_vectors(carrier: int, vectors: tuple[str, ...], p: np.ndarray, frame: np.ndarray) -> np.ndarray:
+def nodal_vectors(node_kind: int, vectors: tuple[str, ...], p: np.ndarray, frame: np.ndarray) -> np.ndarray:
     """Return e (steps, nodes, vectors, 2) of coordinates p (steps, nodes, npn); frame (nodes, 3), see `node_map`."""
-    kind = KINEMATICS.get(carrier)
-    p = p[..., : len(labels(carrier, vectors))]
+    kind = KINEMATICS.get(node_kind)
+    p = p[..., : len(labels(node_kind, vectors))]
     if kind is not None:
         angle = np.cos(p[..., -1]), np.sin(p[..., -1])
         return _carried(kind, p, *_turned(*angle, frame), frame)
     result = p.reshape(*p.shape[:2], len(vectors), 2).copy()
-    if carrier == TURNED_GRADIENTS:
+    if node_kind == TURNED_GRADIENTS:
         result[:, :, -1] = np.stack(_turned(result[:, :, -1, 0], result[:, :, -1, 1], frame), axis=-1)
     return result
 
 
-def nodal_rates(carrier: int, vectors: tuple[str, ...], p: np.ndarray, v: np.ndarray, frame: np.ndarray) -> np.ndarray:
+def nodal_rates(
+    node_kind: int, vectors: tuple[str, ...], p: np.ndarray, v: np.ndarray, frame: np.ndarray
+) -> np.ndarray:
     """Return e' = B p' (steps, nodes, vectors, 2) of p and p' (steps, nodes, npn): the part of e(p + i h p') in i h."""
-    kind, count = KINEMATICS.get(carrier), len(labels(carrier, vectors))
+    kind, count = KINEMATICS.get(node_kind), len(labels(node_kind, vectors))
     if kind is None:
-        return nodal_vectors(carrier, vectors, v, frame)
+        return nodal_vectors(node_kind, vectors, v, frame)
     p, v = p[..., :count], v[..., :count]
     c, s = _turned(np.cos(p[..., -1]), np.sin(p[..., -1]), frame)
     spin = 1j * _STEP * v[..., -1]

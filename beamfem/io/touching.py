@@ -15,7 +15,7 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
 
     near [m]: how far from a line an end may be to lie on it. Raises InputError where a line ends inside a line3.
     """
-    cell, node, share = _touches(nodes, cells, near)
+    cell, node, fraction = _touches(nodes, cells, near)
     curved = np.flatnonzero(cells[cell, 2] >= 0)
     if len(curved):
         x, y = nodes[node[curved[0]]]
@@ -25,7 +25,7 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
     if not len(cell):
         return cells, np.arange(len(cells))
     rows, owner = [], []
-    order = np.lexsort((share, cell))
+    order = np.lexsort((fraction, cell))
     inside = np.split(node[order], np.searchsorted(cell[order], np.arange(1, len(cells))))
     for number, (own, between) in enumerate(zip(cells, inside, strict=True)):
         stops = [own[0], *between, own[1]]
@@ -72,11 +72,11 @@ def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndar
     own = (node == cells[cell, 0]) | (node == cells[cell, 1])
     cell, node = cell[~own], node[~own]
     away = nodes[node] - start[cell]
-    share = np.einsum("ni,ni->n", away, chord[cell]) / length[cell] ** 2
+    fraction = np.einsum("ni,ni->n", away, chord[cell]) / length[cell] ** 2
     off = _cross(chord[cell], away) / length[cell]
-    bow = _cross(chord, nodes[middle] - start)[cell] / length[cell] * 4.0 * share * (1.0 - share)
-    on = (np.abs(off - bow) <= near) & (share > 0.0) & (share < 1.0)
-    return cell[on], node[on], share[on]
+    bow = _cross(chord, nodes[middle] - start)[cell] / length[cell] * 4.0 * fraction * (1.0 - fraction)
+    on = (np.abs(off - bow) <= near) & (fraction > 0.0) & (fraction < 1.0)
+    return cell[on], node[on], fraction[on]
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

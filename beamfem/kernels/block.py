@@ -40,7 +40,7 @@ class Block(NamedTuple):
     length: np.ndarray  # (nc, nv) integral of N_r over the reference length [m]
     node: np.ndarray  # (ne, nn) nodes of an element
     beam: np.ndarray  # (ne,) beam that an element belongs to
-    carrier: np.ndarray  # (N,) what carries the nodal vectors of a node
+    node_kind: np.ndarray  # (N,) what carries the nodal vectors of a node
     frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `coordinates`
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element of the node, and its place there

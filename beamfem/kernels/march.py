@@ -53,13 +53,13 @@ def solve_turned(system, solver, calls):
     for i in range(unknown):
         right[i] = -residual[free[i]]
     if rollers > 0:
-        _roll(call[r.TURN_IN], rollers, first_of, normal, right)
+        _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
     _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], -1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
     _solve(call[r.SOLVE_LOWER], unknown, unknown, half, rows, right)
     _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
     _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], 1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
     if rollers > 0:
-        _roll(call[r.TURN_BACK], rollers, first_of, normal, right)
+        _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
 
 
 @routine("iii", types.int64)
@@ -77,10 +77,10 @@ def march(system, solver, calls):
     and Wanner 1996, IV.8).
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.HELD]
-    free, held_dofs, rows, right = (
+    n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
+    free, prescribed_dofs, rows, right = (
         wholes(b[r.FREE_DOFS]),
-        wholes(b[r.HELD_DOFS]),
+        wholes(b[r.PRESCRIBED_DOFS]),
         reals(b[r.ROWS]),
         reals(b[r.RIGHT]),
     )
@@ -114,8 +114,8 @@ def march(system, solver, calls):
         for group in range(s[r.GROUPS]):
             loads = wholes(groups[group])[r.LOADS]
             values[group] = given[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
-        prescribed = at(reals(b[r.HELD_VALUES]), 3 * held * step)
-        _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, held_dofs, prescribed, rule)
+        prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * held * step)
+        _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule)
         size, first_size, iteration = 0.0, 0.0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(room, n)
@@ -148,7 +148,7 @@ def march(system, solver, calls):
             if full == 0 and not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5)):
                 for i in range(4 * n):
                     state[i] = before[i]
-                _predict(call[r.PREDICT], n, held, 0.0, state, before, differences, held_dofs, prescribed, rule)
+                _predict(call[r.PREDICT], n, held, 0.0, state, before, differences, prescribed_dofs, prescribed, rule)
                 full, iteration = 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
@@ -156,7 +156,7 @@ def march(system, solver, calls):
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, held_dofs, rule, rate)
+        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, prescribed_dofs, rule, rate)
         statistics[6] = rate[0]
         statistics[7] = change / factors[2]
         _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)

@@ -27,11 +27,11 @@ def take_step(n, step, p, scale):
 def iterate(system, solver, calls):
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
 
-    `HELD_STEP`, `HELD_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the residual (n,),
-    zero to go on. `LIMITS`: tolerance, correction below which it may be stagnant, one beyond which it diverges,
-    smallest pivot ratio, iterations, 1 to take predicted resultants for the geometric tangent, and the count of
-    negative pivots where it stops if the third tangent or a later one has another, or -1. `FOUND` (9,): iterations so
-    far, last correction and the one before; then largest residual of the unknown and of all coordinates, times their
+    `PRESCRIBED_STEP`, `PRESCRIBED_FORCE`: first step (n,) of the prescribed coordinates and what it changes in the
+    residual (n,), zero to go on. `LIMITS`: tolerance, correction below which it may be stagnant, one beyond which it
+    diverges, smallest pivot ratio, iterations, 1 to take predicted resultants for the geometric tangent, and the count
+    of negative pivots where it stops if the third tangent or a later one has another, or -1. `FOUND` (9,): iterations
+    so far, last correction and the one before; then largest residual of the unknown and of all coordinates, times their
     scales, and the smallest r0' x d of the state reached, whose residual (n,) is filled; negative pivots of the last
     tangent; size of the first correction; negative pivots of the second tangent, which has the resultants of a linear
     step: where it has another count, `LINEAR` (n,) is the state after this step. Stops where corrections are small or
@@ -46,11 +46,11 @@ def iterate(system, solver, calls):
         reals(b[r.STEP]),
         reals(b[r.SCALE]),
     )
-    limits, found, held_step, held_force = (
+    limits, found, prescribed_step, prescribed_force = (
         reals(b[r.LIMITS]),
         reals(b[r.FOUND]),
-        reals(b[r.HELD_STEP]),
-        reals(b[r.HELD_FORCE]),
+        reals(b[r.PRESCRIBED_STEP]),
+        reals(b[r.PRESCRIBED_FORCE]),
     )
     linear = reals(b[r.LINEAR])
     residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
@@ -62,10 +62,10 @@ def iterate(system, solver, calls):
         if done:
             break
         for i in range(unknown):
-            right[i] = -residual[free[i]] - (held_force[free[i]] if first else 0.0)
+            right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
             _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
-            _turn(call[r.TURN_IN], rollers, first_of, normal, right)
+            _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
         if not _factor(call[r.FACTOR], unknown, unknown, half, 1, rows, right, step) > limits[3]:
             return 0
         negative = 0
@@ -83,9 +83,9 @@ def iterate(system, solver, calls):
                     linear[i] = p[i]
         _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
         if rollers > 0:
-            _turn(call[r.TURN_BACK], rollers, first_of, normal, right)
+            _turn(call[r.ROTATE_BACK], rollers, first_of, normal, right)
         for i in range(n):
-            step[i] = held_step[i] if first else 0.0
+            step[i] = prescribed_step[i] if first else 0.0
         for i in range(unknown):
             step[free[i]] = right[i]
         first = False
@@ -106,7 +106,7 @@ def iterate(system, solver, calls):
     for i in range(unknown):
         right[i] = residual[free[i]]
     if rollers > 0:
-        _turn(call[r.TURN_IN], rollers, first_of, normal, right)
+        _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
     for i in range(unknown):
         found[3] = max(found[3], abs(right[i]) * scale[free[i]])
     found[5] = 1.0

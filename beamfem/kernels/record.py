@@ -155,10 +155,10 @@ STEP = 8  # address (n,)
 SCALE = 9  # address (n,)
 LIMITS = 10
 FOUND = 11
-HELD_STEP = 12
-HELD_FORCE = 13
-HELD = 14
-HELD_DOFS = 15
+PRESCRIBED_STEP = 12
+PRESCRIBED_FORCE = 13
+PRESCRIBED = 14
+PRESCRIBED_DOFS = 15
 STATE = 16  # address (4, n): p, p', p'' and the auxiliary acceleration
 BEFORE = 17
 DIFFERENCES = 18  # (3, n)
@@ -170,7 +170,7 @@ PAIR_TABLE = 23  # (pairs, 3): numbers of x and y, node
 KEPT = 24  # (N, 2)
 TURNS = 25  # (N, 2)
 STEPS = 26
-HELD_VALUES = 27  # (steps, 3, held)
+PRESCRIBED_VALUES = 27  # (steps, 3, held)
 BODIES = 28  # (steps or 1, beams, 4)
 BODY_STRIDE = 29  # from step to step, 0 where nothing varies
 LOAD_VALUES = 30  # address of addresses, of each group (steps or 1, loads, 3)
@@ -193,8 +193,8 @@ SOLVER_FIELDS = 40
     PREDICT_RESULTANTS,
     SMALLEST_JACOBIAN,
     HOLD_NORMALS,
-    TURN_IN,
-    TURN_BACK,
+    ROTATE_IN,
+    ROTATE_BACK,
     TAKE_STEP,
     PREDICT,
     CORRECT,

@@ -32,7 +32,7 @@ def hold_normals(n, half, rollers, rows, first, normal):
 
 
 @routine("inrr")
-def turn_in(rollers, first, normal, right):
+def rotate_in(rollers, first, normal, right):
     """Turn each pair of a right-hand side (n,) to (normal, tangent) in place, the normal one zero."""
     for k in range(rollers):
         i, j = first[k], first[k] + 1
@@ -41,7 +41,7 @@ def turn_in(rollers, first, normal, right):
 
 
 @routine("inrr")
-def turn_back(rollers, first, normal, x):
+def rotate_back(rollers, first, normal, x):
     """Turn the solution's pairs (normal, tangent) back to (x, y), in place."""
     for k in range(rollers):
         i, j = first[k], first[k] + 1

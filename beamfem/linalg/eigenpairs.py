@@ -112,8 +112,8 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
     order = np.argsort(-np.abs(values), kind="stable")[:count]
     values, x = values[order], x[:, order]
     # Wielandt: deflation leaves the other values, and adds a share of the known directions to their vectors
-    shares = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
-    return values, x + known[1] @ shares
+    fractions = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
+    return values, x + known[1] @ fractions
 
 
 def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:

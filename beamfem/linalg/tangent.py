@@ -9,14 +9,14 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from beamfem.kernels.band import band
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.rollers import hold_normals, turn_back, turn_in
+from beamfem.kernels.rollers import hold_normals, rotate_back, rotate_in
 from beamfem.linalg.lapack import LinAlgError, solve_banded
 
 SMALLEST_PIVOT = 1e-13
 _NOTHING = np.empty(0)
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
-Turned = tuple[np.ndarray, np.ndarray]
+Rotated = tuple[np.ndarray, np.ndarray]
 Stresses = tuple[np.ndarray, ...]
 
 
@@ -43,16 +43,16 @@ class Factorised(Protocol):
 class Tangent(Protocol):
     """A matrix of the unknown coordinates."""
 
-    def factorised(self, turned: Turned) -> Factorised:
+    def factorised(self, rotated: Rotated) -> Factorised:
         """Return the factors. Raises LinAlgError."""
         ...
 
-    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
         ...
 
-    def sparse(self, turned: Turned) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
         ...
 
 
@@ -66,7 +66,7 @@ class BandFactors:
     rows: np.ndarray
     lu: np.ndarray
     plain: bool
-    turned: Turned
+    rotated: Rotated
 
     @property
     def negative_pivots(self) -> int:
@@ -77,7 +77,7 @@ class BandFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
-        _turn(turn_in, x, self.turned)
+        _rotate(rotate_in, x, self.rotated)
         if self.plain:
             balanced = x.copy()
             n, half = len(x), self.lu.shape[1] // 2
@@ -88,7 +88,7 @@ class BandFactors:
                 x = _solve_pivoted(self.rows, balanced)
         else:
             x = _solve_pivoted(self.rows, x)
-        _turn(turn_back, x, self.turned)
+        _rotate(rotate_back, x, self.rotated)
         return x
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
@@ -105,21 +105,21 @@ class BandTangent:
 
     rows: np.ndarray
 
-    def factorised(self, turned: Turned) -> BandFactors:
+    def factorised(self, rotated: Rotated) -> BandFactors:
         """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
-        rows = _held(self.rows, turned)
+        rows = _held(self.rows, rotated)
         lu = rows.copy()
         n, half = len(lu), lu.shape[1] // 2
         ratio = band(half).factor(n, n, half, 0, lu, _NOTHING, np.empty(n))
-        return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, turned)
+        return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, rotated)
 
-    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(turned).solve(right)
+        return self.factorised(rotated).solve(right)
 
-    def sparse(self, turned: Turned) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        rows = _held(self.rows, turned)
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        rows = _held(self.rows, rotated)
         half = rows.shape[1] // 2
         return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
 
@@ -129,7 +129,7 @@ class SparseFactors:
     """Factors of a sparse matrix."""
 
     lu: SuperLU
-    turned: Turned
+    rotated: Rotated
 
     @property
     def negative_pivots(self) -> int:
@@ -139,11 +139,11 @@ class SparseFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
         x = right.copy()
-        _turn(turn_in, x, self.turned)
+        _rotate(rotate_in, x, self.rotated)
         x = self.lu.solve(x)
         if not np.isfinite(x).all():
             raise LinAlgError("the tangent is singular")
-        _turn(turn_back, x, self.turned)
+        _rotate(rotate_back, x, self.rotated)
         return np.asarray(x)
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
@@ -160,54 +160,54 @@ class SparseTangent:
 
     matrix: csc_array
 
-    def factorised(self, turned: Turned) -> SparseFactors:
+    def factorised(self, rotated: Rotated) -> SparseFactors:
         """Return the factors, with diagonal pivots unless tiny, so that their signs count. Raises LinAlgError."""
-        matrix = csc_array(self.sparse(turned)) if len(turned[0]) else self.matrix
+        matrix = csc_array(self.sparse(rotated)) if len(rotated[0]) else self.matrix
         # the unknowns are in an order of little fill; wide panels and relaxed supernodes cost more than they save here
         settings = {"permc_spec": "NATURAL", "diag_pivot_thresh": 1e-10, "relax": 1, "panel_size": 1}
         try:
             lu = splu(matrix, **settings, options={"SymmetricMode": True})
         except RuntimeError as error:
             raise LinAlgError("the tangent is singular") from error
-        return SparseFactors(lu, turned)
+        return SparseFactors(lu, rotated)
 
-    def solve(self, right: np.ndarray, turned: Turned) -> np.ndarray:
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
-        return self.factorised(turned).solve(right)
+        return self.factorised(rotated).solve(right)
 
-    def sparse(self, turned: Turned) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers turned to x and held there."""
-        first, _ = turned
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        first, _ = rotated
         if not len(first):
             return csr_array(self.matrix)
-        turn = turning(self.matrix.shape[0], turned)
-        rotated = csr_array(turn @ self.matrix @ turn.T)
-        kept = np.ones(rotated.shape[0])
+        turn = turning(self.matrix.shape[0], rotated)
+        matrix = csr_array(turn @ self.matrix @ turn.T)
+        kept = np.ones(matrix.shape[0])
         kept[first] = 0.0
-        keep = dia_array((kept[None], [0]), shape=rotated.shape)
-        held = np.where(kept == 0.0, np.abs(rotated.diagonal()).max(), 0.0)
-        return csr_array(keep @ rotated @ keep + dia_array((held[None], [0]), shape=rotated.shape))
+        keep = dia_array((kept[None], [0]), shape=matrix.shape)
+        held = np.where(kept == 0.0, np.abs(matrix.diagonal()).max(), 0.0)
+        return csr_array(keep @ matrix @ keep + dia_array((held[None], [0]), shape=matrix.shape))
 
 
-def _turn(routine: Routine, x: np.ndarray, turned: Turned) -> None:
+def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
     """Turn pairs of a right-hand side, or of a solution, in place."""
-    first, normal = turned
+    first, normal = rotated
     if len(first):
         routine(len(first), first, normal, x)
 
 
-def _held(rows: np.ndarray, turned: Turned) -> np.ndarray:
+def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
     """Return a band with the normals of inclined rollers held."""
-    result, (first, normal) = rows.copy(), turned
+    result, (first, normal) = rows.copy(), rotated
     if len(first):
         hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
     return result
 
 
-def turning(size: int, turned: Turned) -> csr_array:
+def turning(size: int, rotated: Rotated) -> csr_array:
     """Return the matrix (n, n) that turns each pair of an inclined roller to (normal, tangent)."""
     turn = eye_array(size, format="lil")
-    for i, (c, s) in zip(*turned, strict=True):
+    for i, (c, s) in zip(*rotated, strict=True):
         turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
     return csr_array(turn)
 

@@ -34,14 +34,14 @@ class BeamMesh(Grid):
         return self.beam.element.field.vectors
 
     @cached_property
-    def carriers(self) -> tuple[tuple[int, np.ndarray], ...]:
+    def node_kinds(self) -> tuple[tuple[int, np.ndarray], ...]:
         """Each carrier that occurs with its nodes."""
-        codes = self.carried.carrier
+        codes = self.carried.node_kind
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
 
     def labels(self, node: int) -> tuple[str, ...]:
         """Names of a node's coordinates."""
-        return labels(int(self.carried.carrier[node]), self.vectors)
+        return labels(int(self.carried.node_kind[node]), self.vectors)
 
     def coordinates_of(self, node: int) -> dict[str, int]:
         """Number in the model of each coordinate of a node, by name."""

@@ -18,7 +18,7 @@ from beamfem.model.reference import reference_angle
 class Nodes:
     """Nodes of a beam: carrier (nodes,), coordinates (nodes, npn), -1 where there are fewer, frame (nodes, 3)."""
 
-    carrier: np.ndarray
+    node_kind: np.ndarray
     dof: np.ndarray
     frame: np.ndarray
 
@@ -39,7 +39,7 @@ def number_nodes(
     total = first[-1]
     own_code = np.array([grid.beam.element.coordinates.code for grid in grids])
     follows_slope = np.array([grid.beam.element.forces.turns_with == "r_x" for grid in grids])
-    carrier = own_code[owner]
+    node_kind = own_code[owner]
     moves = groups(total, first, moving)
     turns = groups(total, first, turning)
 
@@ -47,19 +47,19 @@ def number_nodes(
     as_angle[first[angled[:, 0]] + angled[:, 1]] = True
     joined = np.bincount(turns, minlength=total)[turns] > 1
     # gradients that are joined with gradients only share r_y as a vector; all others share an angle
-    plain = (carrier == GRADIENTS) & ~follows_slope[owner] & ~as_angle
+    plain = (node_kind == GRADIENTS) & ~follows_slope[owner] & ~as_angle
     all_plain = np.bincount(turns, weights=~plain, minlength=total)[turns] == 0
     angle = as_angle | (joined & ~all_plain)
     angle = np.bincount(turns, weights=angle, minlength=total)[turns] > 0
-    sloped = angle & follows_slope[owner] & ((carrier == GRADIENTS) | (carrier == ROTATION))
-    carrier = np.where(sloped, STRETCH, np.where(angle & (carrier == GRADIENTS), ROTATION, carrier))
+    sloped = angle & follows_slope[owner] & ((node_kind == GRADIENTS) | (node_kind == ROTATION))
+    node_kind = np.where(sloped, STRETCH, np.where(angle & (node_kind == GRADIENTS), ROTATION, node_kind))
 
     leader_moves, leader_turns = first_of_group(moves), first_of_group(turns)
     turned = joined & all_plain & (leader_turns != np.arange(total))
-    carrier = np.where(turned, TURNED_GRADIENTS, carrier)
+    node_kind = np.where(turned, TURNED_GRADIENTS, node_kind)
 
     width = max(2 * len(grid.beam.element.field.vectors) for grid in grids)
-    own, last, turn_size = _ownership(grids, owner, carrier, width)
+    own, last, turn_size = _ownership(grids, owner, node_kind, width)
     follower_moves, follower_turns = leader_moves != np.arange(total), leader_turns != np.arange(total)
     own[follower_moves, :2] = False
     for offset in (1, 2):
@@ -72,11 +72,11 @@ def number_nodes(
         leaders = leader_turns[rows]
         dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
 
-    frame = _frames(grids, carrier, leader_turns)
+    frame = _frames(grids, node_kind, leader_turns)
     dof = np.ascontiguousarray(dof[:, : last.max() + 1])
     widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
     nodes = [
-        Nodes(carrier[begin:end], dof[begin:end, :columns], frame[begin:end])
+        Nodes(node_kind[begin:end], dof[begin:end, :columns], frame[begin:end])
         for (begin, end), columns in zip(pairwise(first.tolist()), widest, strict=True)
     ]
     return nodes, int(own.sum())
@@ -98,7 +98,7 @@ def first_of_group(group: np.ndarray) -> np.ndarray:
 
 
 def _ownership(
-    grids: Sequence[Grid], owner: np.ndarray, carrier: np.ndarray, width: int
+    grids: Sequence[Grid], owner: np.ndarray, node_kind: np.ndarray, width: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return which columns a node has (total, width), its last column and how many columns its rotation takes."""
     own = np.zeros((len(owner), width), dtype=bool)
@@ -107,7 +107,7 @@ def _ownership(
     has_slope = np.array([len(names) == 3 for names in vectors])[owner]
     for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
         for code in range(TURNED_GRADIENTS + 1):
-            rows = (has_slope == slope) & (carrier == code)
+            rows = (has_slope == slope) & (node_kind == code)
             own_names = labels(code, names)
             if rows.any():
                 own[np.ix_(rows, np.arange(len(own_names)))] = True
@@ -116,14 +116,14 @@ def _ownership(
     return own, last, turn_size
 
 
-def _frames(grids: Sequence[Grid], carrier: np.ndarray, leader: np.ndarray) -> np.ndarray:
+def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
     """Cosine and sine of each node's angle in the reference, of turned gradients against their leader's; and |r_x|."""
     angle = np.concatenate([reference_angle(grid) for grid in grids])
     tangent = np.concatenate([grid.tangent for grid in grids])
     frame = np.ones((len(angle), 3))
     frame[:, :2] = tangent
     frame[:, 2] = np.concatenate([grid.speed for grid in grids])
-    turned = carrier == TURNED_GRADIENTS
+    turned = node_kind == TURNED_GRADIENTS
     between = angle[turned] - angle[leader[turned]]
     frame[turned, 0], frame[turned, 1] = np.cos(between), np.sin(between)
     return frame

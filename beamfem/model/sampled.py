@@ -34,8 +34,8 @@ class Sampled:
         after = bisect_left(self.at, at)
         if self.at[after] == at:
             return self.values[after]
-        share = (at - self.at[after - 1]) / (self.at[after] - self.at[after - 1])
-        return (1.0 - share) * self.values[after - 1] + share * self.values[after]
+        fraction = (at - self.at[after - 1]) / (self.at[after] - self.at[after - 1])
+        return (1.0 - fraction) * self.values[after - 1] + fraction * self.values[after]
 
 
 @dataclass(frozen=True)
@@ -87,15 +87,15 @@ class SampledSection:
         return section
 
 
-def _between(low: Any, high: Any, share: float) -> Any:
+def _between(low: Any, high: Any, fraction: float) -> Any:
     """Return the same object with numbers at a share of the way from one to the other; ValueError if they differ."""
     if is_dataclass(low) and not isinstance(low, type) and type(low) is type(high):
         names = [field.name for field in fields(low)]
-        return replace(low, **{name: _between(getattr(low, name), getattr(high, name), share) for name in names})
+        return replace(low, **{name: _between(getattr(low, name), getattr(high, name), fraction) for name in names})
     if isinstance(low, tuple) and isinstance(high, tuple):
-        return tuple(_between(one, other, share) for one, other in zip(low, high, strict=True))
+        return tuple(_between(one, other, fraction) for one, other in zip(low, high, strict=True))
     if isinstance(low, int | float) and isinstance(high, int | float):
-        return (1.0 - share) * low + share * high
+        return (1.0 - fraction) * low + fraction * high
     if low == high:
         return low
     raise ValueError

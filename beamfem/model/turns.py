@@ -18,7 +18,7 @@ def uncounted(model: Model) -> list[BeamMesh]:
 def _has_gradients_only(mesh: BeamMesh) -> bool:
     if not isinstance(mesh.beam.element.coordinates, Gradients):
         return False
-    return all("theta" not in mesh.labels(int(nodes[0])) for _, nodes in mesh.carriers)
+    return all("theta" not in mesh.labels(int(nodes[0])) for _, nodes in mesh.node_kinds)
 
 
 def turning_pairs(model: Model) -> np.ndarray:

@@ -29,11 +29,11 @@ class _Printer(PythonCodePrinter):
 
     def _print_Pow(self, power: Any, **unused: Any) -> str:
         base, exponent = power.as_base_exp()
-        halves = 2 * exponent
-        if not halves.is_Integer or abs(halves) > 8:
+        substructures = 2 * exponent
+        if not substructures.is_Integer or abs(substructures) > 8:
             raise ValueError(f"no rule for {power}")
-        whole, own = abs(int(halves)) // 2, self.parenthesize(base, 60)
-        factors = [own] * whole + ([f"math.sqrt({self._print(base)})"] if halves % 2 else [])
+        whole, own = abs(int(substructures)) // 2, self.parenthesize(base, 60)
+        factors = [own] * whole + ([f"math.sqrt({self._print(base)})"] if substructures % 2 else [])
         product = " * ".join(factors)
         if exponent < 0:
             return f"(1.0 / ({product}))" if len(factors) > 1 else f"(1.0 / {product})"

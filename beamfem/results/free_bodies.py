@@ -16,7 +16,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import interpolate
 from beamfem.results.acting import Acting, Rows, acting_on, at_more_points
 from beamfem.results.postprocess import direction
-from beamfem.results.spread import shares_before
+from beamfem.results.spread import fractions_before
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,23 +50,23 @@ class FreeBodies:
         """
         element = np.searchsorted(self.elements, cuts.element)
         now = interpolate(self.mesh, self.vectors[:, element], cuts.element, cuts.xi)
-        share = self._before(cuts, element)
+        fraction = self._before(cuts, element)
         turn = self.acting.moments(self.vectors, self._origin)
-        force = self._carried(self.force, self.acting.force, share, cuts.xi, element)
-        moment = self._carried(self.moment, turn, share, cuts.xi, element)
+        force = self._carried(self.force, self.acting.force, fraction, cuts.xi, element)
+        moment = self._carried(self.moment, turn, fraction, cuts.xi, element)
         moment = moment - cross(now.r - self._origin[:, element], force)
         along = direction(self.mesh, now)
         return np.stack([dot(along, force), cross(along, force), moment], axis=1)
 
     def _carried(
-        self, ends: np.ndarray, acts: np.ndarray, share: csr_array, xi: np.ndarray, element: np.ndarray
+        self, ends: np.ndarray, acts: np.ndarray, fraction: csr_array, xi: np.ndarray, element: np.ndarray
     ) -> np.ndarray:
         """Return what cuts (points,) carry (steps, points, ...) from both ends (2, steps, ne, ...), less what acts."""
         total = np.zeros((len(self.elements), len(acts), *acts.shape[2:]))
         np.add.at(total, self.acting.element, np.moveaxis(acts, 1, 0))
         weight = xi.reshape(-1, *(1,) * (acts.ndim - 2))
         by_start, by_end = ends[0][:, element], (ends[1] + np.moveaxis(total, 0, 1))[:, element]
-        return np.asarray((1.0 - weight) * by_start + weight * by_end - _shared(share, acts))
+        return np.asarray((1.0 - weight) * by_start + weight * by_end - _shared(fraction, acts))
 
     @property
     def _origin(self) -> np.ndarray:
@@ -81,11 +81,11 @@ class FreeBodies:
         row = np.repeat(np.arange(len(element)), count)
         within = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
         column = order[np.repeat(starts[element], count) + within]
-        share = np.empty(len(row))
+        fraction = np.empty(len(row))
         for rule in np.unique(acting.rule):
             own = np.flatnonzero(acting.rule[column] == rule)
-            share[own] = shares_before(int(rule), acting.xi[column[own]], cuts.xi[row[own]])
-        return coo_array((share, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
+            fraction[own] = fractions_before(int(rule), acting.xi[column[own]], cuts.xi[row[own]])
+        return coo_array((fraction, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
 
 
 def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) -> FreeBodies:
@@ -115,12 +115,12 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
     return block._replace(
         node=np.arange(len(flat)).reshape(nodes.shape),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
-        **{name: getattr(block, name)[flat] for name in ("carrier", "frame", "dof", "home")},
+        **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof", "home")},
     )
 
 
-def _shared(share: csr_array, values: np.ndarray) -> np.ndarray:
+def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:
     """Sum values (steps, m, ...) over m with the shares (points, m) of them."""
     flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
-    found = (share @ flat).reshape(share.shape[0], len(values), *values.shape[2:])
+    found = (fraction @ flat).reshape(fraction.shape[0], len(values), *values.shape[2:])
     return np.asarray(np.moveaxis(found, 0, 1))

@@ -47,9 +47,9 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
     if not _locking_elements(state.model):
         return ()
     system = system_of(state.model, static=True)
-    rest, free = np.zeros(len(state.p)), system.free_dofs
+    zeros, free = np.zeros(len(state.p)), system.free_dofs
     before, after = (
-        linearise(system, state.p, rest, rest, state.at, STATICS, blocks=blocks)[1].sparse(system.turned)
+        linearise(system, state.p, zeros, zeros, state.at, STATICS, blocks=blocks)[1].sparse(system.rotated)
         for blocks in (system.blocks, _unlocked_blocks(system))
     )
     change = 0.0
@@ -80,7 +80,7 @@ def _change(state: "State", span: float | None) -> float:
         if np.all(np.abs(excess) <= 2.0 * floors):
             return 0.0
         try:
-            step[free] = tangent.solve(-excess, system.turned)
+            step[free] = tangent.solve(-excess, system.rotated)
         except LinAlgError:
             return 0.0
         stresses = predicted_stresses(system, state.p, step, blocks)

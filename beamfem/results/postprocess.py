@@ -67,9 +67,9 @@ def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     """Return e (steps, nodes, vectors a node, 2) of the states p (steps, n)."""
     table = mesh.table(p)
     result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
-    for carrier, nodes in mesh.carriers:
+    for node_kind, nodes in mesh.node_kinds:
         frame = mesh.carried.frame[nodes]
-        result[:, nodes] = coordinates.nodal_vectors(carrier, mesh.vectors, table[:, nodes], frame)
+        result[:, nodes] = coordinates.nodal_vectors(node_kind, mesh.vectors, table[:, nodes], frame)
     return result
 
 
@@ -77,9 +77,9 @@ def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray
     """Return e' = B p' (steps, nodes, vectors a node, 2)."""
     table, rates = mesh.table(p), mesh.table(v)
     result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
-    for carrier, nodes in mesh.carriers:
+    for node_kind, nodes in mesh.node_kinds:
         frame = mesh.carried.frame[nodes]
-        result[:, nodes] = coordinates.nodal_rates(carrier, mesh.vectors, table[:, nodes], rates[:, nodes], frame)
+        result[:, nodes] = coordinates.nodal_rates(node_kind, mesh.vectors, table[:, nodes], rates[:, nodes], frame)
     return result
 
 
@@ -119,8 +119,8 @@ def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = N
     table = mesh.table(p)
     result = np.empty(table.shape[:2])
     known = np.zeros(mesh.nodes, dtype=bool)
-    for carrier, nodes in mesh.carriers:
-        names = coordinates.labels(carrier, mesh.vectors)
+    for node_kind, nodes in mesh.node_kinds:
+        names = coordinates.labels(node_kind, mesh.vectors)
         if names[-1] == "theta":
             result[:, nodes] = table[:, nodes, len(names) - 1]
             known[nodes] = True

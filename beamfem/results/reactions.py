@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.equations import residual
-from beamfem.assembly.held import held_coordinate
+from beamfem.assembly.held import prescribed_coordinate
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
@@ -29,7 +29,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
     dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
-    held = {held_coordinate(support, direction) for support in own for direction in support.held()}
+    held = {prescribed_coordinate(support, direction) for support in own for direction in support.held()}
     if None in held:  # an inclined roller
         held |= {"r^x", "r^y"}
     result = np.zeros((len(solution), 3))
@@ -53,7 +53,7 @@ def _of_some(solution: "Solution", dof: int, held: bool, stiffness: float) -> np
 def _supported(system: System) -> set[int]:
     """Return the coordinates that supports other than springs act on."""
     inclined = {dof + axis for dof, _ in system.inclined for axis in (0, 1)}
-    return {*system.held_dofs.tolist(), *inclined}
+    return {*system.prescribed_dofs.tolist(), *inclined}
 
 
 def support_forces(solution: "Solution") -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.element.gauss import gauss
 
 
-def shares_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
+def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
     """Share of what stands for a Gauss point at xi `at` (m,) that is before a cut (m,), its density interpolated.
 
     The integral from 0 to the cut of the polynomial that is one there and zero at the other points, over its whole.

@@ -103,8 +103,8 @@ class MomentsOutline:
 
     def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the integrals at the two ends; they are not known between."""
-        share = np.where(y >= self.high, 1.0, np.where(y <= self.low, 0.0, np.nan))
-        return self.moments[0] * share, self.moments[1] * share
+        fraction = np.where(y >= self.high, 1.0, np.where(y <= self.low, 0.0, np.nan))
+        return self.moments[0] * fraction, self.moments[1] * fraction
 
     def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
         """Return three points around the centroid with these moments but the third, the outer ones not beyond faces."""

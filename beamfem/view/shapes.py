@@ -16,9 +16,9 @@ _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
 _SLABS = 40_000  # of bodies in a picture; above, axes alone are drawn
 
 
-def shade(share: float) -> np.ndarray:
+def shade(fraction: float) -> np.ndarray:
     """Return blue, light for 0 and dark for 1."""
-    return _LIGHT + share * (_DARK - _LIGHT)
+    return _LIGHT + fraction * (_DARK - _LIGHT)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,27 +95,29 @@ class Shapes:
     def _bodies_drawn(self) -> bool:
         return len(self.rows) * sum(len(points.xi) for points in self.points) <= _SLABS
 
-    def draw(self, axes: Any, order: int, share: float = 1.0) -> list[Any]:
+    def draw(self, axes: Any, order: int, fraction: float = 1.0) -> list[Any]:
         """Draw the shape of the row number `order`; share: 0 for a pale one, 1 for a strong one. Return the artists."""
-        return self._by_field(axes, order, share) if self.colour else self._plain(axes, order, share)
+        return self._by_field(axes, order, fraction) if self.colour else self._plain(axes, order, fraction)
 
-    def _plain(self, axes: Any, order: int, share: float) -> list[Any]:
+    def _plain(self, axes: Any, order: int, fraction: float) -> list[Any]:
         from matplotlib.collections import LineCollection, PolyCollection
 
-        colour = shade(share)
-        lines = LineCollection([axis[order] for axis in self.axis], colors=[colour], linewidths=1.3, zorder=2 + share)
+        colour = shade(fraction)
+        lines = LineCollection(
+            [axis[order] for axis in self.axis], colors=[colour], linewidths=1.3, zorder=2 + fraction
+        )
         drawn: list[Any] = [lines]
         if self._bodies_drawn:
             parts = [(number, faces[order]) for layers in self.layers for number, faces in enumerate(layers)]
             outlines = [np.concatenate([faces[:, 0], faces[::-1, 1]]) for _, faces in parts]
             # neighbouring layers differ in strength
             colours = [(*colour, 0.45 if number % 2 == 0 else 0.25) for number, _ in parts]
-            drawn.insert(0, PolyCollection(outlines, facecolors=colours, edgecolors="none", zorder=2 + share))
+            drawn.insert(0, PolyCollection(outlines, facecolors=colours, edgecolors="none", zorder=2 + fraction))
         for artist in drawn:
             axes.add_collection(artist, autolim=False)
         return drawn
 
-    def _by_field(self, axes: Any, order: int, share: float) -> list[Any]:
+    def _by_field(self, axes: Any, order: int, fraction: float) -> list[Any]:
         from matplotlib import colormaps
         from matplotlib.collections import LineCollection, PolyCollection
 
@@ -131,9 +133,9 @@ class Shapes:
         low, high = self.limits
         colours = colormaps[FIELD_COLOURS]((np.concatenate(means) - low) / (high - low))[:, :3]
         # paler by white, not by transparency, which would show where slabs overlap
-        strength = 0.35 + 0.65 * share
+        strength = 0.35 + 0.65 * fraction
         colours = 1.0 - strength * (1.0 - colours)
-        layer = 2 + share
+        layer = 2 + fraction
         drawn: list[Any] = []
         if self._bodies_drawn:
             fill = PolyCollection(list(np.concatenate(slabs)), facecolors=colours, edgecolors="face", linewidths=0.3)

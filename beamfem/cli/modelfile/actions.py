@@ -80,11 +80,11 @@ class Places:
         if found["end"]:
             return self.beams[name].start if found["end"] == "start" else self.beams[name].end
         try:
-            share = float(found["share"])
+            fraction = float(found["share"])
         except ValueError:
             raise table.error(f"the fraction along the beam must be a number, got {found['share']!r}", key) from None
         try:
-            return self.beams[name].at(share)
+            return self.beams[name].at(fraction)
         except InputError as error:
             raise table.error(str(error), key) from None
 

@@ -46,7 +46,7 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
         start = high
     if start < 1.0:
         found += _search(segment, start, 1.0)
-    return sorted(found, key=lambda one: one.share)
+    return sorted(found, key=lambda one: one.fraction)
 
 
 def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
@@ -80,22 +80,25 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
     line, middle, distance = segment.line, 0.5 * (start + end), _DISTANCE * (end - start)
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
-    shares = np.array([start, end])
-    roots = _roots(known, shares, (start, end))
+    fractions = np.array([start, end])
+    roots = _roots(known, fractions, (start, end))
     for _ in range(_TRIALS):
         if len(roots) != abs(change):
             return middle
         if roots[-1] - roots[0] > _TOGETHER * distance:
             widest = int(np.argmax(np.diff(roots)))
             return float(roots[widest] + roots[widest + 1]) / 2.0
-        shares = segment.beside(roots[0], roots[-1], distance, start, end)
-        known |= {x: condensed(line, segment.at(x), directions) for x in shares.tolist() if x not in known}
-        before, roots = roots, _roots(known, shares, (start, end))
+        fractions = segment.beside(roots[0], roots[-1], distance, start, end)
+        known |= {x: condensed(line, segment.at(x), directions) for x in fractions.tolist() if x not in known}
+        before, roots = roots, _roots(known, fractions, (start, end))
         if len(roots) == len(before) and np.abs(roots - before).max() < 0.1 * distance:
-            left, right = max(shares[shares < roots[0]], default=start), min(shares[shares > roots[-1]], default=end)
+            left, right = (
+                max(fractions[fractions < roots[0]], default=start),
+                min(fractions[fractions > roots[-1]], default=end),
+            )
             if segment.change(start, left) or segment.change(right, end):
                 return middle
-            samples = Samples(segment, shares, [known[x] for x in shares.tolist()], left, change, distance)
+            samples = Samples(segment, fractions, [known[x] for x in fractions.tolist()], left, change, distance)
             return crossings(samples, roots)
     return middle
 
@@ -110,19 +113,19 @@ def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarra
     return min(found, key=lambda one: one[0])[1]
 
 
-def _roots(known: dict[float, Condensed], shares: np.ndarray, within: tuple[float, float]) -> np.ndarray:
+def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[float, float]) -> np.ndarray:
     """Return the shares where the polynomial through the stiffnesses at `shares` is singular, ascending.
 
     One of each eigenvalue that changes its sign, the nearest to the samples.
     """
     from scipy.optimize import brentq  # slow to import
 
-    stiffness = np.array([known[x].stiffness for x in shares.tolist()])
+    stiffness = np.array([known[x].stiffness for x in fractions.tolist()])
 
     def eigenvalues(x: float | np.ndarray) -> np.ndarray:
-        return np.asarray(np.linalg.eigvalsh(np.tensordot(interpolation_weights(shares, x), stiffness, axes=1)))
+        return np.asarray(np.linalg.eigvalsh(np.tensordot(interpolation_weights(fractions, x), stiffness, axes=1)))
 
-    centre = 0.5 * (shares[0] + shares[-1])
+    centre = 0.5 * (fractions[0] + fractions[-1])
     reach = np.where(_GRID < 0.0, centre - within[0], within[1] - centre)
     grid = centre + _GRID * reach
     signs = np.sign(eigenvalues(grid))

@@ -12,7 +12,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
-from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
@@ -51,7 +51,7 @@ class Corrected:
 
     y: np.ndarray
     iterations: int
-    ended: Ended
+    ended: Termination
     negative_pivots: tuple[int, int] = (0, 0)
 
 
@@ -93,7 +93,7 @@ class Continuation:
     def hold(self, y: np.ndarray) -> np.ndarray:
         """Return y with the held coordinates of its load factor."""
         result = y.copy()
-        result[self.system.held_dofs] = self.system.held_values(float(y[-1]))
+        result[self.system.prescribed_dofs] = self.system.prescribed_values(float(y[-1]))
         return result
 
     def plane(self, tangent: np.ndarray) -> np.ndarray:
@@ -102,7 +102,7 @@ class Continuation:
         It is the tangent; but where the load factor moves supports and grows well, its axis: independent stresses tell
         the tangent nothing of held coordinates, so that these had better rest during the correction.
         """
-        moved = bool(np.any(tangent[self.system.held_dofs]))
+        moved = bool(np.any(tangent[self.system.prescribed_dofs]))
         if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
             return tangent
         result = np.zeros(len(tangent))
@@ -165,14 +165,14 @@ class Continuation:
         stresses: of the geometric tangent, None for those of the state. Raises LinAlgError.
         """
         system, p, at = self.system, y[:-1], float(y[-1])
-        rest, free, held = np.zeros(len(p)), system.free_dofs, system.held_dofs
+        zeros, free, held = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
         width = _SLOPE_WIDTH * self.load_scale
-        unbalanced, tangent = linearise(system, p, rest, rest, at, STATICS, stresses)
-        factors = tangent.factorised(system.turned)
+        unbalanced, tangent = linearise(system, p, zeros, zeros, at, STATICS, stresses)
+        factors = tangent.factorised(system.rotated)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
         balance[free], _ = factors.correction(unbalanced[free])
         along[free] = factors.solve(-load_slope(system, p, at, width)[free])
-        along[held] = (system.held_values(at + width) - system.held_values(at - width)) / (2.0 * width)
+        along[held] = (system.prescribed_values(at + width) - system.prescribed_values(at - width)) / (2.0 * width)
         along[-1] = 1.0
         if not (np.isfinite(balance).all() and np.isfinite(along).all()):
             raise LinAlgError("the tangent is singular")
@@ -245,10 +245,10 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     Raises LinAlgError where the tangent is singular, ConvergenceError where loads are too large or small to go on.
     """
     plain = Continuation(system, newton, 1.0, 1.0)
-    rest = np.zeros(len(p))
+    zeros = np.zeros(len(p))
     loses_digits(system, p, load_factor)
-    _, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
-    factors = tangent.factorised(system.turned)
+    _, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    factors = tangent.factorised(system.rotated)
     mode = plain.softest(factors)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     # an amplitude may start with slope zero: then what it does up to load factor 1 tells
@@ -270,9 +270,9 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
 
 def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:
     """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled."""
-    system, rest, scale = line.system, np.zeros(len(p)), line.scale[:-1]
+    system, zeros, scale = line.system, np.zeros(len(p)), line.scale[:-1]
     ends = load_factor, load_factor + width
-    forces = [residual(system, p, rest, rest, at)[system.free_dofs] for at in ends]
-    held = [system.held_values(at) / scale[system.held_dofs] for at in ends]
+    forces = [residual(system, p, zeros, zeros, at)[system.free_dofs] for at in ends]
+    held = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
     moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
     return max(moved, float(np.max(np.abs(held[1] - held[0]), initial=0.0))) / width

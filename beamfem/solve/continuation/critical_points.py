@@ -70,8 +70,8 @@ class Segment:
         """
         if x in self.found:
             return self.found[x].y
-        shares = self.beside(x, x, _DISTANCE, 0.0, 1.0)
-        return np.asarray(interpolation_weights(shares, x) @ [self.at(at).y for at in shares.tolist()])
+        fractions = self.beside(x, x, _DISTANCE, 0.0, 1.0)
+        return np.asarray(interpolation_weights(fractions, x) @ [self.at(at).y for at in fractions.tolist()])
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
@@ -87,8 +87,8 @@ class Segment:
 
     def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
         """Return the cubic of the stress resultants; the slopes at the ends are those along the path."""
-        rest = np.zeros(len(self.chord))
-        now = [self.line.stresses(point.y, rest) for point in (self.before, self.after)]
+        zeros = np.zeros(len(self.chord))
+        now = [self.line.stresses(point.y, zeros) for point in (self.before, self.after)]
         ahead = [
             self.line.stresses(p.y, slope) for p, slope in zip((self.before, self.after), self.slopes, strict=True)
         ]

@@ -25,7 +25,7 @@ _BESIDE = 5e-3  # of a segment: samples around a turning point
 class Crossing:
     """A bifurcation: its share x of the segment, y (n + 1,), the tangent of the path and the unit mode."""
 
-    share: float
+    fraction: float
     y: np.ndarray
     tangent: np.ndarray
     mode: np.ndarray
@@ -39,7 +39,7 @@ class Samples:
     """
 
     segment: Segment
-    shares: np.ndarray
+    fractions: np.ndarray
     condensed: list[Condensed]
     before: float
     change: int
@@ -47,11 +47,11 @@ class Samples:
 
     @cached_property
     def y(self) -> np.ndarray:
-        return np.array([self.segment.at(x).y for x in self.shares])
+        return np.array([self.segment.at(x).y for x in self.fractions])
 
     @cached_property
     def tangents(self) -> np.ndarray:
-        return np.array([self.segment.at(x).tangent for x in self.shares])
+        return np.array([self.segment.at(x).tangent for x in self.fractions])
 
     @cached_property
     def shapes(self) -> np.ndarray:
@@ -63,7 +63,7 @@ class Samples:
 
     def at(self, x: float, values: np.ndarray) -> np.ndarray:
         """Return values (s, ...) at the samples, interpolated at a share."""
-        return np.tensordot(interpolation_weights(self.shares, x), values, axes=1)
+        return np.tensordot(interpolation_weights(self.fractions, x), values, axes=1)
 
 
 def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
@@ -90,9 +90,9 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
     if apart < _ONE * samples.distance:
         return False
     line, y = samples.segment.line, samples.at(x, samples.y)
-    rest = np.zeros(len(y) - 1)
-    tangent = linearise(line.system, y[:-1], rest, rest, float(y[-1]), STATICS)[1]
-    count = tangent.factorised(line.system.turned).negative_pivots
+    zeros = np.zeros(len(y) - 1)
+    tangent = linearise(line.system, y[:-1], zeros, zeros, float(y[-1]), STATICS)[1]
+    count = tangent.factorised(line.system.rotated).negative_pivots
     if count == samples.segment.at(samples.before).negative_pivots + passed * np.sign(samples.change):
         return True
     if apart > _RESOLVED * samples.distance:
@@ -133,12 +133,12 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
     rate: of the stiffness of the mode over the share. Forces that were left unbalanced bend the path aside as well.
     """
     line = samples.segment.line
-    shares = (samples.shares - x) / samples.distance
-    basis = np.stack([np.ones_like(shares), shares, 1.0 / shares], axis=1)
+    fractions = (samples.fractions - x) / samples.distance
+    basis = np.stack([np.ones_like(fractions), fractions, 1.0 / fractions], axis=1)
     aside = [line.dot(mode, y) for y in samples.y]
     bend = np.linalg.lstsq(basis, np.array(aside))[0][-1]
-    rest = np.zeros(len(mode) - 1)
-    left = max(abs(mode[:-1] @ residual(line.system, y[:-1], rest, rest, float(y[-1]))) for y in samples.y)
+    zeros = np.zeros(len(mode) - 1)
+    left = max(abs(mode[:-1] @ residual(line.system, y[:-1], zeros, zeros, float(y[-1]))) for y in samples.y)
     if abs(bend) > max(_IMPERFECT, _LEFT * left / (abs(rate) * samples.distance)):
         raise SegmentLostError("the step leads to another path")
 
@@ -148,9 +148,9 @@ def turning(segment: Segment, x: float) -> Crossing:
 
     There the path goes along the mode. Raises SegmentLostError.
     """
-    shares = segment.beside(x, x, _BESIDE, 0.0, 1.0)
-    weights = interpolation_weights(shares, x)
-    points = [segment.at(at) for at in shares.tolist()]
+    fractions = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    weights = interpolation_weights(fractions, x)
+    points = [segment.at(at) for at in fractions.tolist()]
     tangent = weights @ [point.tangent for point in points]
     tangent /= segment.line.length(tangent)
     mode = np.append(tangent[:-1], 0.0)
@@ -164,10 +164,10 @@ def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Cro
     There the path goes along the mode. Raises SegmentLostError.
     """
     line = segment.line
-    shares = segment.beside(x, x, _BESIDE, 0.0, 1.0)
-    along = interpolation_weights(shares, x) @ [segment.at(at).tangent for at in shares.tolist()]
+    fractions = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    along = interpolation_weights(fractions, x) @ [segment.at(at).tangent for at in fractions.tolist()]
     along[-1] = 0.0
-    nearest = sorted(found, key=lambda one: abs(one.share - x))
+    nearest = sorted(found, key=lambda one: abs(one.fraction - x))
     for count in range(1, len(nearest) + 1):
         modes = np.array(_orthonormal(line, [one.mode for one in nearest[:count]]))
         parts = modes @ (line.weights * along)

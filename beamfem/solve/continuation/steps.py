@@ -15,7 +15,7 @@ _LEAST_SHARE = 0.1  # of a movement that is not translation: of less, that much 
 _LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
 _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
-_LARGEST_HELD_TURN = 1.0  # [rad] of a support in a step
+_LARGEST_PRESCRIBED_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
 _FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
@@ -48,12 +48,12 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
     beam cannot tell a full one from none. A structure on soft springs that drifts as a whole may go as far as its load
     grows: translations are no other path, however long.
     """
-    load_share = abs(float(point.tangent[-1])) / line.load_scale
-    moving = np.sqrt(max(1.0 - load_share**2, 0.0)) * _deforming(line, point.tangent)
+    load_fraction = abs(float(point.tangent[-1])) / line.load_scale
+    moving = np.sqrt(max(1.0 - load_fraction**2, 0.0)) * _deforming(line, point.tangent)
     load = max(line.load_step, _LARGEST_GROWTH * abs(point.load_factor)) / line.load_scale
-    size = float(min(_LARGEST / max(moving, 1e-12), load / max(load_share, 1e-12)))
+    size = float(min(_LARGEST / max(moving, 1e-12), load / max(load_fraction, 1e-12)))
     before, slope = point.load_factor, float(point.tangent[-1])
-    while line.system.largest_turn(before, before + size * slope) > _LARGEST_HELD_TURN and size > _SMALLEST:
+    while line.system.largest_turn(before, before + size * slope) > _LARGEST_PRESCRIBED_TURN and size > _SMALLEST:
         size *= 0.5
     return size
 

@@ -27,7 +27,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
         return nothing_known(n)
     if shift is None:
         shift = pencil.shift(rigid.shape[1])
-    factors = pencil.shifted(shift).factorised(pencil.system.turned)
+    factors = pencil.shifted(shift).factorised(pencil.system.rotated)
     wanted = min(count + _SPARE, available)
     known = rigid
     correction = np.zeros_like(pencil.p)
@@ -60,7 +60,7 @@ def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray) -> Pair
     first, *others = _alike(squares)
     sharp = vectors[:, first]
     for part in others:
-        factors = pencil.shifted(0.5 * squares[part.start]).factorised(pencil.system.turned)
+        factors = pencil.shifted(0.5 * squares[part.start]).factorised(pencil.system.rotated)
         own = _besides(pencil, sharp, vectors[:, part])
         for _ in range(_SOLVES):
             own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
@@ -104,8 +104,8 @@ def _alike(squares: np.ndarray) -> list[slice]:
         last = len(squares)
         if len(far):
             inside = np.arange(first + 1, first + int(far[0]) + 1)
-            shares = np.abs(squares[inside - 1]) / squares[inside]
-            last = int(inside[np.argmin(shares)])
+            fractions = np.abs(squares[inside - 1]) / squares[inside]
+            last = int(inside[np.argmin(fractions)])
         result.append(slice(first, last))
         first = last
     return result

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.system import System
-from beamfem.solve.modes.pencil import UNTURNED
+from beamfem.solve.modes.pencil import UNROTATED
 
 
 def stiffness_of_modes(
@@ -23,17 +23,17 @@ def stiffness_of_modes(
     K: tangent in the state p (n,), sum B^T C B over the quadrature points and what stresses, springs and loads add;
     correction (n,): what is still missing of the state.
     """
-    rest, count = np.zeros(len(p)), len(modes)
+    zeros, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
     for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
         unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
         plain = free_sheet(block._replace(stiffness=unit), len(p))
-        before = resultants(plain, p, rest)
+        before = resultants(plain, p, zeros)
         strains = np.array([resultants(plain, p, mode) - before for mode in modes]).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
-    stresses = stresses_of(system, p, rest if correction is None else correction)
+    stresses = stresses_of(system, p, zeros if correction is None else correction)
     free = modes[:, system.free_dofs]
     result += free @ (weak_stiffness(system, p, load_factor, stresses) @ free.T)
     return np.asarray(0.5 * (result + result.T))
@@ -48,6 +48,6 @@ def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[
 
 def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:
     """Return the tangent (unknown, unknown) without sum B^T C B: what stresses, springs and loads add."""
-    rest = np.zeros(len(p))
+    zeros = np.zeros(len(p))
     weak = tuple(block._replace(stiffness=np.zeros_like(block.stiffness)) for block in system.blocks)
-    return linearise(system, p, rest, rest, load_factor, STATICS, stresses, weak)[1].sparse(UNTURNED)
+    return linearise(system, p, zeros, zeros, load_factor, STATICS, stresses, weak)[1].sparse(UNROTATED)

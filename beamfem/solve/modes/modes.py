@@ -15,7 +15,7 @@ from beamfem.results.locking import frequency_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.lowest import lowest_pairs
-from beamfem.solve.modes.pencil import UNTURNED, Pencil
+from beamfem.solve.modes.pencil import UNROTATED, Pencil
 from beamfem.solve.modes.rigid import unresisted
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.start.balance import left_over
@@ -143,7 +143,7 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
         return nothing_known(pencil.size)
     shift = pencil.shift(rigid.shape[1])
     tangent = pencil.shifted(shift)
-    factors, stiffness = tangent.factorised(pencil.system.turned), tangent.sparse(UNTURNED)
+    factors, stiffness = tangent.factorised(pencil.system.rotated), tangent.sparse(UNROTATED)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
     reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)
     found = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()

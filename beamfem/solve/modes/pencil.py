@@ -11,7 +11,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.tangent import Tangent
 
 # turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
-UNTURNED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+UNROTATED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 _RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
 _AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
 _ASYMMETRY = 1e-12
@@ -36,24 +36,24 @@ class Pencil:
     @cached_property
     def unbalanced(self) -> np.ndarray:
         """Residual (unknown,) that Newton's method has left."""
-        rest = np.zeros(len(self.p))
-        return residual(self.system, self.p, rest, rest, self.load_factor)[self.system.free_dofs]
+        zeros = np.zeros(len(self.p))
+        return residual(self.system, self.p, zeros, zeros, self.load_factor)[self.system.free_dofs]
 
     def shifted(self, shift: float) -> Tangent:
         """Return K - shift M."""
         return self._tangent((1.0, 0.0, -shift))
 
     def _tangent(self, coefficients: tuple[float, float, float]) -> Tangent:
-        rest = np.zeros(len(self.p))
-        return linearise(self.system, self.p, rest, rest, self.load_factor, coefficients)[1]
+        zeros = np.zeros(len(self.p))
+        return linearise(self.system, self.p, zeros, zeros, self.load_factor, coefficients)[1]
 
     @cached_property
     def mass(self) -> csr_array:
-        return self._tangent(INERTIA).sparse(UNTURNED)
+        return self._tangent(INERTIA).sparse(UNROTATED)
 
     @cached_property
     def stiffness(self) -> csr_array:
-        return self._tangent(STATICS).sparse(UNTURNED)
+        return self._tangent(STATICS).sparse(UNROTATED)
 
     @cached_property
     def symmetric(self) -> bool:
@@ -62,11 +62,11 @@ class Pencil:
     @cached_property
     def size(self) -> int:
         """How many modes there are: inclined rollers hold one of their two coordinates each."""
-        return self.mass.shape[0] - len(self.system.turned[0])
+        return self.mass.shape[0] - len(self.system.rotated[0])
 
     def below(self, value: float) -> int:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
-        return self.shifted(value).factorised(self.system.turned).negative_pivots
+        return self.shifted(value).factorised(self.system.rotated).negative_pivots
 
     def shift(self, rigid: int) -> float:
         """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.

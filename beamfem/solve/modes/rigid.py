@@ -9,8 +9,8 @@ from beamfem.linalg.lapack import cholesky, null_space, solve_triangular, svd
 from beamfem.solve.modes.mode_stiffness import stresses_of, weak_stiffness
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.shapes import nodal_motion
-from beamfem.solve.start.body_motions import Conditions, bodies_of, free_motions
-from beamfem.solve.start.free_motion import describe
+from beamfem.solve.start.body_motions import Conditions, bodies_of, mechanisms
+from beamfem.solve.start.mechanisms import describe
 
 _SMALL = 1e-5  # of a motion
 _UNBALANCED = 1e-8  # of the largest force: what an equilibrium may leave, and a turn of it change
@@ -24,7 +24,7 @@ def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
     """
     system, p = pencil.system, pencil.p
     conditions = Conditions(system, bodies_of(system.model), p)
-    shapes = np.array([conditions.rates(p, motion) for motion in free_motions(conditions)]).reshape(-1, len(p))
+    shapes = np.array([conditions.rates(p, motion) for motion in mechanisms(conditions)]).reshape(-1, len(p))
     if not len(shapes):
         return shapes, ()
     shapes /= np.abs(shapes / system.scale).max(axis=1)[:, None]

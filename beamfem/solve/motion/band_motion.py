@@ -41,12 +41,12 @@ class BandMotion:
         for name in (record.ROWS, record.DIFFERENCES, record.INVERSE_SCALE, record.KEPT, record.TURNS):
             room.arrays[name][:] = 0.0
         room.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
-        self._room, self._kept = room, (rule, limits, statistics, system.turning, system.held_dofs)
+        self._room, self._kept = room, (rule, limits, statistics, system.turning, system.prescribed_dofs)
         places = {name: place for name, place in room.addresses.items() if name != "residual"}
-        fields = record.RULE, record.LIMITS, record.STATISTICS, record.PAIR_TABLE, record.HELD_DOFS
+        fields = record.RULE, record.LIMITS, record.STATISTICS, record.PAIR_TABLE, record.PRESCRIBED_DOFS
         places |= {field: address_of(array) for field, array in zip(fields, self._kept, strict=True)}
         self._solver = system.solver_table.filled(places)
-        self._solver[[record.PAIRS, record.HELD]] = len(system.turning), len(system.held_dofs)
+        self._solver[[record.PAIRS, record.PRESCRIBED]] = len(system.turning), len(system.prescribed_dofs)
 
     def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
@@ -66,7 +66,7 @@ class BandMotion:
         assembler.place_at(states, room.addresses["residual"], room.addresses[record.ROWS], rows.size)
         solver[[record.STATE, record.BODIES, record.LOAD_VALUES]] = place, places[0], address_of(given)
         for field, array in (
-            (record.HELD_VALUES, held),
+            (record.PRESCRIBED_VALUES, held),
             (record.SAVED, saved),
             (record.TURN_TABLE, counted),
             (record.TURNED_BY, turned_by),

@@ -60,7 +60,7 @@ def simulate(
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    state[:3, system.held_dofs] = held[0]
+    state[:3, system.prescribed_dofs] = held[0]
     for dof, normal in system.inclined:
         pair = slice(dof, dof + 2)
         state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))

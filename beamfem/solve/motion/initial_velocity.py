@@ -51,7 +51,7 @@ def _of_field(system: System, velocity: Callable[[np.ndarray], np.ndarray], p: n
         values = np.array([vector("velocity", called("velocity", velocity, x)) for x in mesh.position])
         slopes = _along(mesh, velocity) if "r_x" in mesh.vectors else values
         e = nodal_vectors(mesh, p[None])[0]
-        for code, nodes in mesh.carriers:
+        for code, nodes in mesh.node_kinds:
             names = labels(code, mesh.vectors)
             rates = {"r": values[nodes], "r_x": slopes[nodes]}
             if code in (STRETCH, SHEAR_RIGID):

@@ -9,8 +9,8 @@ from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion
-from beamfem.solve.motion.entangled_motion import EntangledMotion
 from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.sparse_motion import SparseMotion
 from beamfem.solve.motion.time_steps import Stretch
 
 ITERATIONS = 25
@@ -63,7 +63,7 @@ def march(
     held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return the
     beginning and end [s] of the step that failed, None where none did.
     """
-    kind = BandMotion if system.unknowns.pattern is None else EntangledMotion
+    kind = BandMotion if system.unknowns.pattern is None else SparseMotion
     limits, statistics = np.array([_TOLERANCE, ITERATIONS]), record.statistics
     done, row, size, failed = 0, 0, max(_FIRST_CHUNK // system.model.size, 1), None
     turned = record.turned[0].copy()
@@ -130,5 +130,5 @@ def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.n
     a[free] = 0.0
     unbalanced = residual(system, p, v, a, time)
     _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
-    a[free] = mass.solve(-unbalanced[free], system.turned)
+    a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a

@@ -32,20 +32,20 @@ def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
         )
     values = np.zeros((len(ends), 3, len(system.held)))
     if not any(callable(item.value) for item in system.held):
-        values[:, 0] = system.held_values(0.0)
+        values[:, 0] = system.prescribed_values(0.0)
         return values
     steps = np.diff(ends)
-    moved = np.array([system.held_changes(time) for time in ends])  # keeps more digits than positions far away
-    values[:, 0] = system.reference[system.held_dofs] + moved - _unresolved(moved, steps)
+    moved = np.array([system.prescribed_changes(time) for time in ends])  # keeps more digits than positions far away
+    values[:, 0] = system.reference[system.prescribed_dofs] + moved - _unresolved(moved, steps)
     mean = np.diff(moved, axis=0) / steps[:, None]
     width = _WIDTH * np.minimum(steps[:-1], steps[1:])
     for i, time in enumerate(ends[1:-1]):
-        around = np.array([system.held_changes(time + k * width[i]) for k in _INSIDE[0]])
+        around = np.array([system.prescribed_changes(time + k * width[i]) for k in _INSIDE[0]])
         values[i + 1, 1] = _INSIDE[1] @ around / width[i]
     values[1:-1, 2] = np.diff(mean, axis=0) / (0.5 * (steps[:-1] + steps[1:]))[:, None]
     for end, inward, step in ((0, 1, steps[0]), (-1, -1, -steps[-1])):
         width = _WIDTH * step
-        near = np.array([system.held_changes(ends[end] + k * width) for k in _AT_END[0]])
+        near = np.array([system.prescribed_changes(ends[end] + k * width) for k in _AT_END[0]])
         velocity, third = _AT_END[1] @ near / width, _AT_END[2] @ near / width**3
         half = 2.0 * (mean[end] - velocity) / step
         beside = values[end + inward, 2] if len(steps) > 1 else half

@@ -12,7 +12,7 @@ from beamfem.kernels.newton import iterate
 from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.newton.convergence import LARGEST, STAGNANT, Balance, Correction
 from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.prescribed_step import PrescribedStep
 
 
 class BandProblem:
@@ -26,7 +26,7 @@ class BandProblem:
         start: np.ndarray,
         load_factor: float,
         newton: Newton,
-        step: Prescribed,
+        step: PrescribedStep,
         keep: int | None,
     ) -> None:
         self.system, self.start = system, start
@@ -42,8 +42,8 @@ class BandProblem:
                 "p": (n,),
                 "residual": (n,),
                 record.STEP: (n,),
-                record.HELD_STEP: (n,),
-                record.HELD_FORCE: (n,),
+                record.PRESCRIBED_STEP: (n,),
+                record.PRESCRIBED_FORCE: (n,),
                 record.RIGHT: (unknown,),
                 record.ROWS: (unknown, 2 * half + 1),
                 record.LIMITS: (7,),

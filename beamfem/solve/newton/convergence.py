@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.assembly.equations import residual
 from beamfem.assembly.round_off import MOST_DIGITS, load_size, row_floors
 from beamfem.assembly.system import System
-from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.iteration import Newton, Termination
 
 STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
 _SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
@@ -61,8 +61,8 @@ class Balance:
 
 def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
     """Return the balance of a state (n,) at a load factor."""
-    rest = np.zeros(len(p))
-    unbalanced = residual(system, p, rest, rest, load_factor)
+    zeros = np.zeros(len(p))
+    unbalanced = residual(system, p, zeros, zeros, load_factor)
     return balance_with(system, p, load_factor, unbalanced, system.assembler().smallest_jacobian(p))
 
 
@@ -75,21 +75,21 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
     return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0)
 
 
-def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Ended | None:
+def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Termination | None:
     """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
 
     Where the residual is above the tolerance, each row must have come to its own floor, and what the next correction
     would be must be lost in the digits of the movement.
     """
     if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
-        ended = Ended.CONVERGED
+        ended = Termination.CONVERGED
     elif _settled(system, balance.p, correction) and np.all(
         np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.free_dofs]
     ):
-        ended = Ended.ROUND_OFF
+        ended = Termination.ROUND_OFF
     else:
         return None
-    return Ended.INVERTED if balance.inverted else ended
+    return Termination.INVERTED if balance.inverted else ended
 
 
 def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:

@@ -15,7 +15,7 @@ _LONG = 20_000  # elements; below, two threads gain little
 
 
 @dataclass(frozen=True, eq=False)
-class Half:
+class Substructure:
     """The elements on one side of the cut: what they are made of, their state and space for a step.
 
     place: its coordinates among those of the chain; free: the unknown ones of its own in the order of elimination, from
@@ -29,7 +29,7 @@ class Half:
     equations: Assembler
     scale: np.ndarray
     p: np.ndarray
-    rest: np.ndarray
+    zeros: np.ndarray
     step: np.ndarray
     residual: np.ndarray
     right: np.ndarray
@@ -37,7 +37,7 @@ class Half:
 
     def balance(self, predicted: bool, matrix: np.ndarray) -> None:
         """Fill the residual and, unless it is empty, the matrix; predicted: see `Assembler.balance`."""
-        self.equations.balance(self.p, self.rest, self.rest, self.residual, matrix, predicted)
+        self.equations.balance(self.p, self.zeros, self.zeros, self.residual, matrix, predicted)
 
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
@@ -54,7 +54,7 @@ def usable_cores() -> int:
     return min(allowed, int(limit)) if limit.isdecimal() else allowed
 
 
-def halves_of(system: System, start: np.ndarray, load_factor: float) -> tuple[Half, Half]:
+def substructures_of(system: System, start: np.ndarray, load_factor: float) -> tuple[Substructure, Substructure]:
     """Return the halves of a chain in the state `start` (n,), cut at the node nearest to the middle element."""
     (block,), size = system.blocks, len(start)
     # at a corner of the curve two nodes stand at the same place
@@ -80,7 +80,7 @@ def _half(
     place: slice,
     sprung: np.ndarray,
     shared: int,
-) -> Half:
+) -> Substructure:
     (whole,), (loads,), (layout,), (values,) = (
         system.blocks,
         system.point_loads,
@@ -96,21 +96,21 @@ def _half(
     loaded = (loads.element >= elements.start) & (loads.element < elements.stop)
     points = PointLoads(*(column[loaded] for column in loads))
     points = points._replace(element=points.element - elements.start)
-    dof, stiffness, rest, _ = (column[sprung] for column in system.springs)
+    dof, stiffness, zeros, _ = (column[sprung] for column in system.springs)
     number = free[dof - place.start]
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
-    springs = Springs(dof - place.start, stiffness, rest, diagonal)
+    springs = Springs(dof - place.start, stiffness, zeros, diagonal)
     equations = Assembler(Equations((make_sheet(block, layout._replace(free=free), points),), springs, size))
     equations.load(system.body(load_factor), (values[loaded],))
     equations.weigh(STATICS)
-    return Half(
+    return Substructure(
         place=place,
         free=order,
         inner=len(order) - shared,
         equations=equations,
         scale=system.scale[place],
         p=start[place].copy(),
-        rest=np.zeros(size),
+        zeros=np.zeros(size),
         step=np.empty(size),
         residual=np.empty(size),
         right=np.empty(len(order)),
@@ -127,5 +127,5 @@ def _part(block: Block, elements: slice, first_dof: int) -> Block:
         node=node - nodes.start,
         dof=np.where(dof >= 0, dof - first_dof, -1),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
-        **{name: getattr(block, name)[nodes] for name in ("carrier", "frame", "home")},
+        **{name: getattr(block, name)[nodes] for name in ("node_kind", "frame", "home")},
     )

@@ -9,7 +9,7 @@ from beamfem.errors import InputError
 from beamfem.validation import convert, count, flag, positive, shown
 
 
-class Ended(Enum):
+class Termination(Enum):
     """Why an iteration ended; the values are the sentences that users read."""
 
     CONVERGED = "the correction and the residual are within the tolerance"
@@ -23,7 +23,7 @@ class Ended(Enum):
 
     @property
     def good(self) -> bool:
-        return self in (Ended.CONVERGED, Ended.ROUND_OFF)
+        return self in (Termination.CONVERGED, Termination.ROUND_OFF)
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class NewtonResult:
 
     state: np.ndarray
     iterations: int
-    ended: Ended
+    ended: Termination
     negative_pivots: int = 0
     digits: float = np.nan
     first: float = np.nan

@@ -7,7 +7,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import System
 from beamfem.solve.newton.convergence import Balance, Correction, check_convergence
-from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 
 
 class Problem(Protocol):
@@ -50,22 +50,22 @@ def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> Newton
         try:
             correction = problem.correct()
         except LinAlgError:
-            return NewtonResult(problem.start, number + 1, Ended.SINGULAR)
+            return NewtonResult(problem.start, number + 1, Termination.SINGULAR)
         number, negative = correction.number, correction.negative_pivots
         lost = keep not in (None, negative)
         if number > 2 and lost:
-            return NewtonResult(problem.start, number, Ended.LOST, negative)
+            return NewtonResult(problem.start, number, Termination.LOST, negative)
         if correction.diverges:
-            return NewtonResult(problem.start, number, Ended.DIVERGED, negative)
+            return NewtonResult(problem.start, number, Termination.DIVERGED, negative)
         if correction.is_small(newton):
             balance = problem.balance()
             ended = check_convergence(problem.system, balance, newton, correction)
             if ended is not None and lost:
-                return NewtonResult(problem.start, number, Ended.LOST, negative)
+                return NewtonResult(problem.start, number, Termination.LOST, negative)
             if ended is not None:
                 first, second = problem.after_first()
                 linear = problem.linear_state() if number > 1 and keep not in (None, second) else None
                 state = problem.state if ended.good else problem.start
                 digits = balance.digits if problem.counts_digits else np.nan
                 return NewtonResult(state, number, ended, negative, digits, first, linear)
-    return NewtonResult(problem.state, number, Ended.EXHAUSTED)
+    return NewtonResult(problem.state, number, Termination.EXHAUSTED)

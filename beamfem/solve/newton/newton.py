@@ -11,10 +11,10 @@ from beamfem.assembly.round_off import ENOUGH, digits_of, loses_digits, remainde
 from beamfem.assembly.system import System
 from beamfem.solve.newton.banded import BandProblem
 from beamfem.solve.newton.cut_chain import worth_cutting
-from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.loop import iterate
 from beamfem.solve.newton.pivoted import PivotedProblem
-from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.prescribed_step import PrescribedStep
 from beamfem.solve.newton.substructured import SubstructuredProblem
 
 
@@ -37,21 +37,21 @@ def solve_equilibrium(
 
 def _with_digits(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
     """Return a result with the digits that are sure of its forces, and what its state lacked to balance them."""
-    if result.ended is Ended.CONVERGED and math.isnan(result.digits):
+    if result.ended is Termination.CONVERGED and math.isnan(result.digits):
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
-    if result.ended is Ended.ROUND_OFF:
+    if result.ended is Termination.ROUND_OFF:
         digits = digits_of(system, result.state, load_factor) if math.isnan(result.digits) else result.digits
         if digits >= ENOUGH:
             return replace(result, digits=digits)
         missing = remainder(system, result.state, load_factor)
-        ended = Ended.ROUND_OFF if missing.digits >= 1.0 else Ended.NO_DIGITS
+        ended = Termination.ROUND_OFF if missing.digits >= 1.0 else Termination.NO_DIGITS
         return replace(result, state=result.state + missing.step, ended=ended, digits=missing.digits)
     return result
 
 
 def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None) -> NewtonResult:
     """Iterate as fast as the model allows, and with pivots where it does not."""
-    step = Prescribed(system, start, load_factor)
+    step = PrescribedStep(system, start, load_factor)
     result = None
     if system.unknowns.pattern is None and MIXED not in system.proven:
         if worth_cutting(system):
@@ -59,6 +59,6 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
                 result = iterate(SubstructuredProblem(system, start, load_factor, newton, step, pool), newton, keep)
         else:
             result = iterate(BandProblem(system, start, load_factor, newton, step, keep), newton, keep)
-    if result is None or result.ended is Ended.SINGULAR:
+    if result is None or result.ended is Termination.SINGULAR:
         result = iterate(PivotedProblem(system, start, load_factor, newton, step), newton, keep)
     return result

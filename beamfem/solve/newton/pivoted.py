@@ -7,7 +7,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.tangent import Factorised, Stresses
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.prescribed_step import PrescribedStep
 
 
 class PivotedProblem:
@@ -15,7 +15,9 @@ class PivotedProblem:
 
     counts_digits = False
 
-    def __init__(self, system: System, start: np.ndarray, load_factor: float, newton: Newton, step: Prescribed) -> None:
+    def __init__(
+        self, system: System, start: np.ndarray, load_factor: float, newton: Newton, step: PrescribedStep
+    ) -> None:
         self.system, self.start, self.load_factor, self.newton, self.step = system, start, load_factor, newton, step
         self.state = self.linear = start
         self.stresses: Stresses | None = None
@@ -23,9 +25,9 @@ class PivotedProblem:
 
     def correct(self) -> Correction:
         """Take the next correction. Raises LinAlgError where the tangent is singular."""
-        system, p, rest, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs
-        unbalanced, tangent = linearise(system, p, rest, rest, self.load_factor, STATICS, self.stresses)
-        factors: Factorised = tangent.factorised(system.turned)
+        system, p, zeros, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs
+        unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, STATICS, self.stresses)
+        factors: Factorised = tangent.factorised(system.rotated)
         step = self.step.step.copy() if self.number == 0 else np.zeros(len(p))
         step[free], after = factors.correction(unbalanced[free])
         if self.number == 0 and self.step.moves:

@@ -7,10 +7,10 @@ import numpy as np
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.solve.newton.convergence import Balance, Correction, balance_with
-from beamfem.solve.newton.cut_chain import halves_of
-from beamfem.solve.newton.halves import correct, joined, negative_pivots
+from beamfem.solve.newton.cut_chain import substructures_of
 from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.prescribed_step import PrescribedStep
+from beamfem.solve.newton.substructures import correct, joined, negative_pivots
 
 
 class SubstructuredProblem:
@@ -24,19 +24,19 @@ class SubstructuredProblem:
         start: np.ndarray,
         load_factor: float,
         newton: Newton,
-        step: Prescribed,
+        step: PrescribedStep,
         pool: Executor,
     ) -> None:
         self.system, self.start, self.load_factor, self.newton = system, start, load_factor, newton
-        self.step, self.pool, self.halves = step, pool, halves_of(system, start, load_factor)
+        self.step, self.pool, self.substructures = step, pool, substructures_of(system, start, load_factor)
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
         """Take the next correction. Raises LinAlgError where pivots are needed."""
         change = (self.step.step, self.step.force) if self.number == 0 else None
         before = self.size
-        self.size, shared = correct(self.halves, self.pool, self.newton.independent_stresses, change)
-        negative = negative_pivots(self.halves, shared)
+        self.size, shared = correct(self.substructures, self.pool, self.newton.independent_stresses, change)
+        negative = negative_pivots(self.substructures, shared)
         self.number += 1
         if self.number == 1:
             self.first = self.size
@@ -48,13 +48,13 @@ class SubstructuredProblem:
     def state(self) -> np.ndarray:
         """The state (n,) reached."""
         result = np.zeros(len(self.start))
-        for half in self.halves:
+        for half in self.substructures:
             result[half.place] = half.p
         return result
 
     def balance(self) -> Balance:
         """Return what is left of the balance in the state reached."""
-        p, unbalanced, jacobian = joined(self.halves, self.pool)
+        p, unbalanced, jacobian = joined(self.substructures, self.pool)
         return balance_with(self.system, p, self.load_factor, unbalanced, jacobian)
 
     def after_first(self) -> tuple[float, int]:
@@ -63,8 +63,8 @@ class SubstructuredProblem:
 
     def linear_state(self) -> np.ndarray:
         """Return the state (n,) after the first correction, which is taken anew: the halves have moved on."""
-        rest = np.zeros(len(self.start))
-        unbalanced, tangent = linearise(self.system, self.start, rest, rest, self.load_factor, STATICS)
+        zeros = np.zeros(len(self.start))
+        unbalanced, tangent = linearise(self.system, self.start, zeros, zeros, self.load_factor, STATICS)
         step, free = self.step.step.copy(), self.system.free_dofs
-        step[free] = tangent.solve(-(unbalanced + self.step.force)[free], self.system.turned)
+        step[free] = tangent.solve(-(unbalanced + self.step.force)[free], self.system.rotated)
         return self.start + step

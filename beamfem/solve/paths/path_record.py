@@ -47,20 +47,20 @@ class PathRecord:
     def add_critical(self, line: Continuation, step: Step, last: PathPoint) -> None:
         """Add the limit points and bifurcations of a step up to its last point."""
         segment = step.segment
-        share = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
+        fraction = line.dot(last.y - segment.before.y, segment.chord) / line.dot(segment.chord, segment.chord)
         for x in step.limits:
-            if x <= share:
+            if x <= fraction:
                 self.limit_points.append(self.state(segment.critical(x)))
         for crossing in step.crossings:
-            if crossing.share <= share:
+            if crossing.fraction <= fraction:
                 state = vars(self.state(crossing.y))
                 self.bifurcations.append(Bifurcation(**state, mode=crossing.mode[:-1], tangent=crossing.tangent))
 
     def state(self, y: np.ndarray, stability: bool | None = False) -> PathState:
         """Return the state of y (n + 1,), coordinates and load factor; stability: whether it is stable, if known."""
-        rest = np.zeros(self.model.size)
+        zeros = np.zeros(self.model.size)
         turned = self._turned(y)
-        return PathState(y[:-1], rest, rest, float(y[-1]), self.model, stability=stability, turned=turned)
+        return PathState(y[:-1], zeros, zeros, float(y[-1]), self.model, stability=stability, turned=turned)
 
     def _turned(self, y: np.ndarray) -> np.ndarray:
         """Return the rotations (m,) [rad] of `first_turns` in y (n + 1,), continued from the last point."""
@@ -75,8 +75,8 @@ class PathRecord:
         if digits < FEW_DIGITS:
             ended += f"; round-off leaves {digits:.0f} digits of the forces"
         statistics = Statistics(self.iterations, len(rows) - 1, self.cuts, ended, self.status, digits=digits)
-        rest = np.zeros((len(rows), self.model.size))
-        states = rows[:, :-1], rest, rest.copy()
+        zeros = np.zeros((len(rows), self.model.size))
+        states = rows[:, :-1], zeros, zeros.copy()
         return Path(
             self.model,
             True,

@@ -18,8 +18,8 @@ from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
-from beamfem.solve.start.free_motion import require_support
 from beamfem.solve.start.interrupted import kept
+from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -106,7 +106,7 @@ def trace_equilibrium(
 def _require_load(system: System) -> None:
     """Raise InputError where nothing changes with the load factor."""
     for at in (0.37, 1.0):
-        changes = [(system.body(at), system.body(0.0)), (system.held_values(at), system.held_values(0.0))]
+        changes = [(system.body(at), system.body(0.0)), (system.prescribed_values(at), system.prescribed_values(0.0))]
         changes += zip(system.point_values(at), system.point_values(0.0), strict=True)
         if any(not np.array_equal(now, before) for now, before in changes):
             return
@@ -173,8 +173,8 @@ def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord)
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
     """Return the first point of a step with the load factor, None where it does not come to it."""
-    shares = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
-    stops = [step.segment.at(x) for x in shares]
+    fractions = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
+    stops = [step.segment.at(x) for x in fractions]
     for before, after in pairwise(stops):
         low, high = before.load_factor - load_factor, after.load_factor - load_factor
         if high == 0.0:

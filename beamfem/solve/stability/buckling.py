@@ -23,7 +23,7 @@ from beamfem.solve.stability.linearised import linearised_loads
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.start.balance import left_over
-from beamfem.solve.start.free_motion import require_support
+from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.start_state import resting_state
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -146,9 +146,9 @@ def _stable_start(system: System, about: State | Solution | None) -> tuple[np.nd
         p = begun.state
     if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
         raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
-    rest = np.zeros_like(p)
-    tangent = linearise(system, p, rest, rest, load_factor, STATICS)[1]
-    unstable = tangent.factorised(system.turned).negative_pivots
+    zeros = np.zeros_like(p)
+    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+    unstable = tangent.factorised(system.rotated).negative_pivots
     if unstable > 0:
         raise InputError(
             f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "

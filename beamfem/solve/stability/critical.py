@@ -66,12 +66,12 @@ def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoin
     slopes = [reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after)]
     rise = after.load_factor - before.load_factor
     curvature = slopes[0] + slopes[1] - 2.0 * rise
-    share = 0.5
+    fraction = 0.5
     if curvature != 0.0:
         extreme = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
-        share = extreme if 0.1 < extreme < 0.9 else 0.5
-    foretold = smooth(path, normal, (before, after), share * reach)
-    found = on_path(path, normal, (before, after), share * reach)
+        fraction = extreme if 0.1 < extreme < 0.9 else 0.5
+    foretold = smooth(path, normal, (before, after), fraction * reach)
+    found = on_path(path, normal, (before, after), fraction * reach)
     if path.line.length(found.y - foretold) > _SMOOTH * path.line.length(after.y - before.y):
         raise PathLostError("the path turns too sharply")
     return found
@@ -178,9 +178,9 @@ class Search:
         Round-off bends it as well: by the force that it leaves, over the stiffness of the mode.
         """
         system = self.path.system
-        shares = (window.at - zero.at) / window.radius
+        fractions = (window.at - zero.at) / window.radius
         largest = float(np.max(np.abs(mode) / system.scale))
-        basis = np.column_stack([shares**0, shares, shares**2, shares**3, 1.0 / shares])
+        basis = np.column_stack([fractions**0, fractions, fractions**2, fractions**3, 1.0 / fractions])
         bend = largest * abs(np.linalg.lstsq(basis, window.aside(mode))[0][-1])
         left = max(abs(float(mode @ self.path.unbalanced(point))) for point in window.points)
         stiffness = min(float(np.abs(soft.values).min()) for soft in window.softest)

@@ -11,7 +11,7 @@ from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, fi
 from beamfem.linalg.lapack import eig, eigh, qr
 from beamfem.linalg.tangent import Factorised, Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
-from beamfem.solve.modes.pencil import UNTURNED, is_symmetric
+from beamfem.solve.modes.pencil import UNROTATED, is_symmetric
 
 _CHANGE = 1e-3  # of the coordinates, over which the tangent's derivative is taken
 _NONE = 1e-10  # of the rate at which the coordinates change: rates this small are round-off
@@ -28,23 +28,23 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     moved = float(np.max(np.abs(slope) / system.scale))
     width = _CHANGE / moved
     tangent = _tangent(system, p, load_factor)
-    stiffness = tangent.sparse(UNTURNED)
+    stiffness = tangent.sparse(UNROTATED)
     rate = csr_array(stiffness.shape)
     for steps, weight in ((1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)):
         at = steps * width
-        rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNTURNED)
+        rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNROTATED)
     if not is_symmetric(csr_array(stiffness + width * rate)):
         raise InputError(
             "some load turns with the beam and its work depends on the way: such loads can make a structure "
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
         )
-    factors = tangent.factorised(system.turned)
+    factors = tangent.factorised(system.rotated)
     shapes = _softened(csr_array(rate), factors, count)
     modes = np.zeros((shapes.shape[1], len(p)))
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
-    rest = np.zeros_like(p)
-    left = linearise(system, p, rest, rest, load_factor, STATICS)[0]
+    zeros = np.zeros_like(p)
+    left = linearise(system, p, zeros, zeros, load_factor, STATICS)[0]
     correction[system.free_dofs] = -factors.solve(left[system.free_dofs])
     rates = eigh(
         -shapes.T @ (rate @ shapes), stiffness_of_modes(system, p, load_factor, modes, correction), eigvals_only=True
@@ -81,5 +81,5 @@ def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
 
 
 def _tangent(system: System, p: np.ndarray, load_factor: float) -> Tangent:
-    rest = np.zeros_like(p)
-    return linearise(system, p, rest, rest, load_factor, STATICS)[1]
+    zeros = np.zeros_like(p)
+    return linearise(system, p, zeros, zeros, load_factor, STATICS)[1]

@@ -11,7 +11,7 @@ def largest_movement(system: System, change: np.ndarray) -> float:
     scaled = np.append(change / system.scale, 0.0)
     largest = 0.0
     for block in system.blocks:
-        plain = np.isin(block.carrier, (GRADIENTS, TURNED_GRADIENTS))
+        plain = np.isin(block.node_kind, (GRADIENTS, TURNED_GRADIENTS))
         displacements, rotations = block.dof[:, :2], block.dof[~plain, 2:]
         gradients = block.dof[plain, 2:].reshape(-1, 2)
         moved = (np.hypot(*scaled[displacements].T), np.hypot(*scaled[gradients].T), np.abs(scaled[rotations]))

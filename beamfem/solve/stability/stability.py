@@ -22,9 +22,9 @@ def stable_rows(solution: Solution) -> np.ndarray:
 
 def unstable_directions(system: System, p: np.ndarray, load_factor: float) -> int:
     """Return how many eigenvalues of the tangent are negative in the state p (n,)."""
-    rest = np.zeros(len(p))
-    tangent = linearise(system, p, rest, rest, load_factor, STATICS)[1]
-    return tangent.factorised(system.turned).negative_pivots
+    zeros = np.zeros(len(p))
+    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+    return tangent.factorised(system.rotated).negative_pivots
 
 
 def _none_grows(solution: Solution, row: int, count: int) -> bool:

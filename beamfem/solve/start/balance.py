@@ -12,13 +12,13 @@ _CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, 
 
 def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest force [N, N m] that is not balanced in the state p (n,); 0 if it is small enough."""
-    rest = np.zeros_like(p)
-    unbalanced, tangent = linearise(system, p, rest, rest, load_factor, STATICS)
+    zeros = np.zeros_like(p)
+    unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
     left = np.abs(system.along_free(unbalanced))
     acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
-    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.turned)).sum(axis=1))
+    round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))
     if np.all(left <= _TOLERANCE * force):
         return 0.0
     # faint loads hide in the round-off of stiff rows and bend a slender beam all the same

@@ -102,7 +102,7 @@ class Conditions:
         return result
 
 
-def free_motions(conditions: Conditions) -> np.ndarray:
+def mechanisms(conditions: Conditions) -> np.ndarray:
     """Return an orthonormal basis (m, 3 bodies) of the motions that satisfy all conditions."""
     rows, size = conditions.matrix(), 3 * conditions.bodies
     wanted = _FIRST_FEW

@@ -33,7 +33,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         values, rates = _by_label(old, state)
         for label, nodes, dofs in coordinate_columns(new):
             # a turned vector is that of the first of the joined nodes
-            own = new.carried.carrier[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
+            own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
     return p, v
 

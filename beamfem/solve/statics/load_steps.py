@@ -6,7 +6,7 @@ from typing import Literal
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.progress import progress
-from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_path import PathFollower, PathLostError, TurnsBackError
 from beamfem.solve.statics.skipped import skips_limit_points
@@ -46,7 +46,7 @@ def reach(
                     cuts = 0
                 if result.iterations <= _EASY_ITERATIONS:
                     step *= 2.0
-            elif result.ended is Ended.NO_DIGITS:
+            elif result.ended is Termination.NO_DIGITS:
                 # what round-off takes of a load it takes of a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
             elif cuts < _CUTS:
@@ -85,7 +85,7 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
             done.iterations += followed.iterations
             done.cuts += followed.cuts
             point = followed.point
-            done.add(point.load_factor, point.y[:-1], point.negative_pivots, Ended.CONVERGED)
+            done.add(point.load_factor, point.y[:-1], point.negative_pivots, Termination.CONVERGED)
     except TurnsBackError as turn:
         done.iterations += turn.iterations
         done.cuts += turn.cuts

@@ -12,7 +12,7 @@ from beamfem.errors import ConvergenceError
 from beamfem.model.loads import factor
 from beamfem.model.model import Model
 from beamfem.model.supports import Prescribed
-from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_steps import reach
 from beamfem.solve.statics.static_record import StaticRecord
@@ -24,7 +24,7 @@ _AT_REST = "nothing acts at load factor 0"
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
     """Return the equilibrium at load factor 0; where it is far, that of the path along which all loads grow at once."""
     if _at_rest(system):
-        return NewtonResult(system.reference, 0, Ended.CONVERGED)
+        return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
     return result if result.ended.good else _grown(system, newton, result)
 
@@ -33,11 +33,11 @@ def _at_rest(system: System) -> bool:
     """Tell whether nothing acts yet at load factor 0."""
     if _AT_REST not in system.proven:
         p = system.reference
-        rest = np.zeros(p.shape)
-        balanced = np.all(np.abs(residual(system, p, rest, rest, 0.0)) <= row_floors(system, p))
+        zeros = np.zeros(p.shape)
+        balanced = np.all(np.abs(residual(system, p, zeros, zeros, 0.0)) <= row_floors(system, p))
         # a load that is lost in the round-off of stiff rows may bend the beam all the same
         acts = load_size(system, system.point_values(0.0)) > 0.0 or bool(system.body(0.0).any())
-        if acts or not balanced or not np.array_equal(system.held_values(0.0), p[system.held_dofs]):
+        if acts or not balanced or not np.array_equal(system.prescribed_values(0.0), p[system.prescribed_dofs]):
             return False
         system.proven.add(_AT_REST)
     return True
@@ -48,7 +48,7 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
     growing = system_of(_growing(system.model), static=True)
     done = StaticRecord(growing.model, growing.symmetric)
     done.iterations = failed.iterations
-    done.add(0.0, growing.reference, 0, Ended.CONVERGED)
+    done.add(0.0, growing.reference, 0, Termination.CONVERGED)
     try:
         reach(growing, done, 1.0, newton, "error")
     except ConvergenceError:

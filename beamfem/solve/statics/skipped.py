@@ -49,8 +49,8 @@ def _differs_half_way(system: System, done: StaticRecord, target: float, end: np
     Its own would be those of a chord.
     """
     done.iterations += 1
-    rest = np.zeros(len(end))
-    ends = (predicted_stresses(system, p, rest) for p in (done.state, end))
+    zeros = np.zeros(len(end))
+    ends = (predicted_stresses(system, p, zeros) for p in (done.state, end))
     mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
     try:
         return _other_count(system, done, 0.5 * (done.state + end), 0.5 * (done.reached + target), mean)
@@ -62,6 +62,6 @@ def _other_count(
     system: System, done: StaticRecord, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]
 ) -> bool:
     """Tell whether the tangent in a state (n,) with these resultants has another count. Raises LinAlgError."""
-    rest = np.zeros(len(p))
-    _, tangent = linearise(system, p, rest, rest, load_factor, STATICS, stresses)
-    return tangent.factorised(system.turned).negative_pivots != done.negative_pivots
+    zeros = np.zeros(len(p))
+    _, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)
+    return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots

@@ -10,8 +10,8 @@ import numpy as np
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.solve.modes.pencil import UNTURNED
-from beamfem.solve.newton.iteration import Ended, Newton, NewtonResult
+from beamfem.solve.modes.pencil import UNROTATED
+from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 
 _STEPS = 2000
@@ -51,7 +51,7 @@ def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Ne
             iterations += result.iterations
             if result.ended.good and result.negative_pivots == 0 and _size(system, result.state - p) < _LARGEST_MOVE:
                 return NewtonResult(result.state, iterations, result.ended)
-    return NewtonResult(p, iterations, Ended.EXHAUSTED)
+    return NewtonResult(p, iterations, Termination.EXHAUSTED)
 
 
 def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
@@ -72,13 +72,13 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
 
     It fails as well where the step is so long that more than one state is at its end: some lie in other valleys.
     """
-    free, moved, rest = system.free_dofs, p.copy(), np.zeros(len(p))
+    free, moved, zeros = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)
     for iteration in range(1, _ITERATIONS + 1):
-        unbalanced, tangent = linearise(system, moved, rest, rest, load_factor, (1.0, 0.0, 1.0 / time))
+        unbalanced, tangent = linearise(system, moved, zeros, zeros, load_factor, (1.0, 0.0, 1.0 / time))
         right = -unbalanced[free] - mass @ (moved - p)[free] / time
         try:
-            factors = tangent.factorised(system.turned)
+            factors = tangent.factorised(system.rotated)
             if system.symmetric and factors.negative_pivots > 0:
                 return None, iteration
             change = factors.solve(right)
@@ -94,13 +94,13 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
 
 
 def _mass(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
-    rest = np.zeros(len(p))
-    return linearise(system, p, rest, rest, load_factor, INERTIA)[1].sparse(UNTURNED)
+    zeros = np.zeros(len(p))
+    return linearise(system, p, zeros, zeros, load_factor, INERTIA)[1].sparse(UNROTATED)
 
 
 def _unbalanced(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:
-    rest = np.zeros(len(p))
-    return residual(system, p, rest, rest, load_factor)
+    zeros = np.zeros(len(p))
+    return residual(system, p, zeros, zeros, load_factor)
 
 
 def _size(system: System, change: np.ndarray) -> float:

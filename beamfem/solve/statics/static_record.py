@@ -9,7 +9,7 @@ from beamfem.errors import RoundOffWarning, UnstableWarning
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.newton.iteration import Ended
+from beamfem.solve.newton.iteration import Termination
 
 
 class StaticRecord:
@@ -24,7 +24,7 @@ class StaticRecord:
         self.rows: list[tuple[float, np.ndarray, int]] = []
         self.iterations = 0
         self.cuts = 0
-        self.ended = Ended.CONVERGED
+        self.ended = Termination.CONVERGED
         self.digits = np.nan
 
     @property
@@ -40,7 +40,7 @@ class StaticRecord:
         return self.rows[-1][2]
 
     def add(
-        self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Ended, digits: float = np.nan
+        self, load_factor: float, state: np.ndarray, negative_pivots: int, ended: Termination, digits: float = np.nan
     ) -> None:
         self.ended = ended
         self.digits = digits
@@ -55,7 +55,7 @@ class StaticRecord:
         # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
         unstable = counts > 0 if self.symmetric else counts % 2 == 1
         status = Status.STOPPED if not complete else Status.COMPLETED
-        if complete and self.ended is Ended.ROUND_OFF:
+        if complete and self.ended is Termination.ROUND_OFF:
             status = Status.ROUND_OFF
         ended = self.ended.value
         said: tuple[str, ...] = ()

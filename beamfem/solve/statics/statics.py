@@ -8,8 +8,8 @@ from beamfem.errors import ConvergenceError
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.solve.newton.iteration import Newton, require_newton
-from beamfem.solve.start.free_motion import require_support
 from beamfem.solve.start.interrupted import kept
+from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.statics.load_steps import Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord

@@ -13,7 +13,7 @@ from scipy.linalg import LinAlgError
 from beamfem.kernels.band import band
 from beamfem.kernels.newton import take_step
 from beamfem.linalg.tangent import SMALLEST_PIVOT
-from beamfem.solve.newton.cut_chain import Half
+from beamfem.solve.newton.cut_chain import Substructure
 
 _NOTHING = np.empty(0)
 T = TypeVar("T")
@@ -22,43 +22,47 @@ T = TypeVar("T")
 Change = tuple[np.ndarray, np.ndarray] | None
 
 
-def correct(halves: tuple[Half, Half], pool: Executor, predicts: bool, change: Change) -> tuple[float, np.ndarray]:
+def correct(
+    substructures: tuple[Substructure, Substructure], pool: Executor, predicts: bool, change: Change
+) -> tuple[float, np.ndarray]:
     """Take one step of Newton's method; return its relative size and the pivots of the shared unknowns (s,).
 
     predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError where pivots are
     needed.
     """
     predicted = predicts and change is None
-    left = _both(pool, lambda half: _eliminate(half, predicted, change), halves)
+    left = _both(pool, lambda half: _eliminate(half, predicted, change), substructures)
     # in the second half the shared unknowns stand in reversed order
     schur, right, diagonal = (a + np.flip(b) for a, b in zip(*left, strict=True))
     if change is not None:
-        right -= change[1][halves[0].free[halves[0].inner :]]
+        right -= change[1][substructures[0].free[substructures[0].inner :]]
     if not (diagonal > 0.0).all():
         raise LinAlgError("the tangent is singular")
     pivots = np.linalg.eigvals(schur / diagonal[:, None]).real
     if not np.abs(pivots).min(initial=1.0) > SMALLEST_PIVOT:
         raise LinAlgError("the tangent is singular")
     shared = np.linalg.solve(schur, right)
-    for half, known in zip(halves, (shared, shared[::-1]), strict=True):
+    for half, known in zip(substructures, (shared, shared[::-1]), strict=True):
         half.right[half.inner :] = known
-    return float(np.max(_both(pool, lambda half: _advance(half, predicts, change), halves))), pivots
+    return float(np.max(_both(pool, lambda half: _advance(half, predicts, change), substructures))), pivots
 
 
-def negative_pivots(halves: tuple[Half, Half], shared: np.ndarray) -> int:
+def negative_pivots(substructures: tuple[Substructure, Substructure], shared: np.ndarray) -> int:
     """Return how many pivots of the last step were negative; shared: those of the shared unknowns."""
     # the factorisation keeps the inverse of each pivot on the diagonal
-    of_all = (shared, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in halves))
+    of_all = (shared, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in substructures))
     return sum(int((values < 0.0).sum()) for values in of_all)
 
 
-def _both(pool: Executor, call: Callable[[Half], T], halves: tuple[Half, Half]) -> tuple[T, T]:
+def _both(
+    pool: Executor, call: Callable[[Substructure], T], substructures: tuple[Substructure, Substructure]
+) -> tuple[T, T]:
     """Return what a call gives for each half; this thread does one of them."""
-    other = pool.submit(call, halves[1])
-    return call(halves[0]), other.result()
+    other = pool.submit(call, substructures[1])
+    return call(substructures[0]), other.result()
 
 
-def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _eliminate(half: Substructure, predicted: bool, change: Change) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return what is left for the shared unknowns (s,): matrix (s, s), right-hand side and the diagonal before."""
     rows, right, inner, middle = half.rows, half.right, half.inner, half.rows.shape[1] // 2
     half.balance(predicted, rows.reshape(-1))
@@ -73,7 +77,7 @@ def _eliminate(half: Half, predicted: bool, change: Change) -> tuple[np.ndarray,
     return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal
 
 
-def _advance(half: Half, predicts: bool, change: Change) -> float:
+def _advance(half: Substructure, predicts: bool, change: Change) -> float:
     """Take the step, whose shared unknowns are known; return its relative size."""
     middle = half.rows.shape[1] // 2
     band(middle).solve_upper(half.inner, len(half.right), middle, half.rows, half.right)
@@ -84,16 +88,16 @@ def _advance(half: Half, predicts: bool, change: Change) -> float:
     return float(take_step(len(half.p), half.step, half.p, half.scale))
 
 
-def joined(halves: tuple[Half, Half], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:
+def joined(substructures: tuple[Substructure, Substructure], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:
     """Return state (n,), residual (n,) and the smallest r0' x d of the chain."""
-    smallest = min(_both(pool, _balanced, halves))
-    state, residual = np.zeros((2, halves[1].place.stop))
-    for half in halves:
+    smallest = min(_both(pool, _balanced, substructures))
+    state, residual = np.zeros((2, substructures[1].place.stop))
+    for half in substructures:
         state[half.place] = half.p
         residual[half.place] += half.residual
     return state, residual, smallest
 
 
-def _balanced(half: Half) -> float:
+def _balanced(half: Substructure) -> float:
     half.balance(False, _NOTHING)
     return half.equations.smallest_jacobian(half.p)

@@ -17,7 +17,7 @@ from beamfem.solve.motion.band_motion import Saving
 _MOST, _MANY, _SLOW = 24, 16, 0.5
 
 
-class EntangledMotion:
+class SparseMotion:
     """Marches through time steps; keeps the factors of its tangent from one call to the next.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
@@ -42,7 +42,7 @@ class EntangledMotion:
         `BandMotion.advance`.
         """
         saved, first, every, counted, turned, saved_turns = saving
-        dofs, statistics = self.system.held_dofs, self.statistics
+        dofs, statistics = self.system.prescribed_dofs, self.statistics
         for step, time in enumerate(times):
             before = state.copy()
             if not self._solve(state, before, held[step], float(time)):
@@ -75,7 +75,7 @@ class EntangledMotion:
         size, first_size, done, iteration = 0.0, 0.0, False, 0
         state[:] = before
         order = 0.0 if full else statistics[6]
-        dofs = self.system.held_dofs
+        dofs = self.system.prescribed_dofs
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
         while iteration < most and not done:
             try:
@@ -105,7 +105,7 @@ class EntangledMotion:
         if renew or self._factors is None:
             self._factors = None  # room for the new ones
             unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients)
-            self._factors = tangent.factorised(self.system.turned)
+            self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1
         else:
             unbalanced = residual(self.system, p, v, a, time)

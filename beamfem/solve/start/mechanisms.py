@@ -4,7 +4,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import FreeMotionError
-from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, free_motions
+from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
 
 _PROVEN = "supported"
 
@@ -16,7 +16,7 @@ def require_support(system: System) -> None:
     model = system.model
     body = bodies_of(model)
     rows = Conditions(system, body, system.reference)
-    free = free_motions(rows)
+    free = mechanisms(rows)
     if not len(free):
         system.proven.add(_PROVEN)
         return

@@ -9,10 +9,10 @@ import beamfem as bf
 from beamfem.assembly.system import system_of
 from beamfem.solve.newton import cut_chain, newton
 from beamfem.solve.newton.banded import BandProblem
-from beamfem.solve.newton.iteration import Ended, Newton
+from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
 from beamfem.solve.newton.pivoted import PivotedProblem
-from beamfem.solve.newton.prescribed import Prescribed
+from beamfem.solve.newton.prescribed_step import PrescribedStep
 from beamfem.solve.newton.substructured import SubstructuredProblem
 
 SECTION, MATERIAL = bf.Rectangle(0.05, 0.05), bf.Material(1e9, 0.3, 1000.0)
@@ -67,7 +67,7 @@ def both(model, settings=None):
     """What one thread finds, and two."""
     system = system_of(model, static=True)
     used = settings or Newton()
-    given = system, system.reference, 1.0, used, Prescribed(system, system.reference, 1.0)
+    given = system, system.reference, 1.0, used, PrescribedStep(system, system.reference, 1.0)
     with ThreadPoolExecutor(1) as pool:
         return iterate(BandProblem(*given, None), used), iterate(SubstructuredProblem(*given, pool), used)
 
@@ -98,7 +98,7 @@ def test_the_cut_is_in_the_middle():
     """With a support there nothing is left to solve between the halves, else what the node has unknown."""
     for case, shared in ((cantilever, 3), (moved, 2), (clamped_where_cut, 0)):
         system = system_of(case(beam_of(bf.CRBF(2), 10)), static=True)
-        first, second = cut_chain.halves_of(system, system.reference, 1.0)
+        first, second = cut_chain.substructures_of(system, system.reference, 1.0)
         assert [len(half.free) - half.inner for half in (first, second)] == [shared, shared]
         assert abs(first.inner - second.inner) <= 3
         assert len(first.p) + len(second.p) == len(system.reference) + 3
@@ -109,7 +109,7 @@ def test_a_corner_in_the_middle_is_not_cut():
     bent = bf.Polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])
     assert_alike(cantilever(beam_of(bf.CRBF(2), 8, bent)))
     system = system_of(cantilever(beam_of(bf.ANCF(), 8, bent)), static=True)
-    first, second = cut_chain.halves_of(system, system.reference, 1.0)
+    first, second = cut_chain.substructures_of(system, system.reference, 1.0)
     assert len(first.p) + len(second.p) == len(system.reference) + 6
 
 
@@ -126,22 +126,22 @@ def test_negative_pivots_count_the_buckling_loads_below(load, negative):
 def test_iterations_that_run_out_or_lead_nowhere_end_alike():
     beam = beam_of(bf.CRBF(2))
     one, _ = assert_alike(cantilever(beam), Newton(iterations=3))
-    assert one.ended is Ended.EXHAUSTED
+    assert one.ended is Termination.EXHAUSTED
     assert_alike(cantilever(beam), Newton(independent_stresses=False))
     far = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 1e9 * EI))])
     one, _ = assert_alike(far)
-    assert one.ended is Ended.DIVERGED
+    assert one.ended is Termination.DIVERGED
 
 
 def test_the_first_step_follows_what_is_held_beside_the_cut():
     one, _ = assert_alike(moved(beam_of(bf.CRBF(2), 2)), Newton(iterations=1))
-    assert one.ended is Ended.EXHAUSTED
+    assert one.ended is Termination.EXHAUSTED
 
 
 def test_a_singular_tangent_is_left_to_pivots():
     beam = beam_of(bf.CRBF(2))
     loose = bf.Model([beam], [bf.Roller(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (1.0, 0.0))])
-    assert [result.ended for result in both(loose)] == 2 * [Ended.SINGULAR]
+    assert [result.ended for result in both(loose)] == 2 * [Termination.SINGULAR]
 
 
 def test_only_long_single_chains_are_cut(monkeypatch):
@@ -188,7 +188,7 @@ def test_pivots_cost_no_iteration(monkeypatch):
     for lift in (0.0, 0.1):
         model = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, uy=lift)], [force])
         system, settings = system_of(model, static=True), bf.Newton()
-        given = system, system.reference, 1.0, settings, Prescribed(system, system.reference, 1.0)
+        given = system, system.reference, 1.0, settings, PrescribedStep(system, system.reference, 1.0)
         compiled, general = (
             iterate(problem, settings, 0) for problem in (BandProblem(*given, 0), PivotedProblem(*given))
         )

@@ -8,13 +8,13 @@ from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
 
 
-class Prescribed:
+class PrescribedStep:
     """The step (n,) from a state (n,) that brings the prescribed coordinates to their values at a load factor."""
 
     def __init__(self, system: System, start: np.ndarray, load_factor: float) -> None:
         self.system, self.start, self.load_factor = system, start, load_factor
         self.step = np.zeros(len(start))
-        self.step[system.held_dofs] = system.held_values(load_factor) - start[system.held_dofs]
+        self.step[system.prescribed_dofs] = system.prescribed_values(load_factor) - start[system.prescribed_dofs]
         self.moves = bool(self.step.any())
 
     @cached_property
@@ -22,8 +22,8 @@ class Prescribed:
         """Change of the residual (n,) with the step, by a central difference."""
         if not self.moves:
             return np.zeros(len(self.start))
-        rest = np.zeros(len(self.start))
+        zeros = np.zeros(len(self.start))
         size = 1e-6 / max(float(np.max(np.abs(self.step))), 1e-300)
-        ahead = residual(self.system, self.start + size * self.step, rest, rest, self.load_factor)
-        behind = residual(self.system, self.start - size * self.step, rest, rest, self.load_factor)
+        ahead = residual(self.system, self.start + size * self.step, zeros, zeros, self.load_factor)
+        behind = residual(self.system, self.start - size * self.step, zeros, zeros, self.load_factor)
         return np.asarray((ahead - behind) / (2.0 * size))

@@ -46,6 +46,7 @@ from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMomen
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise
+from beamfem.results.on_basis import FieldOnBasis, field_on_basis
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.postprocess import Fields, SectionForces
 from beamfem.results.solution import Solution, State
@@ -83,6 +84,7 @@ __all__ = [
     "DistributedLoad",
     "ElasticLine",
     "Element",
+    "FieldOnBasis",
     "Fields",
     "FileError",
     "Foundation",
@@ -139,6 +141,7 @@ __all__ = [
     "UnstableWarning",
     "converge",
     "elliptic_arc",
+    "field_on_basis",
     "graded",
     "load",
     "read_dxf",

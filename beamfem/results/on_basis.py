@@ -1,0 +1,60 @@
+"""The field of a beam as scikit-fem has it: a basis for forms of one's own, and the states on it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from skfem import Basis
+from skfem.element import DiscreteField
+
+from beamfem.errors import InputError
+from beamfem.forms import axis_basis, beam_basis
+from beamfem.model.beam import Beam
+from beamfem.results.postprocess import nodal_vectors
+from beamfem.results.solution import Solution
+from beamfem.validation import flag
+
+_ALIKE = 1e-9  # of an element: how far the lengths of the mesh may be from arc lengths
+
+
+@dataclass(frozen=True, eq=False)
+class FieldOnBasis:
+    """The body r(s, y) = r0(s) + y d(s) [m] of a beam in all states.
+
+    basis: of scikit-fem, over the arc length s [m] and y [m]; values (steps, basis.N): the field in each state.
+    """
+
+    basis: Basis
+    values: np.ndarray
+
+    def interpolate(self, row: int = -1) -> DiscreteField:
+        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for forms."""
+        return self.basis.interpolate(self.values[row])
+
+
+def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOnBasis:
+    """Return the field of a beam in all states of a solution on a basis of scikit-fem.
+
+    body: quadrature over the length and the section, weights times width, for integrals over the volume [m^3]; False:
+    over the axis alone, for integrals over the length [m]. Paper, eqs. (2) to (4). Raises InputError for a beam with
+    corners or with knot spans as elements.
+    """
+    body = flag("body of field_on_basis", body)
+    mesh, p = solution.model.meshes[solution.model.number_of(beam)], solution.p
+    if len(mesh.beam.curve.corners):
+        raise InputError(
+            f"{mesh.beam!r} has corners, where its field has two directions and a basis has one: take a beam for each "
+            "smooth piece and join them"
+        )
+    arc_lengths = np.diff(mesh.vertices)
+    if np.abs(mesh.lengths - arc_lengths).max() > _ALIKE * arc_lengths.max():
+        raise InputError(
+            f"the elements of {mesh.beam!r} are the knot spans of a spline, and a basis takes arc lengths: give "
+            "elements a number"
+        )
+    basis = beam_basis(mesh) if body else axis_basis(mesh)
+    vectors, element = nodal_vectors(mesh, p), basis.elem
+    values = np.empty((len(p), basis.N))
+    for i, numbers in enumerate(basis.element_dofs):
+        node, vector, axis = element.place(i)
+        values[:, numbers] = vectors[:, mesh.node[:, node], vector, axis]
+    return FieldOnBasis(basis, values)

@@ -79,8 +79,14 @@ def test_motion_does_not_know_where_and_how_a_model_is_drawn(recipe, view):
     ends = []
     for how in (View(), view):
         built = recipe.build(how)
-        ends.append((built, bf.simulate(built.model, 0.02, 1e-3)))
-    assert apart(recipe, *ends) < SAME
+        try:
+            ends.append((built, bf.simulate(built.model, 0.02, 1e-3)))
+        except bf.ConvergenceError as error:
+            ends.append(len(error.solution))
+    if isinstance(ends[0], int) or isinstance(ends[1], int):
+        assert ends[0] == ends[1]
+    else:
+        assert apart(recipe, *ends) < SAME
 
 
 def asymmetry(solution):

@@ -74,7 +74,8 @@ def march(system, solver, calls):
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
-    and Wanner 1996, IV.8).
+    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, from the acceleration of before and then
+    from the positions of before.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
@@ -143,13 +144,20 @@ def march(system, solver, calls):
             if iteration == 1:
                 first_size = max(size, statistics[7])
             done = _judge(call[r.JUDGE], iteration, full, size, last, first_size, limits[0], rate)
-            if done != 0 or (full != 0 and not math.isfinite(size)):
+            if done != 0:
                 break
-            if full == 0 and not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5)):
+            if full == 0:
+                fails = not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5))
+            else:
+                fails = not (iteration < limits[1] and math.isfinite(size))
+            if fails and full == 2:
+                break
+            if fails:
                 for i in range(4 * n):
                     state[i] = before[i]
-                _predict(call[r.PREDICT], n, held, 0.0, state, before, differences, prescribed_dofs, prescribed, rule)
-                full, iteration = 1, 0
+                order = -1.0 * full
+                _predict(call[r.PREDICT], n, held, order, state, before, differences, prescribed_dofs, prescribed, rule)
+                full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
         if done == 0:

@@ -20,17 +20,21 @@ _NEGLECTED = 1e-8
 def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
     """Store the state (4, n) in `before` and start a step from it, prescribed coordinates at `values` (3, prescribed).
 
-    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on.
-    differences (3, n): its backward differences. rule: step, alpha_m, alpha_f, gamma, beta.
+    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on;
+    order -1 keeps p instead, which strains nothing where stiff parts ring within a step. differences (3, n): its
+    backward differences. rule: step, alpha_m, alpha_f, gamma, beta.
     """
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
-    first, second, third = min(order, 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
+    first, second, third = min(max(order, 0.0), 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
     for i in range(4 * n):
         before[i] = state[i]
     for i in range(n):
         p, v, a, mean_a = before[i], before[n + i], before[2 * n + i], before[3 * n + i]
         ahead = first * differences[i] + second * differences[n + i] + third * differences[2 * n + i]
+        if order < 0.0:
+            stays = -(v / h + (0.5 - beta) * mean_a) / beta
+            ahead = (stays - kept * a + mean * mean_a) / fraction
         new = kept * a - mean * mean_a + fraction * ahead
         state[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
         state[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)

@@ -58,23 +58,38 @@ class SparseMotion:
         return len(times)
 
     def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:
-        """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate."""
+        """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate.
+
+        These start from the acceleration of before, and then from the positions of before.
+        """
+        order = float(self.statistics[6])
         kept = self.statistics[4] >= 0.0 and self._factors is not None
-        if kept and self._iterate(state, before, held, time, full=False, fresh=False):
+        if kept and self._iterate(state, before, held, time, order, full=False, fresh=False):
             return True
-        solved = self._iterate(state, before, held, time, full=False, fresh=True)
-        return solved or self._iterate(state, before, held, time, full=True, fresh=True)
+        solved = self._iterate(state, before, held, time, order, full=False, fresh=True)
+        return solved or any(
+            self._iterate(state, before, held, time, low, full=True, fresh=True) for low in (0.0, -1.0)
+        )
 
     def _iterate(
-        self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float, full: bool, fresh: bool
+        self,
+        state: np.ndarray,
+        before: np.ndarray,
+        held: np.ndarray,
+        time: float,
+        order: float,
+        full: bool,
+        fresh: bool,
     ) -> bool:
-        """Iterate, full: each with its own tangent; tell whether the error is small enough."""
+        """Iterate, full: each with its own tangent; tell whether the error is small enough.
+
+        order: of the extrapolation of the acceleration, see `motion_steps.predict`.
+        """
         statistics, most = self.statistics, self.iterations if full else min(_MOST, self.iterations)
         free = self.system.free_dofs
         rate = 1.0 if fresh else max(statistics[4], 1e-4) ** 0.8
         size, first_size, done, iteration = 0.0, 0.0, False, 0
         state[:] = before
-        order = 0.0 if full else statistics[6]
         dofs = self.system.prescribed_dofs
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
         while iteration < most and not done:

@@ -43,22 +43,41 @@ def linearise(
     stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); blocks: to take instead of
     those of the system.
     """
-    unknowns = system.unknowns
-    unknown, pattern = len(unknowns.dofs), unknowns.pattern
-    width = 2 * system.layouts[0].half_width + 1
-    matrix = np.empty(unknown * width if pattern is None else len(pattern.data))
-    result, assembler = np.empty(len(p)), system.assembler(stresses, blocks)
+    matrix, result = _entries(system), np.empty(len(p))
+    assembler = system.assembler(stresses, blocks)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
-    tangent: Tangent
-    if pattern is None:
-        tangent = BandTangent(matrix.reshape(unknown, width))
-    else:
-        tangent = SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    tangent = _tangent(system, matrix)
     if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
+
+
+def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float) -> Tangent:
+    """Return the static tangent in p (n,) with the stress resultants that a linear step (n,) from there leads to."""
+    zeros = np.zeros(len(p))
+    if MIXED in system.proven:
+        return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step))[1]
+    matrix, assembler = _entries(system), system.assembler()
+    assembler.load(system.body(time), system.point_values(time))
+    assembler.weigh(STATICS)
+    assembler.predict(p, step)
+    assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
+    return _tangent(system, matrix)
+
+
+def _entries(system: System) -> np.ndarray:
+    """Return room for the entries of a tangent."""
+    unknown, pattern = len(system.unknowns.dofs), system.unknowns.pattern
+    return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
+
+
+def _tangent(system: System, matrix: np.ndarray) -> Tangent:
+    pattern = system.unknowns.pattern
+    if pattern is None:
+        return BandTangent(matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1))
+    return SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
 
 
 def with_stresses(

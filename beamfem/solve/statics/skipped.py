@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
+from beamfem.assembly.equations import STATICS, linearise, linearise_after, predicted_stresses
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.statics.static_record import StaticRecord
@@ -37,8 +37,8 @@ def _critical(system: System, done: StaticRecord, target: float, linear: np.ndar
     """
     done.iterations += 1
     try:
-        stresses = predicted_stresses(system, done.state, linear - done.state)
-        return _other_count(system, done, done.state, target, stresses)
+        tangent = linearise_after(system, done.state, linear - done.state, target)
+        return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots
     except LinAlgError:
         return True
 
@@ -52,16 +52,9 @@ def _differs_half_way(system: System, done: StaticRecord, target: float, end: np
     zeros = np.zeros(len(end))
     ends = (predicted_stresses(system, p, zeros) for p in (done.state, end))
     mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
+    middle = 0.5 * (done.state + end)
+    _, tangent = linearise(system, middle, zeros, zeros, 0.5 * (done.reached + target), STATICS, mean)
     try:
-        return _other_count(system, done, 0.5 * (done.state + end), 0.5 * (done.reached + target), mean)
+        return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots
     except LinAlgError:
         return True
-
-
-def _other_count(
-    system: System, done: StaticRecord, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]
-) -> bool:
-    """Tell whether the tangent in a state (n,) with these resultants has another count. Raises LinAlgError."""
-    zeros = np.zeros(len(p))
-    _, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)
-    return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots

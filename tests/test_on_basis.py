@@ -75,3 +75,11 @@ def test_beams_without_one_basis_are_refused(curve, elements, said):
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], []))
     with pytest.raises(bf.InputError, match=said):
         bf.field_on_basis(solution, beam)
+
+
+def test_what_is_no_solution_or_no_row_is_named():
+    beam, solution = bent(bf.CRBF(2))
+    with pytest.raises(bf.InputError, match="takes a solution, such as that of solve_static, got None"):
+        bf.field_on_basis(None, beam)
+    with pytest.raises(bf.InputError, match="row of interpolate"):
+        bf.field_on_basis(solution, beam).interpolate(9)

@@ -11,7 +11,7 @@ from beamfem.forms import axis_basis, beam_basis
 from beamfem.model.beam import Beam
 from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution
-from beamfem.validation import flag
+from beamfem.validation import flag, number_below, shown
 
 _ALIKE = 1e-9  # of an element: how far the lengths of the mesh may be from arc lengths
 
@@ -27,7 +27,11 @@ class FieldOnBasis:
     values: np.ndarray
 
     def interpolate(self, row: int = -1) -> DiscreteField:
-        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for forms."""
+        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for forms.
+
+        Raises InputError for a row that there is not.
+        """
+        row = number_below("row of interpolate", row, len(self.values), -len(self.values))
         return self.basis.interpolate(self.values[row])
 
 
@@ -38,6 +42,8 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOn
     over the axis alone, for integrals over the length [m]. Paper, eqs. (2) to (4). Raises InputError for a beam with
     corners or with knot spans as elements.
     """
+    if not isinstance(solution, Solution):
+        raise InputError(f"field_on_basis takes a solution, such as that of solve_static, got {shown(solution)}")
     body = flag("body of field_on_basis", body)
     mesh, p = solution.model.meshes[solution.model.number_of(beam)], solution.p
     if len(mesh.beam.curve.corners):

@@ -136,8 +136,8 @@ def load_size(system: System, values: Sequence[np.ndarray]) -> float:
     largest = 0.0
     for own in values:
         if own.size:
-            size = np.abs(own)
-            largest = max(largest, system.extent * float(size[..., :2].max()), float(size[..., 2].max()))
+            x, y, moment = np.abs(own.reshape(-1, 3)).max(axis=0).tolist()
+            largest = max(largest, system.extent * max(x, y), moment)
     return largest
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -43,12 +44,13 @@ _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATIO
 class System:
     """Everything a solver needs of a model; `system_of` makes it once.
 
-    proven: names of what has been checked of it, once and for all.
+    proven: names of what has been checked of it, once and for all; spare: work space of solves that have ended.
     """
 
     model: Model
     static: bool
     proven: set[str] = field(default_factory=set)
+    spare: list[Any] = field(default_factory=list)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Travel to other processes as a model only."""

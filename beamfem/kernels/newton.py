@@ -113,3 +113,27 @@ def iterate(system, solver, calls):
     for group in range(s[r.GROUPS]):
         found[5] = min(found[5], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return 1
+
+
+@routine("iii", types.int64)
+def count_after_step(system, solver, calls):
+    """Return the negative pivots of the tangent in p (n,) with the resultants that the linear `STEP` (n,) leads to.
+
+    -1 where a pivot is tiny.
+    """
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    unknown, half, rollers = b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
+    rows, right, limits = reals(b[r.ROWS]), reals(b[r.RIGHT]), reals(b[r.LIMITS])
+    groups = wholes(s[r.GROUP_RECORDS])
+    for group in range(s[r.GROUPS]):
+        _two(call[r.PREDICT_RESULTANTS], groups[group], system)
+    s[r.TANGENT] = s[r.PREDICTED] = 1
+    _balance(call[r.BALANCE], system)
+    if rollers > 0:
+        _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL]))
+    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, reals(b[r.STEP])) > limits[3]:
+        return -1
+    negative = 0
+    for i in range(unknown):
+        negative += rows[i * (2 * half + 1) + half] < 0.0
+    return negative

@@ -198,7 +198,7 @@ class _InPlane:
     ) -> None:
         self.line, self.system, self.start = line, line.system, start
         self.stresses, self.normal, self.farthest = stresses, normal, farthest
-        self.state = self.linear = line.hold(start)
+        self.state = line.hold(start)
         self.counts = np.iinfo(int).max, 0
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
@@ -217,7 +217,7 @@ class _InPlane:
         before, self.size = self.size, float(np.max(np.abs(self.state - y) / line.scale))
         self.number += 1
         if self.number == 1:
-            self.first, self.linear = self.size, self.state
+            self.first = self.size
         elif self.number == 2:
             self.second = negative
         away = line.length(self.state - self.start) > self.farthest
@@ -231,9 +231,9 @@ class _InPlane:
         """Return the size of the first correction and the negative pivots of the second tangent."""
         return self.first, self.second
 
-    def linear_state(self) -> np.ndarray:
-        """Return the state (n + 1,) after the first correction."""
-        return self.linear
+    def count_after_linear(self) -> int:
+        """Return the negative pivots of the second tangent: no load step leads here."""
+        return self.second
 
 
 def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:

@@ -3,12 +3,10 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.arena import Arena
-from beamfem.assembly.equations import STATICS
+from beamfem.assembly.band_space import band_space
 from beamfem.assembly.round_off import load_size
 from beamfem.assembly.system import System
-from beamfem.kernels import record
-from beamfem.kernels.newton import iterate
+from beamfem.kernels.newton import count_after_step, iterate
 from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.newton.convergence import LARGEST, STAGNANT, Balance, Correction
 from beamfem.solve.newton.iteration import Newton
@@ -29,62 +27,49 @@ class BandProblem:
         step: PrescribedStep,
         keep: int | None,
     ) -> None:
-        self.system, self.start = system, start
-        n, unknown, half = len(start), len(system.free_dofs), system.layouts[0].half_width
-        values = system.point_values(load_factor)
+        self.system, self.start, self.space = system, start, band_space(system)
+        values, space = system.point_values(load_factor), self.space
         self.load = load_size(system, values)
-        self.assembler = system.assembler()
-        self.assembler.load(system.body(load_factor), values)
-        self.assembler.weigh(STATICS)
-        self.assembler.require("tangent", "prediction")
-        room = Arena(
-            {
-                "p": (n,),
-                "residual": (n,),
-                record.STEP: (n,),
-                record.PRESCRIBED_STEP: (n,),
-                record.PRESCRIBED_FORCE: (n,),
-                record.RIGHT: (unknown,),
-                record.ROWS: (unknown, 2 * half + 1),
-                record.LIMITS: (7,),
-                record.FOUND: (9,),
-                record.LINEAR: (n,),
-            }
+        space.assembler.load(system.body(load_factor), values)
+        space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
+        space.found[1:3] = np.inf
+        space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force
+        keeps = -1 if keep is None else keep
+        space.limits[:] = (
+            *(newton.tolerance, STAGNANT, LARGEST, SMALLEST_PIVOT),
+            *(newton.iterations, newton.independent_stresses, keeps),
         )
-        self.p, self.residual, first, *self.prescribed, _, rows, limits, self.found, self.linear = room.arrays.values()
-        place = room.addresses
-        states = place.pop("p"), place[record.STEP], place[record.STEP]
-        self.assembler.place_at(states, place.pop("residual"), place[record.ROWS], rows.size)
-        self.table, self.routines = system.solver_table.filled(place), system.solver_table.routines(moving=False)
-        self.p[:], first[:] = start, 0.0
-        self.prescribed[0][:], self.prescribed[1][:] = step.step, step.force
-        self.found[:] = 0.0
-        self.found[1:3] = np.inf
-        limits[:4] = newton.tolerance, STAGNANT, LARGEST, SMALLEST_PIVOT
-        limits[4:] = newton.iterations, newton.independent_stresses, -1 if keep is None else keep
-        self._room = room
 
     def correct(self) -> Correction:
         """Take corrections up to one that is small or stagnant. Raises LinAlgError where pivots are needed."""
-        if not iterate(self.assembler.address, self.table, self.routines):
+        space, found = self.space, self.space.found
+        if not iterate(*space.addresses):
             raise LinAlgError("a pivot is tiny")
-        self.prescribed[0][:] = self.prescribed[1][:] = 0.0
-        return Correction(int(self.found[0]), self.found[1], self.found[2], int(self.found[6]))
+        space.prescribed_step[:] = space.prescribed_force[:] = 0.0
+        return Correction(int(found[0]), found[1], found[2], int(found[6]))
 
     @property
     def state(self) -> np.ndarray:
         """The state (n,) reached."""
-        return self.p.copy()
+        return self.space.p.copy()
 
     def balance(self) -> Balance:
         """Return what is left of the balance in the state reached."""
-        force = max(self.found[4], self.load)
-        return Balance(self.p, self.residual, self.found[3], force, self.found[5] <= 0.0)
+        space, found = self.space, self.space.found
+        force = max(found[4], self.load)
+        return Balance(space.p, space.residual, found[3], force, found[5] <= 0.0)
 
     def after_first(self) -> tuple[float, int]:
         """Return the size of the first correction and the negative pivots of the second tangent."""
-        return float(self.found[7]), int(self.found[8])
+        return float(self.space.found[7]), int(self.space.found[8])
 
-    def linear_state(self) -> np.ndarray:
-        """Return the state (n,) after the first correction."""
-        return self.linear.copy()
+    def count_after_linear(self) -> int:
+        """Return the negative pivots at the start with the stresses of a linear step; what was reached is lost."""
+        space = self.space
+        space.step[:] = space.linear - self.start
+        space.p[:] = self.start
+        return int(count_after_step(*space.addresses))
+
+    def give_back(self) -> None:
+        """Let the next solve have the space."""
+        self.space.give_back(self.system)

@@ -31,8 +31,9 @@ class NewtonResult:
     """The last state (n,) of an iteration, how many iterations it took and why it ended.
 
     negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
-    digits: how many of the forces are sure at least; first: size of the first correction [-]; linear: the state
-    (n,) after it where the tangent there, with the stresses of this linear step, has another count than asked for.
+    digits: how many of the forces are sure at least; first: size of the first correction [-]; linear: the
+    negative pivots of the tangent at the start with the stresses of a linear step, -1 where it is singular, if the
+    second tangent had another count than asked for.
     """
 
     state: np.ndarray
@@ -41,7 +42,7 @@ class NewtonResult:
     negative_pivots: int = 0
     digits: float = np.nan
     first: float = np.nan
-    linear: np.ndarray | None = None
+    linear: int | None = None
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,11 @@ class Problem(Protocol):
         """Return the size of the first correction and the negative pivots of the second tangent."""
         ...
 
-    def linear_state(self) -> np.ndarray:
-        """Return the state (n,) after the first correction, where the second tangent has another count."""
+    def count_after_linear(self) -> int:
+        """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
+
+        -1 where it is singular. It may be asked where the second tangent has another count, and once.
+        """
         ...
 
 
@@ -64,8 +67,8 @@ def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> Newton
                 return NewtonResult(problem.start, number, Termination.LOST, negative)
             if ended is not None:
                 first, second = problem.after_first()
-                linear = problem.linear_state() if number > 1 and keep not in (None, second) else None
                 state = problem.state if ended.good else problem.start
+                linear = problem.count_after_linear() if number > 1 and keep not in (None, second) else None
                 digits = balance.digits if problem.counts_digits else np.nan
                 return NewtonResult(state, number, ended, negative, digits, first, linear)
     return NewtonResult(problem.state, number, Termination.EXHAUSTED)

@@ -58,7 +58,9 @@ def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton
             with ThreadPoolExecutor(1) as pool:
                 result = iterate(SubstructuredProblem(system, start, load_factor, newton, step, pool), newton, keep)
         else:
-            result = iterate(BandProblem(system, start, load_factor, newton, step, keep), newton, keep)
+            problem = BandProblem(system, start, load_factor, newton, step, keep)
+            result = iterate(problem, newton, keep)
+            problem.give_back()
     if result is None or result.ended is Termination.SINGULAR:
         result = iterate(PivotedProblem(system, start, load_factor, newton, step), newton, keep)
     return result

@@ -7,6 +7,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.tangent import Factorised, Stresses
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.linear_step import count_after
 from beamfem.solve.newton.prescribed_step import PrescribedStep
 
 
@@ -52,6 +53,6 @@ class PivotedProblem:
         """Return the size of the first correction and the negative pivots of the second tangent."""
         return self.first, self.second
 
-    def linear_state(self) -> np.ndarray:
-        """Return the state (n,) after the first correction."""
-        return self.linear
+    def count_after_linear(self) -> int:
+        """Return the negative pivots at the start with the stresses of a linear step, -1 if singular."""
+        return count_after(self.system, self.start, self.linear - self.start, self.load_factor)

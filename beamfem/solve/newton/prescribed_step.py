@@ -14,8 +14,10 @@ class PrescribedStep:
     def __init__(self, system: System, start: np.ndarray, load_factor: float) -> None:
         self.system, self.start, self.load_factor = system, start, load_factor
         self.step = np.zeros(len(start))
-        self.step[system.prescribed_dofs] = system.prescribed_values(load_factor) - start[system.prescribed_dofs]
-        self.moves = bool(self.step.any())
+        change = system.prescribed_values(load_factor) - start[system.prescribed_dofs]
+        self.moves = bool(change.any())
+        if self.moves:
+            self.step[system.prescribed_dofs] = change
 
     @cached_property
     def force(self) -> np.ndarray:

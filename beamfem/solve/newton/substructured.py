@@ -9,6 +9,7 @@ from beamfem.assembly.system import System
 from beamfem.solve.newton.convergence import Balance, Correction, balance_with
 from beamfem.solve.newton.cut_chain import substructures_of
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.linear_step import count_after
 from beamfem.solve.newton.prescribed_step import PrescribedStep
 from beamfem.solve.newton.substructures import correct, joined, negative_pivots
 
@@ -61,10 +62,10 @@ class SubstructuredProblem:
         """Return the size of the first correction and the negative pivots of the second tangent."""
         return self.first, self.second
 
-    def linear_state(self) -> np.ndarray:
-        """Return the state (n,) after the first correction, which is taken anew: the halves have moved on."""
+    def count_after_linear(self) -> int:
+        """Return the negative pivots at the start with the stresses of a linear step, taken anew: -1 if singular."""
         zeros = np.zeros(len(self.start))
         unbalanced, tangent = linearise(self.system, self.start, zeros, zeros, self.load_factor, STATICS)
         step, free = self.step.step.copy(), self.system.free_dofs
         step[free] = tangent.solve(-(unbalanced + self.step.force)[free], self.system.rotated)
-        return self.start + step
+        return count_after(self.system, self.start, step, self.load_factor)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import STATICS, linearise, linearise_after, predicted_stresses
+from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.statics.static_record import StaticRecord
@@ -19,7 +19,7 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
     looked at where the iteration was slow, the state half-way has another count of negative pivots.
     """
-    if result.linear is not None and _critical(system, done, target, result.linear):
+    if result.linear not in (None, done.negative_pivots):
         return True
     if done.reached > 0.0:
         moved = float(np.max(np.abs(result.state - done.state) / system.scale))
@@ -28,19 +28,6 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
         return False
     return _differs_half_way(system, done, target, result.state)
-
-
-def _critical(system: System, done: StaticRecord, target: float, linear: np.ndarray) -> bool:
-    """Tell whether the tangent at the start has another count with the stress resultants of a linear step.
-
-    linear: the state (n,) after this step, in whose shape, which may be absurd, the tangent has another count anyway.
-    """
-    done.iterations += 1
-    try:
-        tangent = linearise_after(system, done.state, linear - done.state, target)
-        return tangent.factorised(system.rotated).negative_pivots != done.negative_pivots
-    except LinAlgError:
-        return True
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:

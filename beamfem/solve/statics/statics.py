@@ -15,6 +15,8 @@ from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord
 from beamfem.validation import count, one_of
 
+_NEWTON = Newton()
+
 
 def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error") -> Solution:
     """Return the equilibria from load factor 0 to 1 along the path that starts at 0.
@@ -40,7 +42,7 @@ def solve_through(
     system = system_of(model, static=True)
     tell_of_compilation()
     require_support(system)
-    newton = require_newton(newton, Newton())
+    newton = require_newton(newton, _NEWTON)
     done = StaticRecord(model, system.symmetric)
     first = first_equilibrium(system, newton)
     done.iterations += first.iterations

@@ -1,10 +1,15 @@
 """Static solves that meet a limit point: they name it, or jump to where the structure comes to rest."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.assembly.system import System
+from beamfem.assembly.system import System, system_of
+from beamfem.solve.continuation.continuation import begin
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
+from beamfem.solve.continuation.steps import take_step
 from beamfem.solve.newton.iteration import NewtonResult, Termination
 from beamfem.solve.statics import snap
 
@@ -210,3 +215,33 @@ def test_the_limit_point_of_a_deep_arch_is_found_from_any_load(load):
     with pytest.raises(bf.LimitPointError) as caught:
         bf.solve_static(model)
     assert caught.value.load_factor == pytest.approx(traced.limit_points[0].load_factor, rel=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:1 of:beamfem.UnstableWarning")  # a row within 1e-9 of the point where paths meet
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("steps", [1, 2, 5, 10, 50])
+def test_a_buckled_column_straightens_when_it_is_unloaded(steps, side):
+    """The load factor has its largest value on the buckled branch where the straight column takes over."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 16, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    euler = np.pi**2 * 2e11 * 1e-8 / 12 / 4
+    push = bf.PointForce(beam.end, (-1.3 * euler, 0.0), amplitude=lambda factor: 1.0 - factor)
+    aside = bf.PointForce(beam.end, (0.0, 0.2 * side * euler), amplitude=lambda factor: max(0.0, 0.5 - 10.0 * factor))
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [push, aside]), steps=steps)
+    lateral = side * solution.displacement(beam.end)[:, 1]
+    straight = solution.at > 1.0 - 1.0 / 1.3 + 1e-4
+    assert lateral[solution.at < 0.2].min() > 0.1
+    assert straight.any()
+    assert np.abs(lateral[straight]).max() < 1e-9
+    assert solution.stability[straight].all()
+
+
+def test_a_load_factor_that_goes_against_both_tangents_is_no_path():
+    """Seed 2981 of the random models: round-off of a stiff frame on soft springs led the path backwards."""
+    _, model = toggle(1.0)
+    system = system_of(model, static=True)
+    line, start = begin(system, system.reference, 0.0, bf.Newton())
+    end = take_step(line, start, 1e-3).segment.after
+    assert not Segment(line, start, end).limit_points()
+    lower = replace(end, y=np.append(end.y[:-1], start.y[-1] - 0.1 * (end.y[-1] - start.y[-1])))
+    with pytest.raises(SegmentLostError, match="another way than the tangents"):
+        Segment(line, start, lower).limit_points()

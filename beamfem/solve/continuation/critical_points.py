@@ -117,6 +117,9 @@ class Segment:
                 (self.turned if crossed else found).append(x)
             elif right == 0.0 != left:
                 found.append(end)
+        rise = self.chord[-1]
+        if not found and not self.turned and rise * self.slopes[0][-1] < 0.0 and rise * self.slopes[1][-1] < 0.0:
+            raise SegmentLostError("the load factor goes another way than the tangents at both ends")
         return found
 
     @cached_property

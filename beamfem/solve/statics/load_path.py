@@ -40,6 +40,10 @@ class PathLostError(BeamfemError):
         self.cuts = cuts
 
 
+class OutOfReachError(PathLostError):
+    """The path can be followed, but not to load factor 1 in any reasonable number of steps."""
+
+
 class TurnsBackError(BeamfemError):
     """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path behind it."""
 
@@ -71,7 +75,7 @@ class PathFollower:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
         end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
-        along the path is accepted, or where load factor 1 is out of reach at the pace of the last steps.
+        along the path is accepted, OutOfReachError where load factor 1 is too far at the pace of the last steps.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -85,8 +89,9 @@ class PathFollower:
             self.passed.extend((cuts + 1) * [point.load_factor])
             self.size = step.next_size
             point = step.segment.after
-            if step.limits:
-                limit = step.segment.critical(step.limits[0])
+            extrema = sorted([*step.limits, *step.segment.turned])
+            if extrema:
+                limit = step.segment.critical(extrema[0])
                 if np.array_equal(limit, point.y):
                     point = _step(line, point, self.size)[0].segment.after
                 raise TurnsBackError(limit, point.y, iterations, cuts)
@@ -100,7 +105,7 @@ class PathFollower:
             half = _PACE // 2
             before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
             if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
-                raise PathLostError(
+                raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
                     "out of reach: the loads are far too large for what bears them",
                     0,

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from typing import Literal
 
+import numpy as np
+
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.progress import progress
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
-from beamfem.solve.statics.load_path import PathFollower, PathLostError, TurnsBackError
+from beamfem.solve.statics.load_path import OutOfReachError, PathFollower, PathLostError, TurnsBackError
 from beamfem.solve.statics.skipped import skips_limit_points
 from beamfem.solve.statics.snap import rest_state, same_point
 from beamfem.solve.statics.static_record import StaticRecord
@@ -19,6 +21,7 @@ _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 _SAME = 1e-12  # of the load factor: no nearer than this are two of them
+_BESIDE = 1e-4  # of the load factor of a limit point, which is located to about 1e-8
 _SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
 
 
@@ -89,13 +92,37 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
     except TurnsBackError as turn:
         done.iterations += turn.iterations
         done.cuts += turn.cuts
-        _jump(follower, done, turn, snap)
+        if not _merges(follower, done, turn.limit, turn.beyond, to[1]):
+            _jump(follower, done, turn, snap)
     except PathLostError as lost:
         done.iterations += lost.iterations
         done.cuts += lost.cuts
+        here = np.append(done.state, done.reached)
+        lost_near_by = len(done.rows) > 1 and not isinstance(lost, OutOfReachError)
+        if lost_near_by and _merges(follower, done, here, 2.0 * here - np.append(done.rows[-2][1], 0.0), to[1]):
+            return
         raise ConvergenceError(
             f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}", done.solution()
         ) from lost
+
+
+def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyond: np.ndarray, end: float) -> bool:
+    """Add a row beyond a critical point (n + 1,) where a branch merges into a stable path; tell whether it does.
+
+    There it comes to rest no further away than it moved on as small a part of the load before; beyond a limit point it
+    goes far.
+    """
+    load_factor = float(point[-1])
+    target = min((1.0 + _BESIDE) * load_factor, end)
+    below = [(state, count) for at, state, count in done.rows if at <= 2.0 * load_factor - target]
+    if not below or below[-1][1] != 0 or target <= load_factor:
+        return False
+    farthest = float(np.max(np.abs(below[-1][0] - point[:-1]) / follower.system.scale))
+    found = rest_state(follower.system, np.append(point[:-1], target), beyond, follower.newton, farthest)
+    done.iterations += found.iterations
+    if found.ended.good:
+        done.add(target, found.state, 0, found.ended, found.digits)
+    return found.ended.good
 
 
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:

@@ -23,15 +23,18 @@ _SAME_LOAD = 1e-6  # limit points are located to about 1e-8
 _SAME_PLACE = 1e-3  # of the model, or of a gradient: by 1e-6 loads beside a limit point, states differ by the root
 
 
-def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Newton) -> NewtonResult:
+def rest_state(
+    system: System, limit: np.ndarray, beyond: np.ndarray, newton: Newton, farthest: float = np.inf
+) -> NewtonResult:
     """Return the equilibrium at the load of a limit point (n + 1,) that the structure snaps to.
 
-    beyond (n + 1,): a point of the path behind the limit point, on the side that it leaves to.
+    beyond (n + 1,): a point of the path behind the limit point, on the side that it leaves to; farthest: of the model,
+    how far from the limit point it is looked for.
     """
     load_factor, free = float(limit[-1]), system.free_dofs
     aside = np.zeros(len(limit) - 1)
     aside[free] = (beyond - limit)[:-1][free]
-    aside *= min(1.0, _LARGEST_MOVE / _size(system, aside))
+    aside *= min(1.0, min(_LARGEST_MOVE, 0.5 * farthest) / _size(system, aside))
     p = limit[:-1] + aside
     mass = _mass(system, p, load_factor)
     pull = abs(float(aside[free] @ _unbalanced(system, p, load_factor)[free]))
@@ -45,11 +48,15 @@ def rest_state(system: System, limit: np.ndarray, beyond: np.ndarray, newton: Ne
             time *= 0.5
             continue
         p = moved
+        if _size(system, p - limit[:-1]) > farthest:
+            break
         time *= 2.0
         if size < _NEAR:
             result = solve_equilibrium(system, p, load_factor, newton, keep=0)
             iterations += result.iterations
-            if result.ended.good and result.negative_pivots == 0 and _size(system, result.state - p) < _LARGEST_MOVE:
+            near = _size(system, result.state - p) < _LARGEST_MOVE
+            near &= _size(system, result.state - limit[:-1]) <= farthest
+            if result.ended.good and result.negative_pivots == 0 and near:
                 return NewtonResult(result.state, iterations, result.ended)
     return NewtonResult(p, iterations, Termination.EXHAUSTED)
 

@@ -6,6 +6,7 @@ from scipy.sparse import csc_array
 from beamfem.assembly.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Block
+from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 
 STATICS = (1.0, 0.0, 0.0)
@@ -21,6 +22,7 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh((1.0, 1.0, 1.0))
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
+    system.connectors.add_forces(result, (p, v, a), time)
     return result
 
 
@@ -48,6 +50,8 @@ def linearise(
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
+    system.connectors.add_forces(result, (p, v, a), time)
+    _add_connectors(system, matrix, (p, v, a), time, coefficients)
     tangent = _tangent(system, matrix)
     if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
@@ -64,7 +68,22 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
+    _add_connectors(system, matrix, (p, zeros, zeros), time, STATICS)
     return _tangent(system, matrix)
+
+
+def _add_connectors(
+    system: System,
+    matrix: np.ndarray,
+    state: tuple[np.ndarray, np.ndarray, np.ndarray],
+    time: float,
+    coefficients: tuple[float, float, float],
+) -> None:
+    """Add the tangents of connectors to the entries of a sparse matrix."""
+    found = system.connectors.tangents(state, time, coefficients)
+    for place, own in zip(system.unknowns.coupled, found, strict=True):
+        known = place >= 0
+        np.add.at(matrix, place[known], own[known])
 
 
 def _entries(system: System) -> np.ndarray:
@@ -77,7 +96,9 @@ def _tangent(system: System, matrix: np.ndarray) -> Tangent:
     pattern = system.unknowns.pattern
     if pattern is None:
         return BandTangent(matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1))
-    return SparseTangent(csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape))
+    whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
+    multipliers = len(system.connectors.multipliers)
+    return SaddleTangent(whole, multipliers) if multipliers else SparseTangent(whole)
 
 
 def with_stresses(

@@ -21,13 +21,15 @@ class Unknowns:
     """Order of the unknown coordinates.
 
     free (n,): number of a coordinate among the unknown ones, -1 where it is held; dofs (unknown,): the coordinates in
-    that order; layouts: one a block; pattern: the sparse matrix with places for its data, None for a band.
+    that order; layouts: one a block; pattern: the sparse matrix with places for its data, None for a band; coupled:
+    where the entries (k, k) of what couples coordinates besides elements go, -1 for nowhere.
     """
 
     free: np.ndarray
     dofs: np.ndarray
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
+    coupled: tuple[np.ndarray, ...] = ()
 
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:
         """Return where the diagonal entries of unknowns (k,) stand in the matrix."""
@@ -39,8 +41,19 @@ class Unknowns:
         return np.array(found, dtype=np.int64)
 
 
-def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined: bool) -> Unknowns:
-    """Return the order of the coordinates (size,) that are not held; a chain keeps its own, joined beams get a new."""
+def order_unknowns(
+    blocks: Sequence[Block],
+    size: int,
+    held: np.ndarray,
+    joined: bool,
+    coupled: Sequence[np.ndarray] = (),
+    multipliers: Sequence[int] = (),
+) -> Unknowns:
+    """Return the order of the coordinates (size,) that are not held; a chain keeps its own, joined beams get a new.
+
+    coupled: numbers (k,) of coordinates that are coupled besides by elements, which takes a sparse matrix; multipliers:
+    numbers of those that come last, for they have no stiffness of their own.
+    """
     mask = np.ones(size, dtype=bool)
     mask[held] = False
     dofs = np.flatnonzero(mask)
@@ -55,15 +68,18 @@ def order_unknowns(blocks: Sequence[Block], size: int, held: np.ndarray, joined:
         # short beams have the band of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof >= 0)[block.node[:1]].sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
-    if half_width <= _WIDEST_BAND:
+    if half_width <= _WIDEST_BAND and not coupled:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
         return Unknowns(free, dofs, layouts, None)
-    dofs = _scattered(blocks, size)
+    dofs = _scattered(blocks, size, coupled)
     dofs = dofs[mask[dofs]]
+    last = np.isin(dofs, multipliers)
+    dofs = np.concatenate([dofs[~last], dofs[last]])
     free = _numbers(dofs, size)
-    pattern, slots = _pattern(blocks, free, len(dofs))
-    layouts = tuple(Layout(free, -1, slot) for slot in slots)
-    return Unknowns(free, dofs, layouts, pattern)
+    numbers = [*(_numbers_of(block, free) for block in blocks), *(free[own][None] for own in coupled)]
+    pattern, slots = _pattern(numbers, len(dofs))
+    layouts = tuple(Layout(free, -1, slot) for slot in slots[: len(blocks)])
+    return Unknowns(free, dofs, layouts, pattern, tuple(slot[0] for slot in slots[len(blocks) :]))
 
 
 def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
@@ -105,7 +121,7 @@ def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
     return np.lexsort((np.arange(size), rank[owner]))
 
 
-def _scattered(blocks: Sequence[Block], size: int) -> np.ndarray:
+def _scattered(blocks: Sequence[Block], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
     """Order the coordinates (size,) by multiple minimum degree on the nodes, for little fill."""
     owner = _owners(blocks, size)
     nodes, number = np.unique(owner, return_inverse=True)
@@ -114,6 +130,11 @@ def _scattered(blocks: Sequence[Block], size: int) -> np.ndarray:
         own = number[block.dof[block.node, 0]]
         i, j = np.triu_indices(own.shape[1], 1)
         pairs.append((own[:, i].ravel(), own[:, j].ravel()))
+    for dofs in coupled:
+        own = number[dofs]
+        i, j = np.triu_indices(len(own), 1)
+        apart = own[i] != own[j]
+        pairs.append((own[i[apart]], own[j[apart]]))
     ends = np.concatenate(pairs, axis=1)
     shape = len(nodes), len(nodes)
     graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
@@ -134,11 +155,10 @@ def _owners(blocks: Sequence[Block], size: int) -> np.ndarray:
     return np.asarray(owner[owner])
 
 
-def _pattern(blocks: Sequence[Block], free: np.ndarray, unknown: int) -> tuple[csc_array, list[np.ndarray]]:
-    """Return the sparse pattern of all element matrices and of the diagonal, and the place of each element's entry."""
+def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, list[np.ndarray]]:
+    """Return the sparse pattern of matrices of unknowns (ne, k) and of the diagonal, and the place of each entry."""
     rows, columns, filled = [], [], []
-    for block in blocks:
-        number = _numbers_of(block, free).astype(np.int32)
+    for number in (own.astype(np.int32) for own in numbers):
         i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
         known = (i >= 0) & (j >= 0)
         rows.append(i[known])

@@ -119,7 +119,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
-    if MIXED in system.proven or _KEEPS in system.proven:
+    if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
         return False
     state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
     try:

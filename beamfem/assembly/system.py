@@ -10,6 +10,7 @@ import numpy as np
 from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
+from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.held import Held, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.pressures import pressures_have_potential
@@ -109,7 +110,8 @@ class System:
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
-        return residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+        own = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+        return own + self.connectors.errors
 
     @cached_property
     def stress_errors(self) -> tuple[np.ndarray, ...]:
@@ -178,10 +180,11 @@ class System:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether the tangent is symmetric: no load follows the sections, and every pressure has a potential."""
+        """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
         following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
         directed = [dof for dof, _ in self.inclined]
-        return not following and pressures_have_potential(self.model, {*self.prescribed_dofs.tolist(), *directed})
+        fixed = {*self.prescribed_dofs.tolist(), *directed}
+        return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)
 
     @cached_property
     def held(self) -> tuple[Held, ...]:
@@ -213,7 +216,16 @@ class System:
     @cached_property
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not held."""
-        return order_unknowns(self.blocks, self.model.size, self.prescribed_dofs, bool(self.model.joints))
+        connectors, joined = self.connectors, bool(self.model.joints)
+        coupled = [item.all for item in connectors.items]
+        return order_unknowns(
+            self.blocks, self.model.size, self.prescribed_dofs, joined, coupled, connectors.multipliers.tolist()
+        )
+
+    @cached_property
+    def connectors(self) -> Connectors:
+        """What adds forces by a rule of its own. Raises InputError for a force that is not analytic."""
+        return connectors_of(self.model, self.static)
 
     @property
     def layouts(self) -> tuple[Layout, ...]:
@@ -273,8 +285,14 @@ class System:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest."""
-        return np.where(self.positions, self.extent, 1.0)
+        """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest.
+
+        Multipliers [N] by what would strain an element by one, so that the length of a path is that of its movement.
+        """
+        result, multipliers = np.where(self.positions, self.extent, 1.0), self.connectors.multipliers
+        if len(multipliers):
+            result[multipliers] = self.extent * self.residual_errors[0].max()
+        return result
 
     @cached_property
     def strain_scale(self) -> np.ndarray:

@@ -12,6 +12,7 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
+from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
@@ -33,7 +34,8 @@ class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
     Supports, joints, point loads and kinks of loads along beams put a mesh node at their point. Points that are joined
-    may be apart by 1e-5 of the longer beam: the second is moved to the first, free of stress.
+    may be apart by 1e-5 of the longer beam: the second is moved to the first, free of stress. connectors: what adds
+    forces by a rule of its own, see `Contribution`.
     Raises InputError, UnknownPointError.
     """
 
@@ -41,18 +43,20 @@ class Model:
     supports: Sequence[Support] = ()
     loads: Sequence[Load] = ()
     joints: Sequence[Joint] = ()
+    connectors: Sequence[Contribution] = ()
 
     def __getstate__(self) -> dict[str, object]:
         """Copies and other processes make their meshes anew: what is kept here knows beams by identity."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
-        parts = (("beam", self.beams), ("support", self.supports), ("load", self.loads), ("joint", self.joints))
+        parts = [(name[:-1], getattr(self, name)) for name in self.__dataclass_fields__]
         counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
-        for name, kinds in (("beams", Beam), ("supports", Support), ("loads", Load), ("joints", Joint)):
+        kinds_of: tuple[Any, ...] = (Beam, Support, Load, Joint, Contribution)
+        for name, kinds in zip(self.__dataclass_fields__, kinds_of, strict=True):
             convert(self, items, name)
             object.__setattr__(self, name, tuple(getattr(self, name)))
             for item in getattr(self, name):
@@ -70,6 +74,10 @@ class Model:
         for joint in self.joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
+        for connector in self.connectors:
+            require_connector(connector)
+            for point in connector.points:
+                self._require(connector, point)
         self._require_touches()
 
     def _require(self, item: object, place: Beam | Point) -> None:
@@ -108,7 +116,8 @@ class Model:
         places = [support.point for support in self.point_supports]
         places += [point for joint in self.joints for point in (joint.a, joint.b)]
         places += [load.point for load in self.point_loads]
-        for point in places:
+        connected = [point for connector in self.connectors for point in connector.points]
+        for point in (*places, *connected):
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
         for beam, own in zip(self.beams, fractions, strict=True):
             own += [jump / beam.curve.length for jump in beam.jumps]
@@ -116,7 +125,8 @@ class Model:
         for line in lines:
             fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks_along(line)]
         grids = make_grids(self.beams, fractions)
-        angled = self._places(grids, [support.point for support in self.point_supports if _turns(support)])
+        turned = [support.point for support in self.point_supports if _turns(support)]
+        angled = self._places(grids, turned + connected)
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
         rigid, hinged = (self._pairs(grids, kind) for kind in (Rigid, Hinge))
         turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
@@ -156,9 +166,14 @@ class Model:
         return self._numbered[0]
 
     @property
-    def size(self) -> int:
-        """Number of coordinates, held ones included, shared ones once."""
+    def coordinates(self) -> int:
+        """Number of coordinates of the beams, held ones included, shared ones once."""
         return self._numbered[1]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates of the beams and, behind them, of unknowns that connectors bring along."""
+        return self.coordinates + sum(connector.unknowns for connector in self.connectors)
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:

@@ -12,6 +12,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.supports import Foundation
 from beamfem.results import postprocess
+from beamfem.results.connected import potential_of_connectors
 from beamfem.results.loading import loading
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
 
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
-    return _of_gravity(solution, first_moments) + _of_loads(solution) + _of_springs(solution)
+    acting = _of_gravity(solution, first_moments) + _of_loads(solution) + _of_springs(solution)
+    return acting + potential_of_connectors(solution)
 
 
 def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:

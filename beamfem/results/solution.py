@@ -16,6 +16,7 @@ from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.registry import offered
 from beamfem.results import postprocess
+from beamfem.results.connected import kinetic_of_connectors, momenta_of_connectors
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.fitting import require_rows, require_state
@@ -218,7 +219,7 @@ class Solution:
 
     def energy(self) -> Energy:
         """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
-        kinetic = sum((m.kinetic for m in self._momenta), np.zeros(len(self)))
+        kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
         strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
         return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
 
@@ -229,11 +230,11 @@ class Solution:
 
     def linear_momentum(self) -> np.ndarray:
         """Return the linear momentum (steps, 2) [kg m/s]."""
-        return np.asarray(sum(m.linear for m in self._momenta))
+        return np.asarray(sum(m.linear for m in self._momenta) + momenta_of_connectors(self)[:, :2])
 
     def angular_momentum(self) -> np.ndarray:
         """Return the angular momentum about the origin (steps,) [kg m^2/s]."""
-        return np.asarray(sum(m.angular for m in self._momenta))
+        return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:
         """Return the deformed axis of a beam of cubic elements in a row as a cubic B-spline, exactly.

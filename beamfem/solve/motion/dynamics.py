@@ -21,6 +21,7 @@ from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import courses, name_unresolved
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
+from beamfem.solve.start.multipliers import refuse_multipliers
 from beamfem.solve.start.start_state import start_state
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
@@ -48,6 +49,7 @@ def simulate(
     if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
         raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {shown(integrator)}")
     system = system_of(model, static=False)
+    refuse_multipliers(system, "simulate")
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
     integrator = integrator or GeneralizedAlpha()

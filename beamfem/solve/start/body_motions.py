@@ -1,5 +1,7 @@
 """Motions of beams taken as rigid, and the conditions that supports and joints put on them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
@@ -71,6 +73,20 @@ class Conditions:
             if one != other:
                 for left, right in zip(self.displacement(joint.a), self.displacement(joint.b), strict=True):
                     self._add({one: left, other: -right})
+        for connector, stopped in system.connectors.stopped():
+            self._resist(connector.item.points, stopped)
+
+    def _resist(self, points: Sequence[Point], stopped: np.ndarray) -> None:
+        """Add what resists motions (r, 3 m) of points."""
+        moved = [np.vstack([self.extent * self.displacement(point), [0.0, 0.0, 1.0]]) for point in points]
+        bodies = [int(self.body[self.model.number_of(point.beam)]) for point in points]
+        for row in stopped:
+            parts = {own: np.zeros(3) for own in bodies}
+            for own, motion, here in zip(bodies, row.reshape(-1, 3), moved, strict=True):
+                parts[own] += motion @ here
+            size = max(float(np.abs(part).max()) for part in parts.values())
+            if size > NEGLIGIBLE * self.extent:
+                self._add({own: part / size for own, part in parts.items()})
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement (2, 3) of a point with a, b and turn of its body."""

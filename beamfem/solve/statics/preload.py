@@ -60,7 +60,7 @@ def _growing(model: Model) -> Model:
     """Return the model with what acts at load factor 0 in proportion to the load factor, and nothing else."""
     loads = [replace(load, amplitude=_in_proportion(factor(load, 0.0, True))) for load in model.loads]
     supports = [_led(support) if isinstance(support, Prescribed) else support for support in model.supports]
-    return Model(model.beams, supports, loads, model.joints)
+    return replace(model, supports=supports, loads=loads)
 
 
 def _led(support: Prescribed) -> Prescribed:

@@ -1,0 +1,116 @@
+"""Contributions of a model in its equations: what they add to residual and tangent, energies and momenta."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion, require_analytic
+from beamfem.model.loads import factor
+from beamfem.model.model import Model
+
+_RESISTS = 1e-9  # of the largest stiffness of a contribution: of less, it resists a motion by round-off only
+_COORDINATES = ("r^x", "r^y", "theta")
+
+
+@dataclass(frozen=True, eq=False)
+class Connectors:
+    """All contributions of a model."""
+
+    model: Model
+    static: bool
+    items: tuple[Connector, ...]
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Numbers (k,) of the unknowns of their own."""
+        return np.concatenate([np.empty(0, dtype=np.int64), *(item.own for item in self.items)])
+
+    @property
+    def conservative(self) -> bool:
+        return all(item.item.conservative for item in self.items)
+
+    def gravity(self, time: float) -> np.ndarray:
+        """Acceleration (2,) [m/s^2] of all gravity at a time."""
+        result = np.zeros(2)
+        for load in self.model.gravity:
+            result += np.array(load.vector) * factor(load, time, self.static)
+        return result
+
+    def add_forces(self, residual: np.ndarray, motion: Motion, time: float) -> None:
+        """Add their forces to a residual (n,)."""
+        gravity = self.gravity(time)
+        for item in self.items:
+            np.add.at(residual, item.all, item.force(item.at(motion, time, gravity)).real)
+
+    def tangents(self, motion: Motion, time: float, weights: Sequence[float]) -> list[np.ndarray]:
+        """Return the weighted tangent (3 m + k, 3 m + k) of each."""
+        gravity = self.gravity(time)
+        return [item.tangent(motion, time, gravity, weights) for item in self.items]
+
+    def energies(self, motion: Motion, time: float) -> tuple[float, float]:
+        """Return their kinetic energy and potential [J]."""
+        gravity = self.gravity(time)
+        found = [item.item.energy(item.at(motion, time, gravity)) for item in self.items]
+        return float(sum(kinetic for kinetic, _ in found)), float(sum(potential for _, potential in found))
+
+    def momenta(self, motion: Motion, time: float) -> np.ndarray:
+        """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (3,)."""
+        (p, v, a), gravity, result = motion, self.gravity(time), np.zeros(3)
+        for item in self.items:
+            own = np.empty(len(item.dofs))
+            for number, dof in enumerate(item.dofs.tolist()):
+                moved = v.astype(complex)
+                moved[dof] += 1j * COMPLEX_STEP
+                own[number] = np.imag(item.item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
+            for (x, y), (px, py, turn) in zip(p[item.dofs].reshape(-1, 3)[:, :2], own.reshape(-1, 3), strict=True):
+                result += px, py, x * py - y * px + turn
+        return result
+
+    @cached_property
+    def errors(self) -> np.ndarray:
+        """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
+        result = np.zeros((2, self.model.size))
+        for item, stiffness in zip(self.items, self._stiffness, strict=True):
+            turns = np.arange(len(item.all)) % 3 == 2
+            turns[len(item.dofs) :] = True
+            for row, chosen in zip(result, (~turns, turns), strict=True):
+                np.add.at(row, item.all, np.abs(stiffness[:, chosen]).sum(axis=1))
+        return result
+
+    def stopped(self) -> list[tuple[Connector, np.ndarray]]:
+        """Return each with the motions (r, 3 m) of its points that it resists in the reference, of unit size."""
+        found = []
+        for item, stiffness in zip(self.items, self._stiffness, strict=True):
+            rows = stiffness[:, : len(item.dofs)]
+            sizes = np.abs(rows).max(axis=1, initial=0.0)
+            kept = sizes > _RESISTS * sizes.max(initial=0.0)
+            found.append((item, rows[kept] / sizes[kept, None]))
+        return found
+
+    @cached_property
+    def _stiffness(self) -> list[np.ndarray]:
+        """The tangent of each in the reference."""
+        p, zeros = np.zeros(self.model.size), np.zeros(self.model.size)
+        for item in self.items:
+            p[item.dofs] = item.reference.ravel()
+        return self.tangents((p, zeros, zeros), 0.0, (1.0, 0.0, 0.0))
+
+
+def connectors_of(model: Model, static: bool) -> Connectors:
+    """Return the contributions of a model with their coordinates. Raises InputError where one is not what it says."""
+    first, found = model.coordinates, []
+    for item in model.connectors:
+        dofs, places = [], []
+        for point in item.points:
+            mesh = model.mesh_of(point)
+            node = mesh.node_at(point.fraction)
+            numbers = mesh.coordinates_of(node)
+            dofs += [numbers[name] for name in _COORDINATES]
+            places.append([*mesh.position[node].tolist(), 0.0])
+        own = np.arange(first, first + item.unknowns)
+        first += item.unknowns
+        found.append(Connector(item, np.array(dofs, dtype=np.int64), own, np.array(places)))
+        require_analytic(found[-1])
+    return Connectors(model, static, tuple(found))

@@ -40,6 +40,7 @@ from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import At, Contribution
 from beamfem.model.grading import graded
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
@@ -66,6 +67,7 @@ __all__ = [
     "ANCFCRBF",
     "CRBF",
     "Arc",
+    "At",
     "BSpline",
     "Beam",
     "BeamfemError",
@@ -78,6 +80,7 @@ __all__ = [
     "Circle",
     "Clamp",
     "ContinuumMechanics",
+    "Contribution",
     "ConvergenceError",
     "Cubic",
     "Curve",

@@ -96,8 +96,19 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
 
 
 def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
-    """Draw the hinges of a model where they are in a row; see `joints_of`."""
-    return joints_of(solution, row).draw(axes, layer=6.0)
+    """Draw the hinges and connectors of a model where they are in a row; see `joints_of`."""
+    return joints_of(solution, row).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
+
+
+def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
+    """Draw each connector as a dashed line through its points, which are dots."""
+    connectors = solution.model.connectors
+    only = one_row(solution, row) if connectors else solution
+    drawn = []
+    for connector in connectors:
+        x, y = np.array([only.position(point)[0] for point in connector.points]).T
+        drawn += axes.plot(x, y, color=INK, linestyle="--", linewidth=1.0, marker="o", markersize=5.0, zorder=6.0)
+    return drawn
 
 
 def joints_of(solution: "Solution", row: int) -> Stamps:

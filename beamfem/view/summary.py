@@ -26,7 +26,8 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         ("supports", _kinds(model.supports)),
         ("loads", _kinds(model.loads)),
     ]
-    return rows + ([("joints", _kinds(model.joints))] if model.joints else [])
+    further = (("joints", model.joints), ("connectors", model.connectors))
+    return rows + [(name, _kinds(own)) for name, own in further if own]
 
 
 def solution_rows(solution: "Solution") -> list[tuple[str, str]]:

@@ -19,8 +19,10 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
     looked at where the iteration was slow, the state half-way has another count of negative pivots.
     """
-    if result.linear not in (None, done.negative_pivots):
-        return True
+    if result.linear is not None:
+        done.iterations += 1
+        if result.linear != done.negative_pivots:
+            return True
     if done.reached > 0.0:
         moved = float(np.max(np.abs(result.state - done.state) / system.scale))
         if result.first > _OVERSHOOT * moved + newton.tolerance:

@@ -36,14 +36,11 @@ class SpringDamper:
     stiffness: float = 0.0
     damping: float = 0.0
     unknowns = 0
+    conservative = True
 
     @property
     def points(self):
         return self.a, self.b
-
-    @property
-    def conservative(self):
-        return self.damping == 0.0
 
     def force(self, at):
         along = at.q[1, :2] - at.q[0, :2]

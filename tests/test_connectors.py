@@ -203,6 +203,43 @@ def test_a_damper_takes_energy_at_its_rate():
     assert motion.energy_drift is None
 
 
+def test_forces_along_a_beam_are_those_beside_a_spring_support():
+    own = beam(elements=6)
+    push = [bf.PointForce(own.end, (0.1 * BENDING, BENDING)), bf.Gravity((0.0, -9.81))]
+    models = [
+        cantilever(own, push, supports=[bf.Spring(own.at(0.5), (0.0, 9.0 * BENDING))]),
+        cantilever(own, push, [Anchor(own.at(0.5), (0.0, 9.0 * BENDING, 0.0))]),
+    ]
+    one, other = (bf.solve_static(model).section_forces(own) for model in models)
+    for name in ("normal", "shear", "moment"):
+        expected = getattr(one, name)[-1]
+        assert getattr(other, name)[-1] == pytest.approx(expected, abs=1e-7 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("turn", [0.4, 2.0])
+def test_models_with_connectors_do_not_know_the_axes(turn):
+    def solved(angle):
+        c, s = np.cos(angle), np.sin(angle)
+
+        def place(x, y):
+            return c * x - s * y, s * x + c * y
+
+        one = beam(bf.CRBF(2), place(0, 0), place(1, 0))
+        two = beam(bf.CRBF(2), place(0, 0.5), place(1, 0.8))
+        parts = [SpringDamper(one.end, two.at(0.5), 9 * BENDING, 0.4), PointMass(two.end, 0.2)]
+        supports = [bf.Clamp(one.start), bf.Pin(two.start)]
+        load = bf.PointForce(two.end, place(0.02 * BENDING, -0.05 * BENDING))
+        model = bf.Model([one, two], supports, [load, bf.Gravity(place(0, -9.81))], connectors=parts)
+        states = bf.solve_static(model), bf.simulate(model, 0.05, 5e-4)
+        back = np.array([[c, -s], [s, c]])
+        return [state.position(two.end)[-1] @ back for state in states], bf.solve_modes(model, count=3).frequencies
+
+    (places, frequencies), (turned, same) = solved(0.0), solved(turn)
+    assert turned[0] == pytest.approx(places[0], abs=1e-8)
+    assert turned[1] == pytest.approx(places[1], abs=1e-7)
+    assert same == pytest.approx(frequencies, rel=1e-8)
+
+
 def test_a_beam_is_stopped_by_a_wall():
     own = beam(elements=6)
     wall = Barrier(own.end, -0.05, 1e4 * BENDING, 1e-4)

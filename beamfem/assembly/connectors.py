@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion, require_analytic
+from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion, require_analytic, resists_rates
 from beamfem.model.loads import factor
 from beamfem.model.model import Model
 
@@ -30,6 +30,11 @@ class Connectors:
     @property
     def conservative(self) -> bool:
         return all(item.item.conservative for item in self.items)
+
+    @cached_property
+    def keep_energy(self) -> bool:
+        """Whether none does work on a motion, or takes energy from it."""
+        return self.conservative and not any(resists_rates(item) for item in self.items)
 
     def gravity(self, time: float) -> np.ndarray:
         """Acceleration (2,) [m/s^2] of all gravity at a time."""

@@ -33,7 +33,7 @@ class Contribution(Protocol):
     """A frozen dataclass with these members, given to `Model(connectors=[...])`.
 
     points: where it acts, m points of beams; unknowns: k, how many multipliers it brings along; conservative: whether
-    its force is the derivative of an energy, so that its stiffness is symmetric.
+    its force at rest is the derivative of a potential, so that its stiffness is symmetric.
 
     Tangents are the derivatives of `force` by complex steps, exact to round-off, so that it must consist of analytic
     functions: `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved.
@@ -51,7 +51,7 @@ class Contribution(Protocol):
 
     @property
     def conservative(self) -> bool:
-        """Whether the force has a potential."""
+        """Whether the force at rest has a potential."""
         ...
 
     def force(self, at: At) -> np.ndarray:

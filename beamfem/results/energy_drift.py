@@ -57,4 +57,4 @@ def _conservative(solution: "Solution") -> bool:
         or (not isinstance(load, Gravity | PointMoment) and load.follower)
         for load in solution.model.loads
     )
-    return not moved and not driven and system.connectors.conservative
+    return not moved and not driven and system.connectors.keep_energy

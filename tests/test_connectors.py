@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamfem as bf
@@ -287,9 +288,76 @@ def test_what_is_no_connector_is_refused():
     with pytest.raises(bf.InputError, match="lists a point twice"):
         cantilever(own, [], [SpringDamper(own.end, own.end)])
     _, _, model = portal()
-    for solve in (bf.solve_modes, bf.solve_buckling, bf.trace_equilibrium, lambda m: bf.simulate(m, 0.1, 0.01)):
+    for solve in (bf.solve_modes, bf.solve_buckling, bf.trace_equilibrium):
         with pytest.raises(bf.InputError, match="takes no connectors with unknowns of their own, which RigidLink has"):
             solve(model)
+
+
+def crossbar(link, turn=0.0):
+    """A parallelogram that falls: two beams on pins, whose free ends a link keeps apart."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def place(x, y):
+        return c * x - s * y, s * x + c * y
+
+    one = beam(bf.CRBF(2), place(0, 0), place(1, 0), elements=3)
+    two = beam(bf.CRBF(2), place(0, 0.5), place(1, 0.5), elements=3)
+    parts = [link(one.end, two.end), PointMass(two.end, 0.3)]
+    pins = [bf.Pin(one.start), bf.Pin(two.start)]
+    return two, bf.Model([one, two], pins, [bf.Gravity(place(0.0, -9.81))], connectors=parts)
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0])
+def test_a_link_in_motion_keeps_its_length_and_the_energy(turn):
+    """Of nearly rigid arms it is a pendulum: w' = -g (2 m L / 2 + M L) cos(angle) / (2 m L^2 / 3 + M L^2)."""
+    two, model = crossbar(RigidLink, turn)
+    motion = bf.simulate(model, 0.4, 5e-4)
+    one = model.beams[0]
+    gap = np.linalg.norm(motion.position(two.end) - motion.position(one.end), axis=1)
+    assert np.abs(gap - 0.5).max() < 1e-10
+    total = motion.energy().total
+    assert np.abs(total - total[0]).max() < 2e-4 * np.ptp(motion.energy().potential)
+    assert motion.energy_drift is not None
+    mass = 7800.0 * AREA
+    speed = 9.81 * (mass + 0.3) / (2 * mass / 3 + 0.3)
+
+    def fall(_, state):
+        return state[1], -speed * np.cos(state[0])
+
+    angle = solve_ivp(fall, (0.0, 0.4), (0.0, 0.0), rtol=1e-9, atol=1e-12).y[0, -1]
+    moved = motion.position(two.end)[-1] - motion.position(two.start)[-1]
+    assert np.arctan2(moved[1], moved[0]) - turn == pytest.approx(angle, abs=2e-3)
+    # the bar's force: it carries what one arm needs more than gravity gives it, of either sign
+    assert np.ptp(motion.p[:, -1]) > 0.1
+
+
+def test_multipliers_of_a_motion_converge_with_the_square_of_the_step():
+    found = []
+    for step in (4e-3, 2e-3, 1e-3):
+        _, model = crossbar(RigidLink)
+        motion = bf.simulate(model, 0.2, step, integrator=bf.GeneralizedAlpha(0.6))
+        found.append((motion.p[-1, -1], *motion.position(model.beams[1].end)[-1]))
+    coarse, fine = np.abs(np.diff(found, axis=0))
+    assert np.all(fine < 0.35 * coarse)
+
+
+def test_a_stiff_spring_moves_like_a_link():
+    two, linked = crossbar(RigidLink)
+    three, sprung = crossbar(lambda a, b: SpringDamper(a, b, stiffness=1e8))
+    motions = [
+        bf.simulate(model, 0.2, 5e-4).position(point)[-1] for model, point in ((linked, two.end), (sprung, three.end))
+    ]
+    assert motions[1] == pytest.approx(motions[0], abs=1e-5)
+
+
+def test_starts_that_break_a_condition_are_refused():
+    two, model = crossbar(RigidLink)
+    with pytest.raises(bf.InputError, match="the initial velocity does not meet what RigidLink asks for"):
+        bf.simulate(model, 0.1, 1e-3, velocity=lambda x: (0.0, x[0] * x[1]))
+    apart = bf.Model(model.beams, model.supports, [bf.PointMoment(two.start, 1.0)], connectors=())
+    state = bf.simulate(apart, 0.05, 1e-3)[-1]
+    with pytest.raises(bf.InputError, match="the start of the motion does not meet what RigidLink asks for"):
+        bf.simulate(model, 0.1, 1e-3, start=state)
 
 
 def test_results_with_connectors_of_ones_own_say_why_they_cannot_be_saved(tmp_path):

@@ -73,6 +73,14 @@ class Connectors:
                 result += px, py, x * py - y * px + turn
         return result
 
+    def conditions(self, p: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what is left of all conditions (k,) in a state p (n,), and how it changes along p' (n,)."""
+        zeros, gravity = np.zeros(len(p)), np.zeros(2)
+        moved = p + 1j * COMPLEX_STEP * rate
+        found = [item.force(item.at((moved, zeros, zeros), 0.0, gravity))[len(item.dofs) :] for item in self.items]
+        values = np.concatenate(found)
+        return values.real, values.imag / COMPLEX_STEP
+
     @cached_property
     def errors(self) -> np.ndarray:
         """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""

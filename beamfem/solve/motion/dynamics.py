@@ -13,6 +13,7 @@ from beamfem.model.turns import turning_pairs
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
+from beamfem.solve.motion.conditions import require_met
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.march import ITERATIONS, Last, Record, initial_acceleration, march, new_statistics
@@ -21,7 +22,6 @@ from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import courses, name_unresolved
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
-from beamfem.solve.start.multipliers import refuse_multipliers
 from beamfem.solve.start.start_state import start_state
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
@@ -49,7 +49,6 @@ def simulate(
     if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
         raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {shown(integrator)}")
     system = system_of(model, static=False)
-    refuse_multipliers(system, "simulate")
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
     integrator = integrator or GeneralizedAlpha()
@@ -67,6 +66,8 @@ def simulate(
         pair = slice(dof, dof + 2)
         state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
         state[1, pair] -= normal * (normal @ state[1, pair])
+    if len(system.connectors.multipliers):
+        require_met(system, state[0], state[1])
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)

@@ -9,6 +9,7 @@ from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.sparse_motion import SparseMotion
 from beamfem.solve.motion.time_steps import Stretch
@@ -124,11 +125,19 @@ def _begin_anew(system: System, rule: np.ndarray, part: Stretch, state: np.ndarr
 
 
 def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.ndarray:
-    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates."""
+    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates.
+
+    Multipliers among p are set as well.
+    """
     p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
     free = system.free_dofs
-    a[free] = 0.0
+    multipliers = system.connectors.multipliers
+    a[free] = p[multipliers] = v[multipliers] = 0.0
     unbalanced = residual(system, p, v, a, time)
+    if len(multipliers):
+        a[free] = constrained_acceleration(system, (p, v, a), unbalanced, time)
+        state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
+        return a
     _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a

@@ -33,6 +33,7 @@ class SparseMotion:
         self._inverse_scale = np.zeros(system.model.size)
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self._differences, self._size, self._number = np.zeros((3, system.model.size)), system.model.size, np.zeros(1)
+        self._multipliers = system.connectors.multipliers
         self._factors: Factorised | None = None
 
     def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
@@ -92,6 +93,7 @@ class SparseMotion:
         state[:] = before
         dofs = self.system.prescribed_dofs
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
+        state[0, self._multipliers] = before[0, self._multipliers]
         while iteration < most and not done:
             try:
                 right = self._correction(state, time, fresh or full)
@@ -99,6 +101,7 @@ class SparseMotion:
                 break
             scale = self._inverse_scale
             last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
+            state[1:, self._multipliers] = 0.0  # they have no rates
             fresh = False
             iteration += 1
             statistics[0] += 1

@@ -1,0 +1,54 @@
+"""Motions under conditions: what a start must satisfy, and accelerations and multipliers that keep it so."""
+
+import numpy as np
+from scipy.sparse import block_array, csc_array
+
+from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.system import System
+from beamfem.errors import InputError
+from beamfem.linalg.saddle import SaddleTangent
+from beamfem.solve.modes.pencil import UNROTATED
+
+_MET = 1e-8  # of the model, or of the largest velocity
+_SHORT = 1e-4  # of the model: how far a difference along the motion reaches
+
+
+def require_met(system: System, p: np.ndarray, v: np.ndarray) -> None:
+    """Raise InputError where the start p, p' (n,) of a motion does not meet the conditions of connectors."""
+    gaps, rates = system.connectors.conditions(p, v)
+    fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
+    for item in system.connectors.items:
+        own = item.own - system.model.coordinates
+        if np.any(np.abs(gaps[own]) > _MET * system.extent):
+            raise InputError(f"the start of the motion does not meet what {item.name} asks for: {gaps[own]} is left")
+        if np.any(np.abs(rates[own]) > _MET * fastest):
+            raise InputError(
+                f"the initial velocity does not meet what {item.name} asks for: its conditions change by {rates[own]} "
+                "per second. Give all that it connects velocities that go together, such as one RigidVelocity"
+            )
+
+
+def constrained_acceleration(
+    system: System, motion: tuple[np.ndarray, np.ndarray, np.ndarray], unbalanced: np.ndarray, time: float
+) -> np.ndarray:
+    """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -dG/dt p'].
+
+    motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers.
+    """
+    (p, v, a), k, zeros = motion, len(system.connectors.multipliers), np.zeros(len(motion[0]))
+    mass = linearise(system, p, zeros, zeros, time, INERTIA)[1].sparse(UNROTATED)[:-k, :-k]
+    conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
+    right = -unbalanced[system.free_dofs]
+    right[-k:] = -_change_of_rates(system, p, v, a)
+    whole = SaddleTangent(csc_array(block_array([[mass, conditions.T], [conditions, None]])), k)
+    return whole.solve(right, system.rotated)
+
+
+def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Return d/dt (G p') (k,) along p + p' t + p'' t^2 / 2, by a central difference."""
+    speed, push = (float(np.max(np.abs(values) / system.scale)) for values in (v, a))
+    if speed == 0.0 == push:
+        return np.zeros(len(system.connectors.multipliers))
+    size = min(_SHORT / speed if speed else np.inf, np.sqrt(_SHORT / push) if push else np.inf)
+    ends = [system.connectors.conditions(p + t * v + 0.5 * t**2 * a, v + t * a)[1] for t in (size, -size)]
+    return np.asarray((ends[0] - ends[1]) / (2.0 * size))

@@ -4,8 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.connector import Motion
+from beamfem.assembly.connector import Connector, Motion
+from beamfem.errors import InputError
+from beamfem.model.contribution import Contribution
 from beamfem.results.loading import loading
+from beamfem.validation import shown
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -26,6 +29,29 @@ def momenta_of_connectors(solution: "Solution") -> np.ndarray:
     system, times = loading(solution)
     found = [system.connectors.momenta(state, at) for state, at in _states(solution, times)]
     return np.array(found).reshape(-1, 3)
+
+
+def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray:
+    """Return what a connector does to its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
+    system, times = loading(solution)
+    item = _bound(solution, connector)
+    found = [
+        -item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)]
+        for motion, at in _states(solution, times)
+    ]
+    return np.array(found).reshape(len(solution), -1, 3)
+
+
+def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
+    """Return the unknowns of its own of a connector (steps, k). Raises InputError."""
+    return solution.p[:, _bound(solution, connector).own]
+
+
+def _bound(solution: "Solution", connector: Contribution) -> Connector:
+    for item in loading(solution)[0].connectors.items:
+        if item.item is connector:
+            return item
+    raise InputError(f"{shown(connector)} is no connector of this model; take one of model.connectors")
 
 
 def _energies(solution: "Solution") -> np.ndarray:

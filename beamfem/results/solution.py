@@ -12,11 +12,12 @@ import numpy as np
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.registry import offered
 from beamfem.results import postprocess
-from beamfem.results.connected import kinetic_of_connectors, momenta_of_connectors
+from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.fitting import require_rows, require_state
@@ -197,6 +198,14 @@ class Solution:
     def reaction(self, point: Point) -> np.ndarray:
         """Return what a support does to the beam (steps, 3): fx, fy [N], m [N m]. Raises InputError elsewhere."""
         return reaction(self, point)
+
+    def connector_force(self, connector: Contribution) -> np.ndarray:
+        """Return what a connector does to its points (steps, m, 3): fx, fy [N], m [N m]. Raises InputError."""
+        return connector_force(self, connector)
+
+    def multipliers(self, connector: Contribution) -> np.ndarray:
+        """Return the unknowns of its own that a connector brings along (steps, k). Raises InputError."""
+        return multipliers(self, connector)
 
     @cached_property
     def support_forces(self) -> np.ndarray:

@@ -52,7 +52,7 @@ class Equations:
 class Assembler:
     """Equations with space of their own: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent.
+    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; numbers: in its work space.
     """
 
     def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
@@ -92,6 +92,7 @@ class Assembler:
             self.works.append(Work(sheet, table, whole.addresses[number], chunks, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]
+        self.numbers = sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self.table[:] = equations.table
         self.table[record.GROUP_RECORDS], self.table[record.VALUES] = (

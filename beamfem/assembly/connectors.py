@@ -45,13 +45,13 @@ class Connectors:
 
     def add_forces(self, residual: np.ndarray, motion: Motion, time: float) -> None:
         """Add their forces to a residual (n,)."""
-        gravity = self.gravity(time)
+        gravity = self.gravity(time) if self.items else np.zeros(2)
         for item in self.items:
             np.add.at(residual, item.all, item.force(item.at(motion, time, gravity)).real)
 
     def tangents(self, motion: Motion, time: float, weights: Sequence[float]) -> list[np.ndarray]:
         """Return the weighted tangent (3 m + k, 3 m + k) of each."""
-        gravity = self.gravity(time)
+        gravity = self.gravity(time) if self.items else np.zeros(2)
         return [item.tangent(motion, time, gravity, weights) for item in self.items]
 
     def energies(self, motion: Motion, time: float) -> tuple[float, float]:

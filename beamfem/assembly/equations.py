@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.sparse import csc_array
 
+from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Block
@@ -14,16 +15,32 @@ INERTIA = (0.0, 0.0, 1.0)
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is their sum
 MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
+_KEPT = 200_000  # numbers of a work space up to which making it takes a part of an evaluation that anybody would notice
 
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
-    result, assembler = np.empty(len(p)), system.assembler()
+    result, assembler = np.empty(len(p)), _borrowed(system)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh((1.0, 1.0, 1.0))
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
+    _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
     return result
+
+
+def _borrowed(system: System) -> Assembler:
+    """Return the equations with work space that no other evaluation uses: of one that has ended, or new."""
+    try:
+        return system.spare_assemblers.pop()
+    except IndexError:
+        return system.assembler()
+
+
+def _give_back(system: System, assembler: Assembler) -> None:
+    """Leave work space for the next evaluation, if it is small."""
+    if assembler.numbers <= _KEPT:
+        system.spare_assemblers.append(assembler)
 
 
 def _plain(state: np.ndarray) -> np.ndarray:
@@ -46,10 +63,13 @@ def linearise(
     those of the system.
     """
     matrix, result = _entries(system), np.empty(len(p))
-    assembler = system.assembler(stresses, blocks)
+    borrowed = stresses is None and blocks is None
+    assembler = _borrowed(system) if borrowed else system.assembler(stresses, blocks)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
+    if borrowed:
+        _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
     _add_connectors(system, matrix, (p, v, a), time, coefficients)
     tangent = _tangent(system, matrix)
@@ -63,11 +83,12 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     zeros = np.zeros(len(p))
     if MIXED in system.proven:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step))[1]
-    matrix, assembler = _entries(system), system.assembler()
+    matrix, assembler = _entries(system), _borrowed(system)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
+    _give_back(system, assembler)
     _add_connectors(system, matrix, (p, zeros, zeros), time, STATICS)
     return _tangent(system, matrix)
 

@@ -10,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
 _gather, _scatter = caller("iiiinirr"), caller("iiiiniirr")
-_fill_tables, _fill_body = caller("iinirr"), caller("iinrr")
+_fill_tables, _fill_body = caller("iiii"), caller("iinrr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiirrrrrr")
@@ -28,31 +28,23 @@ def add_elements(group, system):
     stiff = tangent != 0 and reals(s[r.FACTORS])[0] != 0.0
     gathered = b[r.CURVATURE]
     rows = gathered if tangent != 0 else (2 * size if moving != 0 else size)
-    body, e, f, g, t, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
-    tables, chunks, director = reals(b[r.TABLES]), reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
-    classes, beams, place = wholes(b[r.CLASS]), wholes(b[r.BEAM]), wholes(b[r.PLACE])
+    body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
+    chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
+    beams, place = wholes(b[r.BEAM]), wholes(b[r.PLACE])
     e, f, g, t, q, k = (
         at(x, e * ROW),
         at(x, f * ROW),
         at(x, g * ROW),
-        at(x, t * ROW),
+        at(x, table * ROW),
         at(x, point * ROW),
         at(x, k * ROW),
     )
     body = at(x, body * ROW)
     pairs = measures * (measures + 1) // 2
-    filled, filled_class = 0, -1
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        own = at(classes, first)
-        uniform = 1
-        for i in range(1, count):
-            if own[i] != own[0]:
-                uniform = 0
-        if uniform == 0 or own[0] != filled_class or filled < count:
-            _fill_tables(call[r.FILL_TABLES], count, b[r.TABLE_ROWS], own, uniform, tables, t)
-            filled, filled_class = count, (own[0] if uniform != 0 else -1)
+        _fill_tables(call[r.FILL_TABLES], group, first, count, table)
         _gather(call[r.GATHER], nodes, count, first, elements, place, rows, chunks, e)
         if s[r.LOADED] != 0:
             _fill_body(call[r.FILL_BODY], count, 0, at(beams, first), reals(s[r.BODY]), body)

@@ -1,7 +1,8 @@
 """Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
 
+from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.pointers import at
+from beamfem.kernels.pointers import at, reals, wholes
 from beamfem.kernels.record import ROW
 
 
@@ -27,20 +28,33 @@ def scatter(nodes, count, first, stride, place, size, row, f, chunks):
                 to[own[i]] += source[i]
 
 
-@routine("iinirr")
-def fill_tables(count, rows, classes, uniform, tables, t):
-    """Copy rows of tables of each element's class to t (rows, ROW); uniform: all are of the first one's class."""
-    if uniform != 0:
-        own = at(tables, classes[0] * rows)
+@routine("iiii")
+def fill_tables(group, first, count, part):
+    """Copy rows of the tables of each element's class to those of a batch that begin at `part`, if they are not there.
+
+    Elements of one class share a table, so that the next batch of this class, or the next evaluation, finds it filled.
+    """
+    b = wholes(group)
+    rows, own, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
+    uniform = True
+    for i in range(1, count):
+        if own[i] != own[0]:
+            uniform = False
+    filled = own[0] if uniform else -1 - first
+    if b[r.FILLED_WITH] == filled and b[r.FILLED] >= count:
+        return
+    b[r.FILLED_WITH], b[r.FILLED] = filled, count
+    if uniform:
+        table = at(reals(b[r.TABLES]), own[0] * rows)
         for row in range(rows):
-            to, value = at(t, row * ROW), own[row]
+            to, value = at(t, row * ROW), table[row]
             for i in range(count):
                 to[i] = value
         return
     for i in range(count):
-        own = at(tables, classes[i] * rows)
+        table = at(reals(b[r.TABLES]), own[i] * rows)
         for row in range(rows):
-            t[row * ROW + i] = own[row]
+            t[row * ROW + i] = table[row]
 
 
 @routine("iinrr")

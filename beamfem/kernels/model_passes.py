@@ -11,7 +11,7 @@ from beamfem.kernels.record import LANES, ROW
 
 _one, _two, _three = caller("i"), caller("ii"), caller("iii")
 _take, _rotate = caller("iiiinrr"), caller("irrr")
-_gather, _fill_tables = caller("iiiinirr"), caller("iinirr")
+_gather, _fill_tables = caller("iiiinirr"), caller("iiii")
 _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
 _node_rates = caller("iiiiiinrrr")
 
@@ -122,23 +122,15 @@ def predict_resultants(group, system):
             at(chunk, b[r.ACCELERATION] * ROW),
         )
         first += count
-    _, e, _, _, t, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
-    e, t, q, unit = at(x, e * ROW), at(x, t * ROW), at(x, q * ROW), at(x, unit * ROW)
+    _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+    e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
     pairs = measures * (measures + 1) // 2
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         for i in range(count):
             unit[i] = 1.0
-        _fill_tables(
-            call[r.FILL_TABLES],
-            count,
-            b[r.TABLE_ROWS],
-            at(wholes(b[r.CLASS]), first),
-            0,
-            reals(b[r.TABLES]),
-            t,
-        )
+        _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
         _gather(call[r.GATHER], nodes, count, first, elements, wholes(b[r.PLACE]), 2 * size, chunks, e)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
@@ -197,20 +189,12 @@ def smallest_jacobian(group):
         b[r.ELEMENTS],
     )
     size, slots = 2 * vectors, nodes * vectors
-    _, e, _, _, t, q, _, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
-    e, t, q = at(x, e * ROW), at(x, t * ROW), at(x, q * ROW)
+    _, e, _, _, tables, q, _, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+    e, t, q = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW)
     smallest, first = 1.0, 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _fill_tables(
-            call[r.FILL_TABLES],
-            count,
-            b[r.TABLE_ROWS],
-            at(wholes(b[r.CLASS]), first),
-            0,
-            reals(b[r.TABLES]),
-            t,
-        )
+        _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
         _gather(call[r.GATHER], nodes, count, first, elements, wholes(b[r.PLACE]), size, chunks, e)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)

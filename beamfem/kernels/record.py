@@ -68,9 +68,11 @@ SPRING = 50  # (2, loads)
 ANCHOR = 51  # (2, loads)
 LOAD_PLACE = 52  # (nodes of an element, loads)
 LOAD_NUMBER = 53  # (nodes * coordinates, loads)
+FILLED = 54  # elements of the batch whose tables are in the work space
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
-BLOCK_FIELDS = 57
+FILLED_WITH = 57  # their class, or -1 - the first element where they are of several
+BLOCK_FIELDS = 58
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0

@@ -1,4 +1,4 @@
-"""Connectors as users write them, each a dataclass of its own beside the package."""
+"""Connectors as users write them, each a dataclass of its own beside the package, and models with them."""
 
 from dataclasses import dataclass
 
@@ -127,3 +127,44 @@ class Barrier:
     def energy(self, at):
         gap = float(at.q[0, 1]) - self.level
         return 0.0, self.stiffness * self.width**2 * float(np.exp(-gap / self.width))
+
+
+SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
+BENDING, AREA = 2e11 * 1e-8 / 12, 1e-4
+KINDS = [bf.ANCF(), bf.CRBF(3), bf.BilinearCRBF(bf.Structural(), "reduced")]
+
+
+def beam(element=KINDS[1], start=(0.0, 0.0), end=(1.0, 0.0), elements=4, density=7800.0):
+    material = bf.Material(2e11, 0.3, density)
+    return bf.Beam(bf.Line(start, end), elements, element, SECTION, material)
+
+
+def cantilever(own, loads, connectors=(), supports=()):
+    return bf.Model([own], [bf.Clamp(own.start), *supports], loads, connectors=connectors)
+
+
+def portal(turn=0.0):
+    """A column clamped at its foot and one on a pin, which a rigid link between the heads holds."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def place(x, y):
+        return c * x - s * y, s * x + c * y
+
+    left, right = beam(start=place(0, 0), end=place(0, 1)), beam(start=place(2, 0), end=place(2, 1))
+    link = RigidLink(left.end, right.end)
+    loads = [bf.PointForce(right.end, place(0.5 * BENDING, 0.0))]
+    return left, right, bf.Model([left, right], [bf.Clamp(left.start), bf.Pin(right.start)], loads, connectors=[link])
+
+
+def crossbar(link, turn=0.0):
+    """A parallelogram that falls: two beams on pins, whose free ends a link keeps apart."""
+    c, s = np.cos(turn), np.sin(turn)
+
+    def place(x, y):
+        return c * x - s * y, s * x + c * y
+
+    one = beam(bf.CRBF(2), place(0, 0), place(1, 0), elements=3)
+    two = beam(bf.CRBF(2), place(0, 0.5), place(1, 0.5), elements=3)
+    parts = [link(one.end, two.end), PointMass(two.end, 0.3)]
+    pins = [bf.Pin(one.start), bf.Pin(two.start)]
+    return two, bf.Model([one, two], pins, [bf.Gravity(place(0.0, -9.81))], connectors=parts)

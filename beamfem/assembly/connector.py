@@ -11,10 +11,6 @@ from beamfem.model.contribution import At, Contribution
 from beamfem.validation import called
 
 COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
-_WIDTH = 1e-7  # of the central differences that complex steps are tested against
-_NEAR = 1e-3  # of its size: how far from the reference a force is looked at
-_AGREE = 1e-4
-_GRAVITY = np.array([0.3, -0.7])  # any
 
 Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 
@@ -56,6 +52,16 @@ class Connector:
             )
         return found
 
+    def energy(self, at: At) -> tuple[complex, complex]:
+        """Return its kinetic energy and its potential [J]. Raises InputError for what are no energies."""
+        found = np.asarray(called(f"energy of {self.name}", self.item.energy, at))
+        if found.shape != (2,) or found.dtype.kind not in "fic":
+            raise InputError(
+                f"energy of {self.name} must return two numbers, kinetic energy and potential, got {found}"
+            )
+        kinetic, potential = found.tolist()
+        return kinetic, potential
+
     def tangent(
         self,
         motion: Motion,
@@ -77,52 +83,3 @@ class Connector:
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")
         return result
-
-
-def require_analytic(item: Connector) -> None:
-    """Raise InputError where complex steps are not derivatives of a force, or a stiffness is not as even as it says."""
-    motion, size = _somewhere(item)
-    for kind, width in enumerate((_WIDTH * size, _WIDTH, _WIDTH)):
-        exact = item.tangent(motion, 0.5, _GRAVITY, [float(kind == number) for number in range(3)])
-        differences = _differences(item, motion, kind, width)
-        if not np.all(np.abs(exact - differences) <= _AGREE * np.abs(differences).max(initial=0.0)):
-            raise InputError(
-                f"force of {item.name} is no analytic function of {'qva'[kind]}: its derivative by complex steps is "
-                "not that of differences. Write lengths as np.sqrt(x**2 + y**2), not abs, np.hypot or np.linalg.norm, "
-                "and keep complex arrays complex"
-            )
-    resting = motion[0], 0.0 * motion[1], 0.0 * motion[2]
-    stiffness = item.tangent(resting, 0.5, _GRAVITY, (1.0, 0.0, 0.0))
-    uneven = np.abs(stiffness - stiffness.T).max(initial=0.0)
-    if item.item.conservative and uneven > _AGREE * np.abs(stiffness).max(initial=0.0):
-        raise InputError(
-            f"{item.name} says that it is conservative, but its stiffness is not symmetric: its force is not the "
-            "derivative of a potential"
-        )
-
-
-def resists_rates(item: Connector) -> bool:
-    """Tell whether the force depends on velocities."""
-    return bool(item.tangent(_somewhere(item)[0], 0.5, _GRAVITY, (0.0, 1.0, 0.0)).any())
-
-
-def _somewhere(item: Connector) -> tuple[Motion, float]:
-    """Return a motion near the reference, and the size [m] of what is between the points."""
-    rng, size = np.random.default_rng(3), float(np.ptp(item.reference[:, :2], axis=0).max(initial=0.0)) or 1.0
-    last = int(item.all.max()) + 1
-    p, v, a = (_NEAR * size * rng.standard_normal(last) for _ in range(3))
-    p[item.dofs] += item.reference.ravel()
-    return (p, v, a), size
-
-
-def _differences(item: Connector, motion: Motion, kind: int, width: float) -> np.ndarray:
-    """Return the derivative of a force by p, p' or p'', by central differences."""
-    columns = []
-    for dof in item.all.tolist():
-        slope = np.zeros(len(item.all))
-        for side in (1.0, -1.0):
-            moved = (motion[0].copy(), motion[1].copy(), motion[2].copy())
-            moved[kind][dof] += side * width
-            slope += side * item.force(item.at(moved, 0.5, _GRAVITY)).real / (2.0 * width)
-        columns.append(slope)
-    return np.array(columns).T

@@ -6,11 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion, require_analytic, resists_rates
+from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
+from beamfem.assembly.connector_checks import follows_time, require_analytic, resists_rates
 from beamfem.model.loads import factor
 from beamfem.model.model import Model
 
-_RESISTS = 1e-9  # of the largest stiffness of a contribution: of less, it resists a motion by round-off only
+_ROUND_OFF = 1e-13  # of the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
 
 
@@ -34,7 +35,7 @@ class Connectors:
     @cached_property
     def keep_energy(self) -> bool:
         """Whether none does work on a motion, or takes energy from it."""
-        return self.conservative and not any(resists_rates(item) for item in self.items)
+        return self.conservative and not any(resists_rates(item) or any(follows_time(item)) for item in self.items)
 
     def gravity(self, time: float) -> np.ndarray:
         """Acceleration (2,) [m/s^2] of all gravity at a time."""
@@ -57,8 +58,9 @@ class Connectors:
     def energies(self, motion: Motion, time: float) -> tuple[float, float]:
         """Return their kinetic energy and potential [J]."""
         gravity = self.gravity(time)
-        found = [item.item.energy(item.at(motion, time, gravity)) for item in self.items]
-        return float(sum(kinetic for kinetic, _ in found)), float(sum(potential for _, potential in found))
+        found = [item.energy(item.at(motion, time, gravity)) for item in self.items]
+        kinetic, potential = np.array(found).reshape(-1, 2).real.sum(axis=0).tolist()
+        return kinetic, potential
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
         """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (3,)."""
@@ -68,7 +70,7 @@ class Connectors:
             for number, dof in enumerate(item.dofs.tolist()):
                 moved = v.astype(complex)
                 moved[dof] += 1j * COMPLEX_STEP
-                own[number] = np.imag(item.item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
+                own[number] = np.imag(item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
             for (x, y), (px, py, turn) in zip(p[item.dofs].reshape(-1, 3)[:, :2], own.reshape(-1, 3), strict=True):
                 result += px, py, x * py - y * px + turn
         return result
@@ -96,10 +98,16 @@ class Connectors:
         """Return each with the motions (r, 3 m) of its points that it resists in the reference, of unit size."""
         found = []
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
-            rows = stiffness[:, : len(item.dofs)]
+            forces = stiffness[: len(item.dofs), : len(item.dofs)].copy()
+            # moments beside forces, and turns beside displacements, at the length of what is connected
+            length = max(point.beam.curve.length for point in item.item.points)
+            forces[2::3] /= length
+            sizes = np.abs(forces).max(axis=1, initial=0.0)
+            forces[sizes <= _ROUND_OFF * sizes.max(initial=0.0)] = 0.0
+            conditions = stiffness[len(item.dofs) :, : len(item.dofs)]
+            rows = np.vstack([forces, conditions])
             sizes = np.abs(rows).max(axis=1, initial=0.0)
-            kept = sizes > _RESISTS * sizes.max(initial=0.0)
-            found.append((item, rows[kept] / sizes[kept, None]))
+            found.append((item, rows[sizes > 0.0] / sizes[sizes > 0.0, None]))
         return found
 
     @cached_property

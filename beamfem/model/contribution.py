@@ -72,6 +72,8 @@ def require_connector(connector: Contribution) -> None:
     """Raise InputError where points, unknowns or conservative of a connector are not what they should be."""
     name = type(connector).__name__
     points = items(f"points of {name}", connector.points)
+    if not points:
+        raise InputError(f"{name} has no points: it needs one point of a beam at least")
     for point in points:
         require_point(name, point, "points")
     if len({(id(point.beam), point.fraction) for point in points}) < len(points):

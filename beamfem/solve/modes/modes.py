@@ -20,7 +20,7 @@ from beamfem.solve.modes.rigid import unresisted
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.memory import require_room
-from beamfem.solve.start.multipliers import refuse_multipliers
+from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -111,6 +111,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     whole_number("count", count)
     system = system_of(model, static=True)
     refuse_multipliers(system, "solve_modes")
+    refuse_dampers(system)
     p, load_factor = resting_state(system, about)
     unknown = len(system.free_dofs)
     if count > unknown:

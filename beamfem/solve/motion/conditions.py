@@ -1,8 +1,10 @@
 """Motions under conditions: what a start must satisfy, and accelerations and multipliers that keep it so."""
 
 import numpy as np
+from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
+from beamfem.assembly.connector_checks import follows_time
 from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
@@ -13,11 +15,16 @@ _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: how far a difference along the motion reaches
 
 
-def require_met(system: System, p: np.ndarray, v: np.ndarray) -> None:
+def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
     """Raise InputError where the start p, p' (n,) of a motion does not meet the conditions of connectors."""
     gaps, rates = system.connectors.conditions(p, v)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
+    fastest += system.extent / duration
     for item in system.connectors.items:
+        if follows_time(item)[1]:
+            raise InputError(
+                f"conditions of {item.name} depend on time, which simulate does not take; let a Prescribed support move"
+            )
         own = item.own - system.model.coordinates
         if np.any(np.abs(gaps[own]) > _MET * system.extent):
             raise InputError(f"the start of the motion does not meet what {item.name} asks for: {gaps[own]} is left")
@@ -41,7 +48,14 @@ def constrained_acceleration(
     right = -unbalanced[system.free_dofs]
     right[-k:] = -_change_of_rates(system, p, v, a)
     whole = SaddleTangent(csc_array(block_array([[mass, conditions.T], [conditions, None]])), k)
-    return whole.solve(right, system.rotated)
+    try:
+        return whole.solve(right, system.rotated)
+    except LinAlgError as error:
+        names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
+        raise InputError(
+            f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "
+            "multipliers cannot be told apart; leave out those that are not needed"
+        ) from error
 
 
 def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:

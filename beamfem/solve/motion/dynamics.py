@@ -67,7 +67,7 @@ def simulate(
         state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
         state[1, pair] -= normal * (normal @ state[1, pair])
     if len(system.connectors.multipliers):
-        require_met(system, state[0], state[1])
+        require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)
     state[3] = state[2]
     rows, pairs = -(-(len(times) - 1) // save_every) + 1, turning_pairs(model)

@@ -1,5 +1,6 @@
-"""Analyses that cannot take unknowns without stiffness or mass."""
+"""Analyses that cannot take unknowns without stiffness or mass, or forces against velocities."""
 
+from beamfem.assembly.connector_checks import resists_rates
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 
@@ -11,4 +12,14 @@ def refuse_multipliers(system: System, analysis: str) -> None:
             raise InputError(
                 f"{analysis} takes no connectors with unknowns of their own, which {item.name} has; solve_static does. "
                 "A stiff spring in its place has none"
+            )
+
+
+def refuse_dampers(system: System) -> None:
+    """Raise InputError where the force of a connector depends on velocities, which free vibrations leave out."""
+    for item in system.connectors.items:
+        if resists_rates(item):
+            raise InputError(
+                f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
+                "out, or let simulate show how the motion decays"
             )

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+from scipy.linalg import LinAlgError
+
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError
@@ -53,5 +55,8 @@ def solve_through(
         )
     done.add(0.0, first.state, first.negative_pivots, first.ended, first.digits)
     with kept(done.solution):
-        reach(system, done, 1.0 / steps, newton, snap, stops)
+        try:
+            reach(system, done, 1.0 / steps, newton, snap, stops)
+        except LinAlgError as error:
+            raise ConvergenceError(f"beyond load factor {done.reached:.6g}: {error}", done.solution()) from error
     return done.solution(complete=True)

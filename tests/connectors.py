@@ -143,13 +143,15 @@ def cantilever(own, loads, connectors=(), supports=()):
     return bf.Model([own], [bf.Clamp(own.start), *supports], loads, connectors=connectors)
 
 
+def turned_by(turn):
+    """Return the function that turns a vector about the origin."""
+    c, s = np.cos(turn), np.sin(turn)
+    return lambda x, y: (c * x - s * y, s * x + c * y)
+
+
 def portal(turn=0.0):
     """A column clamped at its foot and one on a pin, which a rigid link between the heads holds."""
-    c, s = np.cos(turn), np.sin(turn)
-
-    def place(x, y):
-        return c * x - s * y, s * x + c * y
-
+    place = turned_by(turn)
     left, right = beam(start=place(0, 0), end=place(0, 1)), beam(start=place(2, 0), end=place(2, 1))
     link = RigidLink(left.end, right.end)
     loads = [bf.PointForce(right.end, place(0.5 * BENDING, 0.0))]
@@ -158,11 +160,7 @@ def portal(turn=0.0):
 
 def crossbar(link, turn=0.0):
     """A parallelogram that falls: two beams on pins, whose free ends a link keeps apart."""
-    c, s = np.cos(turn), np.sin(turn)
-
-    def place(x, y):
-        return c * x - s * y, s * x + c * y
-
+    place = turned_by(turn)
     one = beam(bf.CRBF(2), place(0, 0), place(1, 0), elements=3)
     two = beam(bf.CRBF(2), place(0, 0.5), place(1, 0.5), elements=3)
     parts = [link(one.end, two.end), PointMass(two.end, 0.3)]

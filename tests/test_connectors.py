@@ -122,7 +122,7 @@ def test_a_damper_takes_energy_at_its_rate():
     period = 2 * np.pi / (rate * np.sqrt(1 - 0.05**2))
     motion = bf.simulate(model, 2 * period, period / 400, start=bent[-1], integrator=bf.GeneralizedAlpha(1.0))
     height = motion.displacement(own.end)[:, 1]
-    assert height[-1] / height[0] == pytest.approx(np.exp(-2 * 0.05 * rate * period), rel=2e-3)
+    assert height[-1] / height[0] == pytest.approx(np.exp(-2 * 0.05 * rate * period), rel=1e-4)
     assert motion.energy_drift is None
 
 

@@ -119,7 +119,7 @@ def _tangent(system: System, matrix: np.ndarray) -> Tangent:
         return BandTangent(matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1))
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
     multipliers = len(system.connectors.multipliers)
-    return SaddleTangent(whole, multipliers) if multipliers else SparseTangent(whole)
+    return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)
 
 
 def with_stresses(

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, dia_array
 
-from beamfem.linalg.tangent import Rotated, SparseFactors, SparseTangent, Stresses, turning
-
-_UNROTATED: Rotated = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+from beamfem.linalg.tangent import UNROTATED, Rotated, SparseFactors, SparseTangent, Stresses, turning
 
 
 @dataclass(frozen=True)
@@ -42,14 +40,15 @@ class SaddleFactors:
 
 
 @dataclass(frozen=True)
-class SaddleTangent(SparseTangent):
+class SaddleTangent:
     """A sparse matrix whose last rows and columns are those of multipliers."""
 
+    whole: SparseTangent
     multipliers: int
 
-    def factorised(self, rotated: Rotated) -> SaddleFactors:  # type: ignore[override]
+    def factorised(self, rotated: Rotated) -> SaddleFactors:
         """Return the factors. Raises LinAlgError."""
-        matrix, k = self.sparse(rotated), self.multipliers
+        matrix, k = self.whole.sparse(rotated), self.multipliers
         conditions = csr_array(matrix[-k:, :-k])
         # each condition as stiff as the coordinates that it binds
         sizes = np.abs(conditions).max(axis=1).toarray().ravel()
@@ -58,4 +57,12 @@ class SaddleTangent(SparseTangent):
         stiffening = csr_array(conditions.T @ dia_array((weights[None], [0]), shape=(k, k)))
         stiffness = matrix[:-k, :-k] + stiffening @ conditions
         whole = csc_array(block_array([[stiffness, matrix[:-k, -k:]], [conditions, None]]))
-        return SaddleFactors(SparseTangent(whole).factorised(_UNROTATED), stiffening, k, rotated)
+        return SaddleFactors(SparseTangent(whole).factorised(UNROTATED), stiffening, k, rotated)
+
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(rotated).solve(right)
+
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        return self.whole.sparse(rotated)

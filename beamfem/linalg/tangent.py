@@ -17,6 +17,8 @@ _NOTHING = np.empty(0)
 
 # numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
 Rotated = tuple[np.ndarray, np.ndarray]
+# rotates and holds nothing: for what is found among the directions that a solve leaves free
+UNROTATED: Rotated = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 Stresses = tuple[np.ndarray, ...]
 
 

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.system import System
-from beamfem.solve.modes.pencil import UNROTATED
+from beamfem.linalg.tangent import UNROTATED
 
 
 def stiffness_of_modes(

@@ -9,13 +9,14 @@ import numpy as np
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
+from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.locking import frequency_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.lowest import lowest_pairs
-from beamfem.solve.modes.pencil import UNROTATED, Pencil
+from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid import unresisted
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.start.balance import left_over

@@ -8,10 +8,8 @@ from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
 from beamfem.assembly.system import System
-from beamfem.linalg.tangent import Tangent
+from beamfem.linalg.tangent import UNROTATED, Tangent
 
-# turns and holds nothing: eigenvectors are found among the directions that a solve leaves free
-UNROTATED = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 _RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
 _AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
 _ASYMMETRY = 1e-12

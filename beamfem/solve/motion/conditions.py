@@ -4,12 +4,13 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, csc_array
 
+from beamfem.assembly.connector import Motion
 from beamfem.assembly.connector_checks import follows_time
 from beamfem.assembly.equations import INERTIA, STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.saddle import SaddleTangent
-from beamfem.solve.modes.pencil import UNROTATED
+from beamfem.linalg.tangent import UNROTATED, SparseTangent
 
 _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: how far a difference along the motion reaches
@@ -35,9 +36,7 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
             )
 
 
-def constrained_acceleration(
-    system: System, motion: tuple[np.ndarray, np.ndarray, np.ndarray], unbalanced: np.ndarray, time: float
-) -> np.ndarray:
+def constrained_acceleration(system: System, motion: Motion, unbalanced: np.ndarray, time: float) -> np.ndarray:
     """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -dG/dt p'].
 
     motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers.
@@ -47,7 +46,7 @@ def constrained_acceleration(
     conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
     right = -unbalanced[system.free_dofs]
     right[-k:] = -_change_of_rates(system, p, v, a)
-    whole = SaddleTangent(csc_array(block_array([[mass, conditions.T], [conditions, None]])), k)
+    whole = SaddleTangent(SparseTangent(csc_array(block_array([[mass, conditions.T], [conditions, None]]))), k)
     try:
         return whole.solve(right, system.rotated)
     except LinAlgError as error:

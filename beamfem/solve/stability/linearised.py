@@ -9,9 +9,9 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
 from beamfem.linalg.lapack import eig, eigh, qr
-from beamfem.linalg.tangent import Factorised, Tangent
+from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
-from beamfem.solve.modes.pencil import UNROTATED, is_symmetric
+from beamfem.solve.modes.pencil import is_symmetric
 
 _CHANGE = 1e-3  # of the coordinates, over which the tangent's derivative is taken
 _NONE = 1e-10  # of the rate at which the coordinates change: rates this small are round-off

@@ -10,8 +10,8 @@ def refuse_multipliers(system: System, analysis: str) -> None:
     for item in system.connectors.items:
         if len(item.own):
             raise InputError(
-                f"{analysis} takes no connectors with unknowns of their own, which {item.name} has; solve_static does. "
-                "A stiff spring in its place has none"
+                f"{analysis} takes no connectors with unknowns of their own, which {item.name} has; solve_static "
+                "and simulate do. A stiff spring in its place has none"
             )
 
 

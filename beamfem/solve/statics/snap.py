@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
 from beamfem.linalg.lapack import LinAlgError
-from beamfem.solve.modes.pencil import UNROTATED
+from beamfem.linalg.tangent import UNROTATED
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 

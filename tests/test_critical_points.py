@@ -4,11 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from independent_balance import balance
 from numpy.linalg import LinAlgError
 from test_path import cantilever
 
+import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
+from beamfem.results.status import Statistics
 from beamfem.solve.continuation import bifurcations as found_by
 from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment
@@ -162,3 +165,20 @@ def test_what_lies_before_and_behind_a_turning_point_is_listed_in_the_order_of_t
     segment = SimpleNamespace(turned=[0.6], change=lambda start, end: 0)
     shares = [found.fraction for found in found_by.bifurcations(segment, [])]
     assert shares == pytest.approx([0.3, 0.6, 0.8], abs=1e-3)
+
+
+def test_bifurcations_are_in_balance_though_no_equilibrium_is_solved_for_there():
+    """A stiff bar under pressure, hinged to one a million times as soft: interpolated states left 7 times as much."""
+    stiff, soft = bf.Material(4.5e11, 0.3, 1.0), bf.Material(2e5, -0.3, 1.0)
+    bar = bf.Beam(bf.Line((5.44, -4.02), (4.27, -7.79)), 3, bf.CRBF(2), bf.Rectangle(0.042, 0.0925), stiff)
+    line, shares = bf.Line((4.27, -7.79), (1.59, -8.35)), (0, 0.226, 0.338, 1)
+    other = bf.Beam(line, shares, bf.CRBF(2), bf.Rectangle(0.0075, 0.0639), soft)
+    pins, joint = [bf.Pin(bar.start), bf.Pin(other.end)], bf.Hinge(bar.end, other.start)
+    model = bf.Model([bar, other], pins, [bf.Pressure(bar, 1.2e5)], joints=[joint])
+    path = bf.trace_equilibrium(model, until=-1.0, points=30)
+    assert len(path.bifurcations) == 5
+    for state in path.bifurcations:
+        rest, statistics = np.zeros((1, len(state.p))), Statistics(0, 0, 0, "one state")
+        alone = bf.Solution(model, True, np.array([state.at]), state.p[None], rest, rest, statistics)
+        found = balance(alone)
+        assert found.holds, found

@@ -197,3 +197,20 @@ def _portal(angle, mirror, unit):
     bars = [bf.Beam(bf.Line(a, b), 5, bf.CRBF(3), section, material) for a, b in pairwise(corners)]
     joints = [bf.Rigid(bars[0].end, bars[1].start), bf.Hinge(bars[1].end, bars[2].start)]
     return bf.Model(bars, [bf.Clamp(bars[0].start), bf.Pin(bars[2].end)], joints=joints)
+
+
+@pytest.mark.parametrize("ratio", [1e2, 1e5, 1e8])
+def test_a_stiff_bar_hinged_to_a_soft_wire_hides_none_of_its_modes(ratio):
+    """The swing of the wire with the bar at its end was lost beside a bar 3e5 times as stiff."""
+    frequencies = []
+    for stiffness in (2e10, 2e10 * ratio):
+        parts = [
+            bf.Beam(bf.Line(*ends), 7, bf.ANCFCRBF(bf.ElasticLine()), bf.Circle(1e-4), bf.Material(youngs, 0.3, 1000.0))
+            for ends, youngs in ((((0, 0), (1, 0)), 2e5), (((1, 0), (1.8, 0.6)), stiffness))
+        ]
+        joint = bf.Hinge(parts[0].end, parts[1].start)
+        modes = bf.solve_modes(bf.Model(parts, [bf.Clamp(parts[0].start)], joints=[joint]), 5)
+        assert len(modes.rigid) == 1
+        frequencies.append(modes.frequencies[1:])
+    # a bar 1e5 times as stiff as the wire bends as much less
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-4)

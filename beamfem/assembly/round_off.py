@@ -16,7 +16,7 @@ _STRAIN = 1e-3
 _DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
 ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
 _PLENTY = 12.0  # digits that no further correction improves on
-_LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
+LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
 _KEEPS = "the tangent keeps its digits"
 MOST_DIGITS = 15.0
 _NOTHING = 1e-10  # of the round-off of a state as it stands: forces below are none
@@ -121,14 +121,19 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
     if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
         return False
-    state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
     try:
-        plain = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
-        lost = with_stresses(system, state, load_factor, STATICS, None, plain).lost(system.rotated)
+        lost = lost_digits(system, p, load_factor, STATICS)
     except LinAlgError:
         return False
-    system.proven.add(_KEEPS if lost <= _LOSES else MIXED)
-    return bool(lost > _LOSES)
+    system.proven.add(_KEEPS if lost <= LOSES else MIXED)
+    return lost > LOSES
+
+
+def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients: tuple[float, float, float]) -> float:
+    """Return the relative error of a solution by a plain tangent that weighs p, p' and p''. Raises LinAlgError."""
+    state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
+    plain = linearise(system, p, zeros, zeros, load_factor, coefficients)[1]
+    return with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
 
 
 def load_size(system: System, values: Sequence[np.ndarray]) -> float:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array, dia_array, eye_array
+from scipy.sparse import csc_array, csr_array, dia_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from beamfem.kernels.band import band
@@ -207,11 +207,12 @@ def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
 
 
 def turning(size: int, rotated: Rotated) -> csr_array:
-    """Return the matrix (n, n) that turns each pair of an inclined roller to (normal, tangent)."""
-    turn = eye_array(size, format="lil")
-    for i, (c, s) in zip(*rotated, strict=True):
-        turn[i, i], turn[i, i + 1], turn[i + 1, i], turn[i + 1, i + 1] = c, s, -s, c
-    return csr_array(turn)
+    """Return the rotation (n, n) that takes the normals of inclined rollers to x."""
+    first, normal = rotated
+    diagonal, above, below = np.ones(size), np.zeros(size), np.zeros(size)
+    diagonal[first] = diagonal[first + 1] = normal[:, 0]
+    above[first + 1], below[first] = normal[:, 1], -normal[:, 1]
+    return csr_array(dia_array(([below, diagonal, above], [-1, 0, 1]), shape=(size, size)))
 
 
 def _diagonals(rows: np.ndarray) -> np.ndarray:

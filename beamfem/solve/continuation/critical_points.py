@@ -1,5 +1,6 @@
 """The path between two of its points, and the limit points there."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -9,11 +10,13 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
+from beamfem.solve.newton.convergence import balance_of
 
 _SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
 _LEVEL = 1e-4  # slope of the load factor at a limit point, at most
 _DISTANCE = 5e-3  # of a part of a segment: samples are no closer to where another path crosses
 _TRIALS = 12
+_BALANCINGS = 4
 _EVEN = 1e-6  # of products with a tangent from both sides: what they may differ by if it is symmetric
 
 
@@ -71,7 +74,32 @@ class Segment:
         if x in self.found:
             return self.found[x].y
         fractions = self.beside(x, x, _DISTANCE, 0.0, 1.0)
-        return np.asarray(interpolation_weights(fractions, x) @ [self.at(at).y for at in fractions.tolist()])
+        points, weights = [self.at(at) for at in fractions.tolist()], interpolation_weights(fractions, x)
+        mode = weights @ [point.tangent for point in points]
+        mode[-1] = 0.0
+        mode /= self.line.length(mode)
+        return self.balanced(weights @ [point.y for point in points], [mode])
+
+    def balanced(self, y: np.ndarray, modes: Sequence[np.ndarray]) -> np.ndarray:
+        """Return an interpolated y (n + 1,), balanced better across its orthonormal critical modes (k, n + 1).
+
+        What the tangent, nearly singular, says along the modes is nothing but round-off.
+        """
+        line = self.line
+        best, least = y, np.inf
+        try:
+            for _ in range(_BALANCINGS):
+                left = balance_of(line.system, y[:-1], float(y[-1])).largest
+                if not left < least:
+                    break
+                best, least = y, left
+                step, _, _ = line.solve(y, None)
+                for mode in modes:
+                    step -= line.dot(mode, step) * mode
+                y = y + step
+        except LinAlgError:
+            pass
+        return best
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""

@@ -113,6 +113,7 @@ def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
     y, tangent = samples.at(x, samples.y), samples.at(x, samples.tangents)
     for mode, rate in zip(modes, rates, strict=True):
         _require_crossing(samples, x, mode, rate)
+    y = samples.segment.balanced(y, modes)
     return [Crossing(x, y, tangent, mode) for mode in modes]
 
 
@@ -155,7 +156,8 @@ def turning(segment: Segment, x: float) -> Crossing:
     tangent /= segment.line.length(tangent)
     mode = np.append(tangent[:-1], 0.0)
     largest = mode[np.argmax(np.abs(mode) / segment.line.scale)]
-    return Crossing(x, weights @ [point.y for point in points], tangent, mode / np.copysign(1.0, largest))
+    mode /= np.copysign(segment.line.length(mode), largest)
+    return Crossing(x, segment.balanced(weights @ [point.y for point in points], [mode]), tangent, mode)
 
 
 def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:

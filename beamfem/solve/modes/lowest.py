@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from beamfem.assembly.equations import MIXED
+from beamfem.assembly.round_off import LOSES
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
 from beamfem.linalg.lapack import LinAlgError, eigh
+from beamfem.linalg.tangent import Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import Pencil
 
@@ -12,7 +15,8 @@ _CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be c
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
 _SPREAD = 1e6  # of the sizes of eigenvalues that are found together from their stiffness
 _SEARCHES = 8
-_SOLVES = 2  # for vectors far above the lowest: each leaves some hundredth of what is wrong of them
+_WRONG = 1e-5  # of vectors: what the round-off of the tangent may do to them
+_SOLVES = 2  # for vectors that round-off is felt in: each leaves some hundredth of what is wrong of them
 
 
 def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
@@ -25,9 +29,13 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
     if count == 0:
         return nothing_known(n)
-    if shift is None:
-        shift = pencil.shift(rigid.shape[1])
-    factors = pencil.shifted(shift).factorised(pencil.system.rotated)
+    start = pencil.shift(rigid.shape[1]) if shift is None else shift
+    factors = pencil.shifted(start).factorised(pencil.system.rotated)
+    lost = pencil.lost(start, factors)
+    if lost > LOSES:
+        pencil.system.proven.add(MIXED)
+        start = pencil.shift(rigid.shape[1]) if shift is None else shift
+        factors = pencil.shifted(start).factorised(pencil.system.rotated)
     wanted = min(count + _SPARE, available)
     known = rigid
     correction = np.zeros_like(pencil.p)
@@ -35,8 +43,8 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     found, missing = nothing_known(n), wanted
     for _ in range(_SEARCHES):
         more = largest_pairs(pencil.mass, factors, min(missing, available - len(found[0])), known)
-        found = _sorted(np.append(found[0], shift + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
-        squares, vectors = _refined(pencil, *_sharpened(pencil, *found), correction)
+        found = _sorted(np.append(found[0], start + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *found, start if lost > _WRONG else None), correction)
         if len(squares) == available:
             return squares, vectors
         below = count + int(np.argmax(np.diff(squares[count - 1 :])))
@@ -52,21 +60,30 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
 
 
-def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray) -> Pairs:
+def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: float | None) -> Pairs:
     """Return the vectors (unknown, m) of values far above the lowest after further solves, at a shift below them.
 
     The factors that found them bring the round-off of the lowest, which for them is as large as the values lie apart.
+    start: shift below all where the round-off of the tangent is felt, so that the lowest are solved for as well.
     """
     first, *others = _alike(squares)
     sharp = vectors[:, first]
+    if start is not None:
+        sharp = _solved(pencil, pencil.exact(start), np.empty((len(vectors), 0)), sharp)
     for part in others:
-        factors = pencil.shifted(0.5 * squares[part.start]).factorised(pencil.system.rotated)
-        own = _besides(pencil, sharp, vectors[:, part])
-        for _ in range(_SOLVES):
-            own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
-            own = _besides(pencil, sharp, own)
-        sharp = np.column_stack([sharp, own])
+        shift = 0.5 * squares[part.start]
+        tangent = pencil.shifted(shift) if start is None else pencil.exact(shift)
+        sharp = np.column_stack([sharp, _solved(pencil, tangent, sharp, vectors[:, part])])
     return squares, sharp
+
+
+def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, m) after inverse iterations, without their shares of known ones (n, k)."""
+    factors, own = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
+    for _ in range(_SOLVES):
+        own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
+        own = _besides(pencil, known, own)
+    return own
 
 
 def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.assembly.equations import MIXED
+from beamfem.assembly.round_off import LOSES
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
@@ -147,6 +149,10 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
         return nothing_known(pencil.size)
     shift = pencil.shift(rigid.shape[1])
     tangent = pencil.shifted(shift)
+    if pencil.lost(shift, tangent.factorised(pencil.system.rotated)) > LOSES:
+        pencil.system.proven.add(MIXED)
+        shift = pencil.shift(rigid.shape[1])
+        tangent = pencil.shifted(shift)
     factors, stiffness = tangent.factorised(pencil.system.rotated), tangent.sparse(UNROTATED)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
     reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)

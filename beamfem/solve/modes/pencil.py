@@ -6,13 +6,15 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
-from beamfem.assembly.equations import INERTIA, STATICS, linearise, residual
+from beamfem.assembly.equations import INERTIA, MIXED, STATICS, linearise, residual, with_stresses
+from beamfem.assembly.round_off import lost_digits
 from beamfem.assembly.system import System
-from beamfem.linalg.tangent import UNROTATED, Tangent
+from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
 
 _RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
 _AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
 _ASYMMETRY = 1e-12
+_FELT = 1e-4  # of the work of random forces: what rounded stiffness may be before it is looked at closely
 
 
 def is_symmetric(matrix: csr_array) -> bool:
@@ -65,6 +67,29 @@ class Pencil:
     def below(self, value: float) -> int:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
         return self.shifted(value).factorised(self.system.rotated).negative_pivots
+
+    def lost(self, shift: float, factors: Factorised) -> float:
+        """Return the relative error of a solution by the plain K - shift M, 0 where it cannot be felt.
+
+        factors: of K - shift M. Where random inertia forces move what is so soft that the last digits of the stiffness
+        count, the tangent with stress resultants as unknowns tells.
+        """
+        if MIXED in self.system.proven or self.system.connectors.items:
+            return 0.0
+        force = self.mass @ np.random.default_rng(0).standard_normal(self.mass.shape[0])
+        moved = factors.solve(force)
+        parts = float(np.abs(moved) @ (abs(self.stiffness) @ np.abs(moved)))
+        if np.finfo(float).eps * parts <= _FELT * abs(float(moved @ force)):
+            return 0.0
+        return lost_digits(self.system, self.p, self.load_factor, (1.0, 0.0, -shift))
+
+    def exact(self, shift: float) -> Tangent:
+        """Return K - shift M with stress resultants as unknowns, which keeps the digits of soft parts."""
+        if MIXED in self.system.proven:
+            return self.shifted(shift)
+        state = (self.p, np.zeros(len(self.p)), np.zeros(len(self.p)))
+        coefficients = (1.0, 0.0, -shift)
+        return with_stresses(self.system, state, self.load_factor, coefficients, None, self.shifted(shift))
 
     def shift(self, rigid: int) -> float:
         """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.

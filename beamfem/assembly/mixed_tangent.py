@@ -16,11 +16,11 @@ from scipy.sparse.linalg import SuperLU, splu
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Block
-from beamfem.linalg.lapack import LinAlgError, symmetric_factors
+from beamfem.linalg.inertia import negative_eigenvalues
+from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
 
 _REFINEMENTS = 2  # each equation then holds to the digits of its own terms, however large others are (Skeel 1980)
-_COUNTED = 3000  # unknowns and stress resultants; of more, the pivots of the plain tangent are counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +40,10 @@ class MixedFactors:
     @property
     def negative_pivots(self) -> int:
         """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
-        if self.matrix.shape[0] > _COUNTED:
+        found = negative_eigenvalues(csr_array(self.matrix))
+        if found is None:
             return self.tangent.plain.factorised(self.rotated).negative_pivots
-        return negative_eigenvalues(self.matrix.toarray()) - (self.matrix.shape[0] - int(self.kept.sum()))
+        return found - (self.matrix.shape[0] - int(self.kept.sum()))
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
@@ -134,17 +135,6 @@ class MixedTangent:
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
         return self.plain.sparse(rotated)
-
-
-def negative_eigenvalues(matrix: np.ndarray) -> int:
-    """Return how many eigenvalues of a symmetric matrix (n, n) are negative (Bunch and Kaufman 1977)."""
-    factored, exchanged = symmetric_factors(matrix)
-    pivots, beside = np.diagonal(factored).copy(), np.diagonal(factored, -1)
-    first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a block of two are marked
-    mean, half = 0.5 * (pivots[first] + pivots[first + 1]), 0.5 * (pivots[first] - pivots[first + 1])
-    away = np.hypot(half, beside[first])
-    pivots[first], pivots[first + 1] = mean - away, mean + away
-    return int((pivots < 0.0).sum())
 
 
 def without_stiffness(blocks: tuple[Block, ...]) -> tuple[Block, ...]:

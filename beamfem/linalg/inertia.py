@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy.linalg.lapack import dsytrs
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from beamfem.linalg.lapack import LinAlgError, symmetric_factors
@@ -22,7 +22,8 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
     not finite.
     """
     order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
-    ordered = csr_array(matrix[order][:, order])
+    ordered = csr_array(triu(matrix[order][:, order]))
+    ordered.eliminate_zeros()
     size = ordered.shape[0]
     coupled = _first_coupled(ordered)
     count, start, fewest = 0, 0, 0
@@ -34,9 +35,8 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
             return None
         behind = end + np.flatnonzero(coupled[end:] < end)
         rows = np.append(np.arange(start, end), behind)
-        front = ordered[rows][:, rows].toarray()
         inside = end - start
-        front[inside:, inside:] = 0.0
+        front = _rows_of(ordered, start, end, rows)
         known = np.searchsorted(rows, active)
         front[np.ix_(known, known)] += carried
         largest = np.abs(front).max()
@@ -51,11 +51,21 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
     return count
 
 
+def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.ndarray:
+    """Return the rows from `start` to `end` of a symmetric matrix, and their columns, of `rows` (m,) it has (m, m)."""
+    part = slice(upper.indptr[start], upper.indptr[end])
+    row = np.repeat(np.arange(end - start), np.diff(upper.indptr[start : end + 1]))
+    column = np.searchsorted(rows, upper.indices[part])
+    result = np.zeros((len(rows), len(rows)))
+    result[row, column] = result[column, row] = upper.data[part]
+    return result
+
+
 def _first_coupled(matrix: csr_array) -> np.ndarray:
-    """Return the first row (n,) that each is coupled with, itself where there is none before."""
+    """Return the first row (n,) that each is coupled with, itself where there is none before; of an upper half."""
     row, column = matrix.nonzero()
     result = np.arange(matrix.shape[0])
-    np.minimum.at(result, row, column)
+    np.minimum.at(result, column, row)
     return result
 
 

@@ -10,7 +10,7 @@ from beamfem.linalg.lapack import LinAlgError, symmetric_factors
 _FEWEST = 24  # rows of a block; of fewer the calls cost more than the work
 _WINDOW = 96  # rows in which a block may end: an element of high order has fewer
 _LARGEST = 3000  # rows of a block that is eliminated at once
-_GROWTH = 100.0  # of the largest number in front of it: a block that leaves more behind is joined with the next
+_GROWTH = 1e5  # of the largest number in front of it: a block that leaves more behind is joined with the next
 
 
 def negative_eigenvalues(matrix: csr_array) -> int | None:

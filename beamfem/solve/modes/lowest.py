@@ -15,7 +15,7 @@ _CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be c
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
 _SPREAD = 1e6  # of the sizes of eigenvalues that are found together from their stiffness
 _SEARCHES = 8
-_WRONG = 1e-5  # of vectors: what the round-off of the tangent may do to them
+WRONG = 1e-5  # of vectors: what the round-off of the tangent may do to them
 _SOLVES = 2  # for vectors that round-off is felt in: each leaves some hundredth of what is wrong of them
 
 
@@ -44,7 +44,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     for _ in range(_SEARCHES):
         more = largest_pairs(pencil.mass, factors, min(missing, available - len(found[0])), known)
         found = _sorted(np.append(found[0], start + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
-        squares, vectors = _refined(pencil, *_sharpened(pencil, *found, start if lost > _WRONG else None), correction)
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *found, start if lost > WRONG else None), correction)
         if len(squares) == available:
             return squares, vectors
         below = count + int(np.argmax(np.diff(squares[count - 1 :])))

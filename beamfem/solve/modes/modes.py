@@ -17,7 +17,7 @@ from beamfem.registry import offered
 from beamfem.results.locking import frequency_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
-from beamfem.solve.modes.lowest import lowest_pairs
+from beamfem.solve.modes.lowest import WRONG, lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.rigid import unresisted
 from beamfem.solve.modes.shapes import largest_translation, upright
@@ -149,10 +149,12 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
         return nothing_known(pencil.size)
     shift = pencil.shift(rigid.shape[1])
     tangent = pencil.shifted(shift)
-    if pencil.lost(shift, tangent.factorised(pencil.system.rotated)) > LOSES:
+    lost = pencil.lost(shift, tangent.factorised(pencil.system.rotated))
+    if lost > LOSES:
         pencil.system.proven.add(MIXED)
         shift = pencil.shift(rigid.shape[1])
-        tangent = pencil.shifted(shift)
+    if lost > WRONG:
+        tangent = pencil.exact(shift)
     factors, stiffness = tangent.factorised(pencil.system.rotated), tangent.sparse(UNROTATED)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
     reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)

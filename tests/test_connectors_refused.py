@@ -120,6 +120,19 @@ def test_conditions_of_motions_are_independent_of_time_and_each_other():
         bf.simulate(bf.Model(model.beams, held, connectors=model.connectors[:1]), 0.1, 1e-3)
 
 
+def test_conditions_that_say_the_same_twice_are_refused_in_statics():
+    left, right, model = portal(0.4)
+    slack = bf.Model([left, right], model.supports, model.loads, connectors=[*model.connectors, *model.connectors])
+    held = bf.Model([left, right], [*model.supports, bf.Pin(left.end), bf.Pin(right.end)], connectors=model.connectors)
+    for wrong in (slack, held):
+        with pytest.raises(bf.InputError, match=r"conditions of connectors \(RigidLink\) say the same twice"):
+            bf.solve_static(wrong)
+    normal = np.array([np.cos(0.4), np.sin(0.4)])
+    roller = bf.Roller(left.end, tuple(normal))
+    more = bf.Model([left, right], [*model.supports, roller], model.loads, connectors=model.connectors)
+    assert bf.solve_static(more).displacement(left.end)[-1] @ normal == pytest.approx(0.0, abs=1e-12)
+
+
 def test_what_is_no_connector_is_refused():
     own = beam()
     stiffness = (1.0, 1.0, 1.0)

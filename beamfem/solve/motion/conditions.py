@@ -11,6 +11,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent
+from beamfem.solve.start.multipliers import dependent
 
 _MET = 1e-8  # of the model, or of the largest velocity
 _SHORT = 1e-4  # of the model: how far a difference along the motion reaches
@@ -50,11 +51,7 @@ def constrained_acceleration(system: System, motion: Motion, unbalanced: np.ndar
     try:
         return whole.solve(right, system.rotated)
     except LinAlgError as error:
-        names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
-        raise InputError(
-            f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "
-            "multipliers cannot be told apart; leave out those that are not needed"
-        ) from error
+        raise InputError(dependent(system)) from error
 
 
 def _change_of_rates(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:

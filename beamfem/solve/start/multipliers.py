@@ -1,8 +1,14 @@
-"""Analyses that cannot take unknowns without stiffness or mass, or forces against velocities."""
+"""Unknowns without stiffness or mass: analyses that cannot take them, and conditions that say the same twice."""
+
+import numpy as np
 
 from beamfem.assembly.connector_checks import resists_rates
+from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
+from beamfem.linalg.lapack import qr
+
+_DEPENDENT = 1e-10  # of a condition of unit size: what is left of it across all others
 
 
 def refuse_multipliers(system: System, analysis: str) -> None:
@@ -23,3 +29,27 @@ def refuse_dampers(system: System) -> None:
                 f"solve_modes finds undamped vibrations, but the force of {item.name} depends on velocities; leave it "
                 "out, or let simulate show how the motion decays"
             )
+
+
+def require_independent(system: System, p: np.ndarray) -> None:
+    """Raise InputError where conditions of connectors, supports and joints say the same twice in a state p (n,)."""
+    multipliers = len(system.connectors.multipliers)
+    if multipliers == 0:
+        return
+    zeros = np.zeros(len(p))
+    tangent = linearise(system, p, zeros, zeros, 0.0, STATICS)[1].sparse(system.rotated)
+    scale = system.scale[system.free_dofs][:-multipliers]
+    rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
+    sizes = np.linalg.norm(rows, axis=0)
+    left = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
+    if len(left) < multipliers or np.any(left <= _DEPENDENT):
+        raise InputError(dependent(system))
+
+
+def dependent(system: System) -> str:
+    """Say that conditions of connectors depend on each other."""
+    names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
+    return (
+        f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "
+        "multipliers cannot be told apart; leave out those that are not needed"
+    )

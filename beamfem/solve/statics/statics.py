@@ -12,6 +12,7 @@ from beamfem.results.solution import Solution
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.mechanisms import require_support
+from beamfem.solve.start.multipliers import require_independent
 from beamfem.solve.statics.load_steps import Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord
@@ -44,6 +45,7 @@ def solve_through(
     system = system_of(model, static=True)
     tell_of_compilation()
     require_support(system)
+    require_independent(system, system.reference)
     newton = require_newton(newton, _NEWTON)
     done = StaticRecord(model, system.symmetric)
     first = first_equilibrium(system, newton)

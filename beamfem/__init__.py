@@ -40,7 +40,7 @@ from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
-from beamfem.model.contribution import At, Contribution
+from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.model.grading import graded
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
@@ -123,6 +123,7 @@ __all__ = [
     "Prescribed",
     "Pressure",
     "Rectangle",
+    "Remembering",
     "Rigid",
     "RigidVelocity",
     "Roller",

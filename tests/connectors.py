@@ -129,6 +129,45 @@ class Barrier:
         return 0.0, self.stiffness * self.width**2 * float(np.exp(-gap / self.width))
 
 
+@dataclass(frozen=True)
+class Rest:
+    """A rough floor: it pushes a point back with a stiffness [N/m], and holds it there up to friction times the push.
+
+    It remembers where along the floor the point would be free of force [m], from its reference.
+    """
+
+    point: bf.Point
+    level: float
+    stiffness: float
+    friction: float
+    memory = (0.0,)
+    unknowns = 0
+    conservative = False
+
+    @property
+    def points(self):
+        return (self.point,)
+
+    def force(self, at):
+        push, held = self._forces(at)
+        return np.array([held, -push, 0.0 * push])
+
+    def remember(self, at):
+        return [at.q[0, 0] - at.reference[0, 0] - self._forces(at)[1] / self.stiffness]
+
+    def energy(self, at):
+        push, held = self._forces(at)
+        return 0.0, 0.5 * float(np.real(push**2 + held**2)) / self.stiffness
+
+    def _forces(self, at):
+        gap = at.q[0, 1] - self.level
+        push = -self.stiffness * gap if gap.real < 0.0 else 0.0 * gap
+        held = self.stiffness * (at.q[0, 0] - at.reference[0, 0] - at.memory[0])
+        most = self.friction * push
+        # where it slid before, a step begins as if it stuck: Newton's method goes to and fro between sliding both ways
+        return push, held if abs(held.real) <= (1.0 + 1e-9) * most.real else most * np.sign(held.real)
+
+
 SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 BENDING, AREA = 2e11 * 1e-8 / 12, 1e-4
 KINDS = [bf.ANCF(), bf.CRBF(3), bf.BilinearCRBF(bf.Structural(), "reduced")]

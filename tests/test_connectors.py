@@ -202,3 +202,17 @@ def test_a_bush_between_points_that_nearly_coincide_is_taken(apart):
     supports, load = [bf.Clamp(one.start), bf.Clamp(two.end)], [bf.PointForce(one.end, (0.0, 1.0))]
     solution = bf.solve_static(bf.Model([one, two], supports, load, connectors=[Bush(one.end, two.start, 1e5)]))
     assert solution.displacement(two.start)[-1] == pytest.approx(solution.displacement(one.end)[-1], abs=1e-4)
+
+
+def test_a_bar_that_lies_on_connectors_has_digits():
+    """Its weight is what acts: "round-off leaves no digit of the forces" was said, for want of loads and supports."""
+    bar, springs = beam(elements=2), (1e6, 1e6)
+    found = []
+    for supports, connectors in (
+        ([bf.Spring(end, springs) for end in (bar.start, bar.end)], []),
+        ([], [Anchor(end, (*springs, 0.0)) for end in (bar.start, bar.end)]),
+    ):
+        found.append(bf.solve_static(bf.Model([bar], supports, [bf.Gravity((0.0, -9.81))], connectors=connectors)))
+    assert found[1].statistics.digits > 6.0
+    expected, other = (solution.displacement(bar.at(0.5))[-1] for solution in found)
+    assert other == pytest.approx(expected, rel=1e-7, abs=1e-12)

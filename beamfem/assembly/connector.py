@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.errors import InputError
-from beamfem.model.contribution import At, Contribution
+from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.validation import called
 
 COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
@@ -19,12 +19,14 @@ Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 class Connector:
     """A contribution and the coordinates that it acts on.
 
-    dofs (3 m,): x, y and rotation of each point; own (k,): its unknowns; reference (m, 3): its q in the reference.
+    dofs (3 m,): x, y and rotation of each point; own (k,): its unknowns; memory (h,): what it remembers; reference
+    (m, 3): its q in the reference.
     """
 
     item: Contribution
     dofs: np.ndarray
     own: np.ndarray
+    memory: np.ndarray
     reference: np.ndarray
 
     @property
@@ -39,7 +41,8 @@ class Connector:
     def at(self, motion: Motion, time: float, gravity: np.ndarray) -> At:
         """Return where it is evaluated; the motion may be complex."""
         q, rate, second = (values[self.dofs].reshape(-1, 3) for values in motion)
-        return At(q, rate, second, motion[0][self.own], self.reference, time, gravity)
+        memory = motion[0][self.memory].real
+        return At(q, rate, second, motion[0][self.own], memory, self.reference, time, gravity)
 
     def force(self, at: At) -> np.ndarray:
         """Return its force (3 m + k,). Raises InputError for what is no force."""
@@ -50,6 +53,15 @@ class Connector:
                 f"force of {self.name} must return {len(self.dofs) + len(self.own)} numbers, fx, fy and moment at each "
                 f"of its {len(self.reference)} points and {len(self.own)} conditions, got {found.dtype} {found.shape}"
             )
+        return found
+
+    def remember(self, at: At) -> np.ndarray:
+        """Return its memory (h,) after an accepted step. Raises InputError for what is none."""
+        if not isinstance(self.item, Remembering):
+            return np.empty(0)
+        found = np.asarray(called(f"remember of {self.name}", self.item.remember, at))
+        if found.shape != self.memory.shape or found.dtype.kind not in "fi" or not np.isfinite(found).all():
+            raise InputError(f"remember of {self.name} must return {len(self.memory)} finite numbers, got {found}")
         return found
 
     def energy(self, at: At) -> tuple[complex, complex]:

@@ -7,6 +7,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.errors import InputError
+from beamfem.model.contribution import remembered
 
 _WIDTH = 1e-7  # of the central differences that complex steps are tested against
 _NEAR = 1e-3  # of its size: how far from the reference a force is looked at
@@ -67,9 +68,10 @@ def follows_time(item: Connector) -> tuple[bool, bool]:
 def _somewhere(item: Connector) -> tuple[Motion, float]:
     """Return a motion near the reference, and a length [m] of what is connected."""
     rng, size = np.random.default_rng(3), max(point.beam.curve.length for point in item.item.points)
-    last = int(item.all.max()) + 1
+    last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
     p, v, a = (_NEAR * size * rng.standard_normal(last) for _ in range(3))
     p[item.dofs] += item.reference.ravel()
+    p[item.memory] = remembered(item.item)
     return (p, v, a), size
 
 

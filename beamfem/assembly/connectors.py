@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.assembly.connector_checks import follows_time, require_analytic, resists_rates
+from beamfem.model.contribution import remembered
 from beamfem.model.loads import factor
 from beamfem.model.model import Model
 
@@ -27,6 +28,30 @@ class Connectors:
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the unknowns of their own."""
         return np.concatenate([np.empty(0, dtype=np.int64), *(item.own for item in self.items)])
+
+    @cached_property
+    def memory(self) -> np.ndarray:
+        """Numbers (h,) of what they remember."""
+        return np.concatenate([np.empty(0, dtype=np.int64), *(item.memory for item in self.items)])
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """What they remember at the start (h,)."""
+        return np.concatenate([np.empty(0), *(remembered(item.item) for item in self.items)])
+
+    def after_step(self, motion: Motion, time: float) -> np.ndarray:
+        """Return p (n,) with what they remember once a step to this state is accepted."""
+        if len(self.memory) == 0:
+            return motion[0]
+        gravity, p = self.gravity(time), motion[0].copy()
+        for item in self.items:
+            p[item.memory] = item.remember(item.at(motion, time, gravity))
+        return p
+
+    def after_load_step(self, p: np.ndarray, load_factor: float) -> np.ndarray:
+        """Return p (n,) with what they remember once an equilibrium is accepted."""
+        zeros = np.zeros(len(p))
+        return self.after_step((p, zeros, zeros), load_factor)
 
     @property
     def conservative(self) -> bool:
@@ -116,12 +141,14 @@ class Connectors:
         p, zeros = np.zeros(self.model.size), np.zeros(self.model.size)
         for item in self.items:
             p[item.dofs] = item.reference.ravel()
+        p[self.memory] = self.start
         return self.tangents((p, zeros, zeros), 0.0, (1.0, 0.0, 0.0))
 
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the contributions of a model with their coordinates. Raises InputError where one is not what it says."""
     first, found = model.coordinates, []
+    behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:
         dofs, places = [], []
         for point in item.points:
@@ -132,6 +159,8 @@ def connectors_of(model: Model, static: bool) -> Connectors:
             places.append([*mesh.position[node].tolist(), 0.0])
         own = np.arange(first, first + item.unknowns)
         first += item.unknowns
-        found.append(Connector(item, np.array(dofs, dtype=np.int64), own, np.array(places)))
+        memory = np.arange(behind, behind + len(remembered(item)))
+        behind += len(memory)
+        found.append(Connector(item, np.array(dofs, dtype=np.int64), own, memory, np.array(places)))
         require_analytic(found[-1])
     return Connectors(model, static, tuple(found))

@@ -153,7 +153,9 @@ def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
 def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], or the size of the model, and the largest of all other coordinates, or 1."""
     reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
-    return reach, max(float(np.max(np.abs(p[~system.positions]), initial=0.0)), 1.0)
+    others = ~system.positions
+    others[system.connectors.memory] = False
+    return reach, max(float(np.max(np.abs(p[others]), initial=0.0)), 1.0)
 
 
 def predicted_stresses(

@@ -152,6 +152,10 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     reactions = float(np.max(np.abs(unbalanced[held] * system.scale[held]), initial=0.0))
     for dof, normal in system.inclined:
         reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))
+    connected, zeros = np.zeros(len(p)), np.zeros(len(p))
+    system.connectors.add_forces(connected, (p, zeros, zeros), load_factor)
+    connected[system.connectors.multipliers] = 0.0
+    reactions = max(reactions, float(np.max(np.abs(connected * system.scale), initial=0.0)))
     sprung = np.abs(springs.stiffness * (p[springs.dof] - springs.rest)) * system.scale[springs.dof]
     return max(load_size(system, system.point_values(load_factor)), reactions, float(sprung.max(initial=0.0)))
 

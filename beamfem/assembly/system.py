@@ -38,6 +38,7 @@ from beamfem.validation import shown
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+_NO_MOVEMENT = 1e300  # what memories are measured by: whatever they change by, nothing moves
 _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
@@ -63,6 +64,7 @@ class System:
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
         p = np.zeros(self.model.size)
+        p[self.connectors.memory] = self.connectors.start
         for number, (element, block) in enumerate(zip(self.model.groups, self.blocks, strict=True)):
             own = [mesh for mesh in self.model.meshes if mesh.block == number]
             position, tangent, speed = (
@@ -220,9 +222,8 @@ class System:
         """The order of the coordinates that are not held."""
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
-        return order_unknowns(
-            self.blocks, self.model.size, self.prescribed_dofs, joined, coupled, connectors.multipliers.tolist()
-        )
+        known = np.append(self.prescribed_dofs, connectors.memory)
+        return order_unknowns(self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist())
 
     @cached_property
     def connectors(self) -> Connectors:
@@ -294,6 +295,7 @@ class System:
         result, multipliers = np.where(self.positions, self.extent, 1.0), self.connectors.multipliers
         if len(multipliers):
             result[multipliers] = self.extent * self.residual_errors[0].max()
+        result[self.connectors.memory] = _NO_MOVEMENT
         return result
 
     @cached_property

@@ -1,5 +1,6 @@
 """What adds forces to a model by a rule of its own: between points of beams, with a state of motion as its argument."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
-from beamfem.validation import count, flag, items
+from beamfem.validation import count, finite, flag, items
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,14 +16,16 @@ class At:
     """Where a contribution is evaluated.
 
     q (m, 3): x, y [m] and turn from the reference [rad] of its points; v, a (m, 3): their rates and accelerations, zero
-    in statics; own (k,): its own unknowns; reference (m, 3): q of the stress-free model; time: [s], in statics the load
-    factor; gravity (2,): acceleration [m/s^2] of the model's Gravity then.
+    in statics; own (k,): its own unknowns; memory (h,): what it remembers of the steps before; reference (m, 3): q of
+    the stress-free model; time: [s], in statics the load factor; gravity (2,): acceleration [m/s^2] of the model's
+    Gravity then.
     """
 
     q: np.ndarray
     v: np.ndarray
     a: np.ndarray
     own: np.ndarray
+    memory: np.ndarray
     reference: np.ndarray
     time: float
     gravity: np.ndarray
@@ -37,6 +40,7 @@ class Contribution(Protocol):
 
     Tangents are the derivatives of `force` by complex steps, exact to round-off, so that it must consist of analytic
     functions: `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved.
+    Cases such as contact are told apart by real parts, `np.where(gap.real < 0.0, ...)`.
     """
 
     @property
@@ -68,6 +72,23 @@ class Contribution(Protocol):
         ...
 
 
+@runtime_checkable
+class Remembering(Contribution, Protocol):
+    """A contribution that depends on its past, such as friction.
+
+    What it remembers is part of a state: a step that is taken back takes it back, and a result has it row by row.
+    """
+
+    @property
+    def memory(self) -> Sequence[float]:
+        """The numbers (h,) that it starts with."""
+        ...
+
+    def remember(self, at: At) -> Sequence[float]:
+        """Return them anew (h,) after each step that is accepted."""
+        ...
+
+
 def require_connector(connector: Contribution) -> None:
     """Raise InputError where points, unknowns or conservative of a connector are not what they should be."""
     name = type(connector).__name__
@@ -80,4 +101,15 @@ def require_connector(connector: Contribution) -> None:
         raise InputError(f"{name} lists a point twice")
     if connector.unknowns:
         count(f"unknowns of {name}", connector.unknowns)
+    if hasattr(connector, "memory") and not isinstance(connector, Remembering):
+        raise InputError(f"{name} has a memory, but no remember(at) that returns it anew after a step")
+    remembered(connector)
     flag(f"conservative of {name}", connector.conservative)
+
+
+def remembered(connector: Contribution) -> np.ndarray:
+    """Return what a connector remembers at the start (h,). Raises InputError."""
+    if not isinstance(connector, Remembering):
+        return np.empty(0)
+    name = f"memory of {type(connector).__name__}"
+    return np.array([finite(name, value) for value in items(name, connector.memory)], dtype=float)

@@ -12,7 +12,7 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
-from beamfem.model.contribution import Contribution, require_connector
+from beamfem.model.contribution import Contribution, remembered, require_connector
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
@@ -172,8 +172,8 @@ class Model:
 
     @property
     def size(self) -> int:
-        """Number of coordinates of the beams and, behind them, of unknowns that connectors bring along."""
-        return self.coordinates + sum(connector.unknowns for connector in self.connectors)
+        """Number of coordinates of the beams and, behind them, of unknowns and memories of connectors."""
+        return self.coordinates + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:

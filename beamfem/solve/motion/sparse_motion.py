@@ -52,6 +52,7 @@ class SparseMotion:
             differences, scale = self._differences, self._inverse_scale
             change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, self._number)
             statistics[6], statistics[7] = self._number[0], change / self.coefficients[2]
+            state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), float(time))
             count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:
                 saved[(first + step) // every] = state[:3]

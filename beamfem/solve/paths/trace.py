@@ -20,7 +20,7 @@ from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.multipliers import refuse_multipliers
+from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
@@ -71,6 +71,7 @@ def trace_equilibrium(
     newton = require_newton(newton, Newton(iterations=_ITERATIONS))
     system = system_of(model, static=True)
     refuse_multipliers(system, "trace_equilibrium")
+    refuse_memory(system, "trace_equilibrium")
     require_support(system)
     _require_load(system)
     _require_crossing(model, start)

@@ -24,7 +24,7 @@ from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.mechanisms import require_support
-from beamfem.solve.start.multipliers import refuse_multipliers
+from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -97,6 +97,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     whole_number("count", count)
     system = system_of(model, static=True)
     refuse_multipliers(system, "solve_buckling")
+    refuse_memory(system, "solve_buckling")
     require_support(system)
     unknown = len(system.free_dofs)
     if count > unknown:

@@ -21,6 +21,15 @@ def refuse_multipliers(system: System, analysis: str) -> None:
             )
 
 
+def refuse_memory(system: System, analysis: str) -> None:
+    """Raise InputError where a connector depends on its past, so that states are none of the load alone."""
+    for item in system.connectors.items:
+        if len(item.memory):
+            raise InputError(
+                f"{analysis} takes no connectors that remember, as {item.name} does; solve_static and simulate do"
+            )
+
+
 def refuse_dampers(system: System) -> None:
     """Raise InputError where the force of a connector depends on velocities, which free vibrations leave out."""
     for item in system.connectors.items:

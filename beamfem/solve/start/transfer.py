@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.system import System, coordinate_columns
+from beamfem.assembly.system import System, coordinate_columns, system_of
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
@@ -22,7 +22,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     """Return coordinates and rates (n,) of a state in the model of a system.
 
     Beams are found again by themselves, in a copy of their model by where they lie, whatever their order. Nodes are the
-    same; whether gradients or angles carry them depends on what holds and joins them.
+    same; whether gradients or angles carry them depends on what holds and joins them. Connectors that are in both
+    models remember what they did.
     Raises InputError where the beams do not match.
     """
     source, target = state.model, system.model
@@ -35,6 +36,10 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
             # a turned vector is that of the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
+    known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
+    for item in system.connectors.items:
+        if id(item.item) in known:
+            p[item.memory] = state.p[known[id(item.item)].memory]
     return p, v
 
 

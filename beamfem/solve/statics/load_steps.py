@@ -36,6 +36,8 @@ def reach(
     ahead = sorted({stop for stop in stops if _SAME < stop < 1.0 - _SAME} | {1.0})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
+    # what remembers goes through the steps that are asked for
+    longest = step if len(system.connectors.memory) else 1.0
     with progress("load factor", 1.0) as report:
         while done.reached < 1.0:
             step = _within_a_turn(system, done, step)
@@ -44,11 +46,12 @@ def reach(
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not skips_limit_points(system, done, target, result, newton):
-                done.add(target, result.state, result.negative_pivots, result.ended, result.digits)
+                state = system.connectors.after_load_step(result.state, target)
+                done.add(target, state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
                 if result.iterations <= _EASY_ITERATIONS:
-                    step *= 2.0
+                    step = min(2.0 * step, longest)
             elif result.ended is Termination.NO_DIGITS:
                 # what round-off takes of a load it takes of a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
@@ -57,6 +60,13 @@ def reach(
                 done.cuts += 1
                 refused = max(refused, target)
                 step *= 0.5
+            elif len(system.connectors.memory):
+                raise ConvergenceError(
+                    f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
+                    f"{result.ended.value}; models with connectors that remember are not followed along a path, but "
+                    "simulate shows where they go",
+                    done.solution(),
+                )
             else:
                 # behind what the load step could not pass, a longer one is tried once
                 _follow(done, follower, (target, stop), snap)

@@ -55,7 +55,8 @@ def solve_through(
         raise ConvergenceError(
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
-    done.add(0.0, first.state, first.negative_pivots, first.ended, first.digits)
+    state = system.connectors.after_load_step(first.state, 0.0)
+    done.add(0.0, state, first.negative_pivots, first.ended, first.digits)
     with kept(done.solution):
         try:
             reach(system, done, 1.0 / steps, newton, snap, stops)

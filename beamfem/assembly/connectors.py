@@ -24,7 +24,7 @@ class Connectors:
     static: bool
     items: tuple[Connector, ...]
 
-    @property
+    @cached_property
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the unknowns of their own."""
         return np.concatenate([np.empty(0, dtype=np.int64), *(item.own for item in self.items)])

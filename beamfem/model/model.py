@@ -170,7 +170,7 @@ class Model:
         """Number of coordinates of the beams, held ones included, shared ones once."""
         return self._numbered[1]
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of coordinates of the beams and, behind them, of unknowns and memories of connectors."""
         return self.coordinates + sum(one.unknowns + len(remembered(one)) for one in self.connectors)

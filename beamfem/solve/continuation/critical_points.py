@@ -74,16 +74,13 @@ class Segment:
         if x in self.found:
             return self.found[x].y
         fractions = self.beside(x, x, _DISTANCE, 0.0, 1.0)
-        points, weights = [self.at(at) for at in fractions.tolist()], interpolation_weights(fractions, x)
-        mode = weights @ [point.tangent for point in points]
-        mode[-1] = 0.0
-        mode /= self.line.length(mode)
-        return self.balanced(weights @ [point.y for point in points], [mode])
+        return np.asarray(interpolation_weights(fractions, x) @ [self.at(at).y for at in fractions.tolist()])
 
     def balanced(self, y: np.ndarray, modes: Sequence[np.ndarray]) -> np.ndarray:
         """Return an interpolated y (n + 1,), balanced better across its orthonormal critical modes (k, n + 1).
 
-        What the tangent, nearly singular, says along the modes is nothing but round-off.
+        What the tangent, nearly singular, says along the modes is nothing but round-off. A step beyond the distance of
+        the points it is interpolated between tells of another mode.
         """
         line = self.line
         best, least = y, np.inf
@@ -96,6 +93,8 @@ class Segment:
                 step, _, _ = line.solve(y, None)
                 for mode in modes:
                     step -= line.dot(mode, step) * mode
+                if line.length(step) > _DISTANCE * line.length(self.chord):
+                    break
                 y = y + step
         except LinAlgError:
             pass

@@ -63,9 +63,9 @@ class MixedFactors:
         return x, tuple(stresses)
 
     def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        turn = turning(len(right), self.rotated)
+        turn = turning(len(right), self.rotated) if len(self.rotated[0]) else None
         n = int(self.kept.sum())
-        known = np.concatenate([(turn @ right)[self.kept], strain])
+        known = np.concatenate([(right if turn is None else turn @ right)[self.kept], strain])
         known = self.scale * known
         found = self.lu.solve(known)
         for _ in range(_REFINEMENTS):
@@ -75,7 +75,7 @@ class MixedFactors:
             raise LinAlgError("the tangent is singular")
         x = np.zeros(len(right))
         x[self.kept] = found[:n]
-        return np.asarray(turn.T @ x), found[n:]
+        return x if turn is None else np.asarray(turn.T @ x), found[n:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,22 +183,17 @@ def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, cs
     )
     at = np.where(dof >= 0, p[dof], 0.0).ravel()
     sheet = free_sheet(part, len(at))
-
-    def measured(step: np.ndarray) -> np.ndarray:
-        return resultants(sheet, at, step)
-
+    places = np.arange(len(at)) % (nodes * width)
+    *measured, zeros = resultants(sheet, at, (1.0 * (places == place) for place in range(nodes * width + 1)))
     loose = np.abs(block.stiffness).max(axis=3) == 0.0
     resists = resisting(block)
     loose = loose[:, :, resists]
-    zeros = measured(np.zeros(len(at)))
     number = np.arange(elements * points * len(resists)).reshape(elements, points, len(resists))
     entries: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     for place in range(nodes * width):
-        step = np.zeros((elements, nodes * width))
-        step[:, place] = 1.0
         column = system.unknowns.free[dof.reshape(elements, -1)[:, place]]
         known = (dof.reshape(elements, -1)[:, place] >= 0) & (column >= 0)
-        values = np.where(loose[block.kind], 0.0, (measured(step.ravel()) - zeros)[:, :, resists])[known]
+        values = np.where(loose[block.kind], 0.0, (measured[place] - zeros)[:, :, resists])[known]
         columns = np.broadcast_to(column[known][:, None, None], values.shape)
         entries.append((values.ravel(), number[known].ravel(), columns.ravel()))
     values, row, column = (np.concatenate(part) for part in zip(*entries, strict=True))

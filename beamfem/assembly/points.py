@@ -1,5 +1,7 @@
 """Resultants at the quadrature points of a group of elements, apart from any solve."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
@@ -21,11 +23,13 @@ def no_loads(block: Block) -> PointLoads:
     return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
 
 
-def resultants(sheet: Sheet, p: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,), dp = step (n,)."""
-    assembler = Assembler(Equations((sheet,), _NO_SPRINGS, len(p)))
-    assembler.predict(p, np.ascontiguousarray(step))
-    return assembler.stresses[0].copy()
+def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray]) -> list[np.ndarray]:
+    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,)."""
+    assembler, found = Assembler(Equations((sheet,), _NO_SPRINGS, len(p))), []
+    for step in steps:
+        assembler.predict(p, np.ascontiguousarray(step))
+        found.append(assembler.stresses[0].copy())
+    return found
 
 
 def elastic_forces(

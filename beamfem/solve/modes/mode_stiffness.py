@@ -29,8 +29,8 @@ def stiffness_of_modes(
         classes, points, measures, _ = block.stiffness.shape
         unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
         plain = free_sheet(block._replace(stiffness=unit), len(p))
-        before = resultants(plain, p, zeros)
-        strains = np.array([resultants(plain, p, mode) - before for mode in modes]).reshape(count, *before.shape)
+        before, *after = resultants(plain, p, [zeros, *modes])
+        strains = (np.array(after) - before).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
     stresses = stresses_of(system, p, zeros if correction is None else correction)

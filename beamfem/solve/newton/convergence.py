@@ -1,7 +1,6 @@
 """When an iteration has come to its end: small corrections, a small residual, or nothing but round-off left of it."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,6 @@ from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, Termination
 
 STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
-_ONE_WAY = 0.9  # cosine between two corrections of an iteration that is on its way; that of round-off is any
 _SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
 LARGEST = 1e3  # of the model; larger corrections lead nowhere
 
@@ -77,17 +75,15 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
     return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0)
 
 
-def check_convergence(
-    system: System, balance: Balance, newton: Newton, correction: Correction, earlier: Sequence[np.ndarray]
-) -> Termination | None:
+def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Termination | None:
     """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
 
     Where the residual is above the tolerance, each row must have come to its own floor, and what the next correction
-    would be must be lost in the digits of the movement. earlier: the states (n,) of the last two checks, if there were.
+    would be must be lost in the digits of the movement.
     """
     if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
         ended = Termination.CONVERGED
-    elif _settled(system, balance.p, correction, earlier) and np.all(
+    elif _settled(system, balance.p, correction) and np.all(
         np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.free_dofs]
     ):
         ended = Termination.ROUND_OFF
@@ -96,18 +92,12 @@ def check_convergence(
     return Termination.INVERTED if balance.inverted else ended
 
 
-def _settled(system: System, p: np.ndarray, correction: Correction, earlier: Sequence[np.ndarray]) -> bool:
-    """Tell whether further corrections are small against the movement, below a digit or nothing but round-off.
-
-    Corrections that do not shrink are round-off if they do not point the same way; else the iteration is slow.
-    """
+def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
+    """Tell whether a further correction, if they shrink as before, is small against the movement or below a digit."""
+    if correction.stagnates:
+        return True
     size, before = correction.size, correction.before
     following = size * min(size / before, 1.0) if correction.number > 1 else size
     moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
     last_digit = np.finfo(float).eps * float(np.max(np.abs(p) / system.scale, initial=1.0))
-    if following <= max(_SURE * moved, last_digit):
-        return True
-    if not correction.stagnates or len(earlier) < 2:
-        return False
-    now, before = (p - earlier[1]) / system.scale, (earlier[1] - earlier[0]) / system.scale
-    return float(now @ before) <= _ONE_WAY * float(np.linalg.norm(now) * np.linalg.norm(before))
+    return following <= max(_SURE * moved, last_digit)

@@ -48,7 +48,7 @@ def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> Newton
     keep: stop where the tangent has another count of negative pivots, from the third iteration on; of the second, which
     takes the stresses of a linear step, the result only tells it.
     """
-    number, earlier = 0, list[np.ndarray]()
+    number = 0
     while number < newton.iterations:
         try:
             correction = problem.correct()
@@ -62,8 +62,7 @@ def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> Newton
             return NewtonResult(problem.start, number, Termination.DIVERGED, negative)
         if correction.is_small(newton):
             balance = problem.balance()
-            ended = check_convergence(problem.system, balance, newton, correction, earlier)
-            earlier = [*earlier[-1:], balance.p.copy()]
+            ended = check_convergence(problem.system, balance, newton, correction)
             if ended is not None and lost:
                 return NewtonResult(problem.start, number, Termination.LOST, negative)
             if ended is not None:

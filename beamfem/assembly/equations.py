@@ -4,6 +4,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.differences import differentiated
 from beamfem.assembly.mixed_tangent import MixedTangent, mixed, without_stiffness
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Block
@@ -171,15 +172,17 @@ def predicted_stresses(
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
-    """Return the change of the residual (n,) [N, N m] with the load factor, prescribed motions included.
+    """Return the change of the residual (n,) with the load factor, prescribed motions included.
 
-    A central difference of the given width, exact to round-off where loads are proportional to the load factor.
+    A central difference of the given width for loads, exact to round-off where they are proportional to the load
+    factor; that for prescribed motions is as wide as the stiffest strains of the beam allow.
     """
-    zeros = np.zeros(len(p))
-    held, slopes = system.prescribed_dofs, []
-    for side in (1.0, -1.0):
-        at = load_factor + side * width
-        moved = p.copy()
-        moved[held] += system.prescribed_values(at) - system.prescribed_values(load_factor)
-        slopes.append(side * residual(system, moved, zeros, zeros, at))
-    return np.asarray(sum(slopes) / (2.0 * width))
+    zeros, held = np.zeros(len(p)), system.prescribed_dofs
+    ahead, behind = (residual(system, p, zeros, zeros, load_factor + at) for at in (width, -width))
+    slope = (ahead - behind) / (2.0 * width)
+    motion = np.zeros(len(p))
+    motion[held] = system.prescribed_values(load_factor + width) - system.prescribed_values(load_factor - width)
+    if not motion.any():
+        return np.asarray(slope)
+    moved = differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, motion / (2.0 * width))
+    return np.asarray(slope + moved)

@@ -1,19 +1,18 @@
 """What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import MIXED, ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import System
 
 _CORRECTIONS = 12
 _LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
-_STRAIN = 1e-3
-_DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
 ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
 _PLENTY = 12.0  # digits that no further correction improves on
 LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
@@ -44,22 +43,6 @@ class Remainder:
 
     step: np.ndarray
     digits: float
-
-
-def differentiated(
-    system: System, values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray
-) -> np.ndarray:
-    """Return the change of a function of p (..., n) with a step (..., n) that may be below the last digit of p.
-
-    A central difference of fourth order, so wide that the strains it gives are of size 1e-3.
-    """
-    size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
-    width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
-    result = np.zeros(1)
-    for at, weight in _DIFFERENCE:
-        found = values(p + at * width[..., None] * step)
-        result = result + weight * found / width.reshape(width.shape + (1,) * (found.ndim - width.ndim))
-    return result
 
 
 def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.round_off import differentiated, digits_of, remainder
+from beamfem.assembly.differences import differentiated
+from beamfem.assembly.round_off import digits_of, remainder
 from beamfem.assembly.system import system_of
 
 if TYPE_CHECKING:

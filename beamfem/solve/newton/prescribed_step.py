@@ -4,6 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
 
@@ -21,11 +22,10 @@ class PrescribedStep:
 
     @cached_property
     def force(self) -> np.ndarray:
-        """Change of the residual (n,) with the step, by a central difference."""
+        """Change of the residual (n,) with the step."""
         if not self.moves:
             return np.zeros(len(self.start))
         zeros = np.zeros(len(self.start))
-        size = 1e-6 / max(float(np.max(np.abs(self.step))), 1e-300)
-        ahead = residual(self.system, self.start + size * self.step, zeros, zeros, self.load_factor)
-        behind = residual(self.system, self.start - size * self.step, zeros, zeros, self.load_factor)
-        return np.asarray((ahead - behind) / (2.0 * size))
+        return differentiated(
+            self.system, lambda p: residual(self.system, p, zeros, zeros, self.load_factor), self.start, self.step
+        )

@@ -3,11 +3,10 @@
 import numpy as np
 from scipy.sparse import csc_array
 
-from beamfem.assembly.assembler import Assembler
+from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
-from beamfem.assembly.mixed_tangent import MixedTangent, mixed, without_stiffness
+from beamfem.assembly.mixed_tangent import MixedTangent, mixed
 from beamfem.assembly.system import System
-from beamfem.kernels.block import Block
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 
@@ -56,16 +55,16 @@ def linearise(
     time: float,
     coefficients: tuple[float, float, float],
     stresses: tuple[np.ndarray, ...] | None = None,
-    blocks: tuple[Block, ...] | None = None,
+    equations: Equations | None = None,
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
 
-    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); blocks: to take instead of
-    those of the system.
+    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); equations: of other
+    blocks, to take instead of those of the system.
     """
     matrix, result = _entries(system), np.empty(len(p))
-    borrowed = stresses is None and blocks is None
-    assembler = _borrowed(system) if borrowed else system.assembler(stresses, blocks)
+    borrowed = stresses is None and equations is None
+    assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
     assembler.load(system.body(time), system.point_values(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
@@ -74,7 +73,7 @@ def linearise(
     system.connectors.add_forces(result, (p, v, a), time)
     _add_connectors(system, matrix, (p, v, a), time, coefficients)
     tangent = _tangent(system, matrix)
-    if MIXED in system.proven and coefficients[0] != 0.0 and blocks is None:
+    if MIXED in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
 
@@ -134,8 +133,8 @@ def with_stresses(
     """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
     p = state[0]
     known = stresses or _sure_stresses(system, p)
-    loads, zeros = linearise(system, *state, time, coefficients, known, without_stiffness(system.blocks))
-    return mixed(system, p, coefficients[0], loads, zeros, plain)
+    loads, zeros = linearise(system, *state, time, coefficients, known, system.without_stiffness)
+    return mixed(system, p, coefficients[0], loads[system.free_dofs], zeros, plain)
 
 
 def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -160,13 +159,13 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
 
 
 def predicted_stresses(
-    system: System, p: np.ndarray, step: np.ndarray, blocks: tuple[Block, ...] | None = None
+    system: System, p: np.ndarray, step: np.ndarray, equations: Equations | None = None
 ) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
 
-    blocks: to take instead of those of the system.
+    equations: of other blocks, to take instead of those of the system.
     """
-    assembler = system.assembler(blocks=blocks)
+    assembler = Assembler(equations or system.equations)
     assembler.predict(_plain(p), _plain(step))
     return assembler.stresses
 

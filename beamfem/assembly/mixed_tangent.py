@@ -10,12 +10,10 @@ is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_array, coo_array, csc_array, csr_array, dia_array
+from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.system import System
-from beamfem.kernels.block import Block
 from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
@@ -82,14 +80,14 @@ class MixedFactors:
 class MixedTangent:
     """A tangent whose elastic part is in factors.
 
-    rest (n, n): all but the elastic part; slopes (m, n): strains by coordinates; flexibility (m, m): weights times
-    inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places: shape (ne, nq, ns)
-    of each block's stress resultants and which of them resist; plain: the same tangent as one matrix.
+    zeros (n, n): all but the elastic part; slopes (m, n): weights times strains by unknowns; flexibility (m, m):
+    weights times inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places:
+    shape (ne, nq, ns) of each block's stress resultants and which of them resist; plain: K itself.
     """
 
     zeros: csr_array
-    slopes: csr_array
-    flexibility: csr_array
+    slopes: coo_array
+    flexibility: coo_array
     weight: np.ndarray
     loads: np.ndarray
     strain: np.ndarray
@@ -98,21 +96,27 @@ class MixedTangent:
 
     def factorised(self, rotated: Rotated) -> MixedFactors:
         """Return the factors. Raises LinAlgError."""
-        n = self.zeros.shape[0]
-        turn, kept = turning(n, rotated), np.ones(n, dtype=bool)
-        kept[rotated[0]] = False
-        zeros = (turn @ self.zeros @ turn.T)[kept][:, kept]
-        couples = dia_array((self.weight[None], [0]), shape=(len(self.weight),) * 2) @ self.slopes @ turn.T
-        couples = csr_array(couples)[:, kept]
-        placed = coo_array(block_array([[zeros, couples.T], [couples, -self.flexibility]]))
-        (row, column), sizes = placed.coords, np.abs(placed.data)
-        scale = np.ones(placed.shape[0])
+        n, zeros, couples = self.zeros.shape[0], self.zeros, self.slopes
+        kept = np.ones(n, dtype=bool)
+        if len(rotated[0]):
+            kept[rotated[0]] = False
+            turn = turning(n, rotated)
+            zeros, couples = (turn @ zeros @ turn.T)[kept][:, kept], csr_array(couples @ turn.T)[:, kept]
+        unknown, resultants = zeros.shape[0], len(self.weight)
+        above, beside, below = coo_array(zeros), coo_array(couples), self.flexibility
+        row = np.concatenate([above.row, unknown + beside.row, beside.col, unknown + below.row])
+        column = np.concatenate([above.col, beside.col, unknown + beside.row, unknown + below.col])
+        data = np.concatenate([above.data, beside.data, beside.data, -below.data])
+        entries = data != 0.0
+        row, column, data = row[entries], column[entries], data[entries]
+        sizes, scale = np.abs(data), np.ones(unknown + resultants)
         for _ in range(3):
             largest = np.zeros(len(scale))
             np.maximum.at(largest, row, scale[row] * sizes * scale[column])
             # powers of two round nothing
             scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
-        matrix = csc_array(coo_array((scale[row] * placed.data * scale[column], (row, column)), shape=placed.shape))
+        shape = len(scale), len(scale)
+        matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
         try:
             return MixedFactors(splu(matrix), scale, matrix, kept, self, rotated)
         except RuntimeError as error:
@@ -137,73 +141,25 @@ class MixedTangent:
         return self.plain.sparse(rotated)
 
 
-def without_stiffness(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
-    """Return blocks that resist nothing."""
-    return tuple(block._replace(stiffness=np.zeros_like(block.stiffness)) for block in blocks)
-
-
 def mixed(
     system: System, p: np.ndarray, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
 ) -> MixedTangent:
     """Return the tangent of a state p (n,).
 
-    factor: of the elastic part; loads (n,): residual of all but the elastic forces, rest: tangent of that; plain: of
+    factor: of the elastic part; loads (n,): residual of all but the elastic forces, zeros: tangent of that; plain: of
     everything.
     """
     none = np.empty(0, dtype=np.int64), np.empty((0, 2))
-    parts = [_elastic(system, block, p) for block in system.blocks]
-    slopes, flexibility, weight, strain = zip(*parts, strict=True)
-    sizes = [len(own) for own in weight]
-    placed = block_array([[own if i == j else None for j in range(len(sizes))] for i, own in enumerate(flexibility)])
-    stacked = csr_array(block_array([[own] for own in slopes]))
-    elastic = stacked, csr_array(placed) / factor, np.concatenate(weight)
-    shapes = tuple(((len(own.node), *own.reference.shape[1:]), resisting(own)) for own in system.blocks)
-    return MixedTangent(zeros.sparse(none), *elastic, loads[system.free_dofs], np.concatenate(strain), shapes, plain)
-
-
-def resisting(block: Block) -> np.ndarray:
-    """Return which strain measures of a block are resisted at some point."""
-    return np.flatnonzero(np.abs(block.stiffness).max(axis=(0, 1, 3)) > 0.0)
-
-
-def _elastic(system: System, block: Block, p: np.ndarray) -> tuple[csr_array, csr_array, np.ndarray, np.ndarray]:
-    """Return strains by coordinates (m, n), weights times inverse stiffness (m, m), weights and strains (m,)."""
-    (elements, nodes), width = block.node.shape, block.dof.shape[1]
-    points, strains = block.reference.shape[1:]
-    own = block.node.ravel()
-    dof = block.dof[own]
-    # each element gets coordinates of its own, so that one step moves one coordinate of every element
-    apart = np.where(dof >= 0, np.arange(dof.size).reshape(dof.shape), -1)
-    part = block._replace(
-        node=np.arange(len(own)).reshape(elements, nodes),
-        dof=apart,
-        node_kind=block.node_kind[own],
-        frame=block.frame[own],
-        stiffness=np.ascontiguousarray(np.broadcast_to(np.eye(strains), block.stiffness.shape)),
-    )
-    at = np.where(dof >= 0, p[dof], 0.0).ravel()
-    sheet = free_sheet(part, len(at))
-    places = np.arange(len(at)) % (nodes * width)
-    *measured, zeros = resultants(sheet, at, (1.0 * (places == place) for place in range(nodes * width + 1)))
-    loose = np.abs(block.stiffness).max(axis=3) == 0.0
-    resists = resisting(block)
-    loose = loose[:, :, resists]
-    number = np.arange(elements * points * len(resists)).reshape(elements, points, len(resists))
-    entries: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    for place in range(nodes * width):
-        column = system.unknowns.free[dof.reshape(elements, -1)[:, place]]
-        known = (dof.reshape(elements, -1)[:, place] >= 0) & (column >= 0)
-        values = np.where(loose[block.kind], 0.0, (measured[place] - zeros)[:, :, resists])[known]
-        columns = np.broadcast_to(column[known][:, None, None], values.shape)
-        entries.append((values.ravel(), number[known].ravel(), columns.ravel()))
-    values, row, column = (np.concatenate(part) for part in zip(*entries, strict=True))
-    slopes = csr_array(coo_array((values, (row, column)), shape=(number.size, len(system.free_dofs))))
-    weight = block.weight[block.kind][:, :, None] * np.ones(len(resists))
-    # where a point resists a strain less than others do, its stress is zero
-    inverse = np.linalg.inv(block.stiffness[:, :, resists[:, None], resists] + loose[..., None] * np.eye(len(resists)))
-    inverse = inverse[block.kind]
-    i = np.broadcast_to(number[..., :, None], inverse.shape).ravel()
-    j = np.broadcast_to(number[..., None, :], inverse.shape).ravel()
-    flexible = coo_array(((weight[..., None] * inverse).ravel(), (i, j)), shape=(number.size, number.size))
-    strain = np.where(loose[block.kind], 0.0, zeros[:, :, resists])
-    return slopes, csr_array(flexible), weight.ravel(), strain.ravel()
+    tables = system.strain_rates
+    rates, strain = zip(*(table.at(p) for table in tables), strict=True)
+    weight = np.concatenate([table.weight for table in tables])
+    before = np.cumsum([0, *(len(table.weight) for table in tables)])
+    pairs = list(zip(tables, before, strict=False))
+    point = np.concatenate([table.point + first for table, first in pairs])
+    column = np.concatenate([table.column for table in tables])
+    slopes = coo_array((np.concatenate(rates) * weight[point], (point, column)), shape=(len(weight), len(loads)))
+    above, below = (np.concatenate([table.flexibility[side] + first for table, first in pairs]) for side in (0, 1))
+    inverse = np.concatenate([table.flexibility[2] for table in tables]) / factor
+    flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
+    places = tuple((table.shape, table.resists) for table in tables)
+    return MixedTangent(zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, plain)

@@ -17,6 +17,7 @@ from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.solver_table import SolverTable
+from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.element.coordinates import across, labels
 from beamfem.errors import InputError
 from beamfem.kernels.block import (
@@ -90,20 +91,26 @@ class System:
     @cached_property
     def equations(self) -> Equations:
         """The equations as compiled code takes them."""
-        return self._equations(self.blocks)
+        return self.equations_of(self.blocks)
 
-    def _equations(self, blocks: Sequence[Block]) -> Equations:
+    @cached_property
+    def without_stiffness(self) -> Equations:
+        """The equations of beams that resist nothing."""
+        return self.equations_of([own._replace(stiffness=np.zeros_like(own.stiffness)) for own in self.blocks])
+
+    @cached_property
+    def strain_rates(self) -> tuple[StrainRates, ...]:
+        """How the strains of each block change with the unknowns."""
+        return tuple(strain_rates(block, self.unknowns.free) for block in self.blocks)
+
+    def equations_of(self, blocks: Sequence[Block]) -> Equations:
+        """Return the equations of blocks that take the place of those of the system."""
         sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(sheets, self.springs, self.model.size)
 
-    def assembler(
-        self, stresses: Sequence[np.ndarray] | None = None, blocks: Sequence[Block] | None = None
-    ) -> Assembler:
-        """Return the equations with new work space.
-
-        stresses (ne, nq, ns): of each block, for the geometric tangent; blocks: to take instead of those of the system.
-        """
-        return Assembler(self.equations if blocks is None else self._equations(blocks), stresses)
+    def assembler(self) -> Assembler:
+        """Return the equations with new work space."""
+        return Assembler(self.equations)
 
     @cached_property
     def solver_table(self) -> SolverTable:

@@ -42,8 +42,9 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
         largest = np.abs(front).max()
         factored, exchanged = symmetric_factors(front[:inside, :inside])
         solved, failed = dsytrs(factored, exchanged, front[:inside, inside:], lower=1)
-        left = front[inside:, inside:] - front[inside:, :inside] @ solved
-        if end < size and (failed or not np.abs(left).max(initial=0.0) <= _GROWTH * largest):
+        singular = failed or not np.isfinite(solved).all()
+        left = carried if singular else front[inside:, inside:] - front[inside:, :inside] @ solved
+        if end < size and (singular or not np.abs(left).max(initial=0.0) <= _GROWTH * largest):
             fewest = 2 * (end - start)
             continue
         count += _negative_blocks(factored, exchanged)

@@ -49,8 +49,8 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
     system = system_of(state.model, static=True)
     zeros, free = np.zeros(len(state.p)), system.free_dofs
     before, after = (
-        linearise(system, state.p, zeros, zeros, state.at, STATICS, blocks=blocks)[1].sparse(system.rotated)
-        for blocks in (system.blocks, _unlocked_blocks(system))
+        linearise(system, state.p, zeros, zeros, state.at, STATICS, equations=equations)[1].sparse(system.rotated)
+        for equations in (system.equations, system.equations_of(_unlocked_blocks(system)))
     )
     change = 0.0
     for shape in np.real(shapes[:, free]):
@@ -72,10 +72,10 @@ def _change(state: "State", span: float | None) -> float:
         return 0.0
     at = (state.p, state.v, state.a, state.at)
     weights = STATICS if span is None else (1.0, 0.0, 1.0 / span**2)
-    free, blocks = system.free_dofs, _unlocked_blocks(system)
+    free, equations = system.free_dofs, system.equations_of(_unlocked_blocks(system))
     step, stresses, floors = np.zeros(len(state.p)), None, row_floors(system, state.p)[free]
     for _ in range(_PREDICTIONS):
-        other, tangent = linearise(system, *at, weights, stresses, blocks)
+        other, tangent = linearise(system, *at, weights, stresses, equations)
         excess = (other - residual(system, *at))[free]
         if np.all(np.abs(excess) <= 2.0 * floors):
             return 0.0
@@ -83,7 +83,7 @@ def _change(state: "State", span: float | None) -> float:
             step[free] = tangent.solve(-excess, system.rotated)
         except LinAlgError:
             return 0.0
-        stresses = predicted_stresses(system, state.p, step, blocks)
+        stresses = predicted_stresses(system, state.p, step, equations)
     return float(np.linalg.norm(step[nodes], axis=1).max()) / moved
 
 

@@ -49,5 +49,5 @@ def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[
 def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:
     """Return the tangent (unknown, unknown) without sum B^T C B: what stresses, springs and loads add."""
     zeros = np.zeros(len(p))
-    weak = tuple(block._replace(stiffness=np.zeros_like(block.stiffness)) for block in system.blocks)
+    weak = system.without_stiffness
     return linearise(system, p, zeros, zeros, load_factor, STATICS, stresses, weak)[1].sparse(UNROTATED)

@@ -1,0 +1,93 @@
+"""Strains at the points of a block and how they change with the unknowns, and what does not change of that."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.points import free_sheet, resultants
+from beamfem.assembly.sheet import Sheet
+from beamfem.kernels.block import Block
+
+
+@dataclass(frozen=True, eq=False)
+class StrainRates:
+    """A block whose elements have coordinates of their own, so that a step moves one coordinate of every element.
+
+    dof (coordinates,): of the model, -1 for none; coordinates: of an element; resists: the measures that are resisted
+    at some point; loose (ne, nq, nr): where a point resists less than others do; place, point: of the rates by
+    unknowns, among those by all coordinates (coordinates, m); column: their unknowns; weight (m,); flexibility: rows,
+    columns and values of weights times inverse stiffness.
+    """
+
+    sheet: Sheet
+    dof: np.ndarray
+    coordinates: int
+    resists: np.ndarray
+    loose: np.ndarray
+    place: np.ndarray
+    point: np.ndarray
+    column: np.ndarray
+    weight: np.ndarray
+    flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+    def at(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rates by unknowns and the strains (m,) in a state p (n,)."""
+        at = np.where(self.dof >= 0, p[self.dof], 0.0)
+        places = np.arange(len(at)) % self.coordinates
+        steps = (1.0 * (places == place) for place in range(self.coordinates + 1))
+        *measured, zeros = resultants(self.sheet, at, steps)
+        strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
+        moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
+        return moved[self.place, self.point] - strain[self.point], strain
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Elements, points and strain measures of their stress resultants."""
+        return self.sheet.points
+
+
+def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
+    """Return those of a block; free (n,): unknowns of coordinates, negative for those that are prescribed."""
+    (elements, nodes), width = block.node.shape, block.dof.shape[1]
+    points, strains = block.reference.shape[1:]
+    own = block.node.ravel()
+    dof = block.dof[own]
+    part = block._replace(
+        node=np.arange(len(own)).reshape(elements, nodes),
+        dof=np.where(dof >= 0, np.arange(dof.size).reshape(dof.shape), -1),
+        node_kind=block.node_kind[own],
+        frame=block.frame[own],
+        stiffness=np.ascontiguousarray(np.broadcast_to(np.eye(strains), block.stiffness.shape)),
+    )
+    resists = resisting(block)
+    count = points * len(resists)
+    column = np.where(dof >= 0, free[dof], -1).reshape(elements, -1).T
+    place, element = np.nonzero(column >= 0)
+    point = (element[:, None] * count + np.arange(count)).ravel()
+    loose = (np.abs(block.stiffness).max(axis=3) == 0.0)[:, :, resists]
+    weight = block.weight[:, :, None] * np.ones(len(resists))
+    # where a point resists a strain less than others do, its stress is zero
+    inverse = np.linalg.inv(block.stiffness[:, :, resists[:, None], resists] + loose[..., None] * np.eye(len(resists)))
+    number = np.arange(elements * count).reshape(elements, points, len(resists))
+    shape = elements, points, len(resists), len(resists)
+    return StrainRates(
+        sheet=free_sheet(part, dof.size),
+        dof=dof.ravel(),
+        coordinates=nodes * width,
+        resists=resists,
+        loose=loose[block.kind],
+        place=np.repeat(place, count),
+        point=point,
+        column=np.repeat(column[place, element], count),
+        weight=weight[block.kind].ravel(),
+        flexibility=(
+            np.broadcast_to(number[..., :, None], shape).ravel(),
+            np.broadcast_to(number[..., None, :], shape).ravel(),
+            (weight[..., None] * inverse)[block.kind].ravel(),
+        ),
+    )
+
+
+def resisting(block: Block) -> np.ndarray:
+    """Return which strain measures of a block are resisted at some point."""
+    return np.flatnonzero(np.abs(block.stiffness).max(axis=(0, 1, 3)) > 0.0)

@@ -193,6 +193,22 @@ def test_negative_eigenvalues_are_counted_block_by_block():
             assert negative_eigenvalues(csr_array(matrix)) == np.sum(np.linalg.eigvalsh(matrix) < 0.0)
 
 
+@pytest.mark.parametrize("stiffness", [1.0, 1e6, 1e10])
+def test_what_a_block_cannot_eliminate_waits_for_the_next(stiffness):
+    """A held chain of pairs of springs whose forces are unknowns too: a part that ends between two is as stiff."""
+    rng, count = np.random.default_rng(5), 130
+    for _ in range(20):
+        matrix = np.zeros((3 * count, 3 * count))
+        place, forces = np.arange(0, 3 * count, 3), np.arange(3 * count).reshape(-1, 3)[:, 1:]
+        matrix[place, place] = 0.1 * rng.standard_normal(count)
+        for force in forces.T:
+            matrix[place, force] = matrix[force, place] = -1.0
+            matrix[force[:-1], place[1:]] = matrix[place[1:], force[:-1]] = 1.0
+            matrix[force, force] = -1.0 / stiffness
+        held = matrix[1:, 1:]
+        assert negative_eigenvalues(csr_array(held)) == np.sum(np.linalg.eigvalsh(held) < 0.0)
+
+
 def test_eigenvalues_of_a_matrix_without_narrow_places_are_not_counted():
     matrix = np.zeros((3200, 3200))
     matrix[:1600, 1600:] = np.random.default_rng(0).standard_normal((1600, 1600))

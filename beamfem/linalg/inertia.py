@@ -1,6 +1,7 @@
 """How many eigenvalues of a sparse symmetric matrix are negative, whatever their signs and order."""
 
 import numpy as np
+from scipy.linalg import eigh
 from scipy.linalg.lapack import dsytrs
 from scipy.sparse import csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
@@ -10,23 +11,25 @@ from beamfem.linalg.lapack import LinAlgError, symmetric_factors
 _FEWEST = 24  # rows of a block; of fewer the calls cost more than the work
 _WINDOW = 96  # rows in which a block may end: an element of high order has fewer
 _LARGEST = 3000  # rows of a block that is eliminated at once
-_GROWTH = 1e5  # of the largest number in front of it: a block that leaves more behind is joined with the next
+_DECOMPOSED = 400  # rows of a block whose directions may wait one by one
+_GROWTH = 1e5  # of the largest number in front of it: what would leave more behind waits for what follows
 
 
 def negative_eigenvalues(matrix: csr_array) -> int | None:
     """Return how many eigenvalues of a symmetric matrix (n, n) are negative; Sylvester's law of inertia.
 
     L D L^T block by block, with exchanges inside of blocks (Bunch and Kaufman 1977), which end where the fewest rows
-    are coupled with what follows: between two elements. A block that is nearly singular without what follows is
-    eliminated together with it, up to 3000 rows; None where these are not enough. Raises LinAlgError where numbers are
-    not finite.
+    are coupled with what follows: between two elements. Directions of a block that are nearly singular without what
+    follows are eliminated together with it, as in multifrontal elimination (Duff and Reid 1983); where these are many,
+    the blocks are joined, up to 3000 rows. None where these are not enough. Raises LinAlgError where numbers are not
+    finite.
     """
     order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
     ordered = csr_array(triu(matrix[order][:, order]))
     ordered.eliminate_zeros()
     size = ordered.shape[0]
     coupled = _first_coupled(ordered)
-    count, start, fewest = 0, 0, 0
+    count, start, fewest, waiting = 0, 0, 0, 0
     active, carried = np.empty(0, dtype=np.int64), np.empty((0, 0))
     for end in _block_ends(coupled):
         if end - start < fewest and end < size:
@@ -35,21 +38,50 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
             return None
         behind = end + np.flatnonzero(coupled[end:] < end)
         rows = np.append(np.arange(start, end), behind)
-        inside = end - start
-        front = _rows_of(ordered, start, end, rows)
-        known = np.searchsorted(rows, active)
+        inside = waiting + end - start
+        front = np.zeros((waiting + len(rows),) * 2)
+        front[waiting:, waiting:] = _rows_of(ordered, start, end, rows)
+        known = np.append(np.arange(waiting), waiting + np.searchsorted(rows, active))
         front[np.ix_(known, known)] += carried
-        largest = np.abs(front).max()
-        factored, exchanged = symmetric_factors(front[:inside, :inside])
-        solved, failed = dsytrs(factored, exchanged, front[:inside, inside:], lower=1)
-        singular = failed or not np.isfinite(solved).all()
-        left = carried if singular else front[inside:, inside:] - front[inside:, :inside] @ solved
-        if end < size and (singular or not np.abs(left).max(initial=0.0) <= _GROWTH * largest):
+        eliminated = _eliminate(front, inside) if end < size else (_negative(front), 0, carried)
+        if eliminated is None:
             fewest = 2 * (end - start)
             continue
-        count += _negative_blocks(factored, exchanged)
-        active, carried, start, fewest = behind, left, end, 0
+        negative, waiting, carried = eliminated
+        count += negative
+        active, start, fewest = behind, end, 0
     return count
+
+
+def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | None:
+    """Return the negative eigenvalues that go with the first rows of a matrix (n, n), and what these leave behind.
+
+    That is how many directions of them wait for rows to come, as what these would leave is too large, and the matrix of
+    those and the other rows. None where more than a few would wait.
+    """
+    largest = np.abs(front).max()
+    factored, exchanged = symmetric_factors(front[:inside, :inside])
+    solved, failed = dsytrs(factored, exchanged, front[:inside, inside:], lower=1)
+    if not failed and np.isfinite(solved).all():
+        left = front[inside:, inside:] - front[inside:, :inside] @ solved
+        if np.abs(left).max(initial=0.0) <= _GROWTH * largest:
+            return _negative_blocks(factored, exchanged), 0, left
+    if inside > _DECOMPOSED:
+        return None
+    values, vectors = eigh(front[:inside, :inside])
+    firm = np.abs(values) > largest / _GROWTH
+    waiting = int(np.sum(~firm))
+    if 2 * waiting > inside:
+        return None
+    beside = vectors.T @ front[:inside, inside:]
+    left = front[inside:, inside:] - (beside[firm].T / values[firm]) @ beside[firm]
+    carried = np.block([[np.diag(values[~firm]), beside[~firm]], [beside[~firm].T, left]])
+    return int(np.sum(values[firm] < 0.0)), waiting, carried
+
+
+def _negative(matrix: np.ndarray) -> int:
+    """Return how many eigenvalues of a dense symmetric matrix are negative."""
+    return _negative_blocks(*symmetric_factors(matrix))
 
 
 def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.ndarray:

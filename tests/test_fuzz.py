@@ -19,6 +19,18 @@ def test_a_few_random_models_end_right_or_in_a_named_error():
     assert len({found.analysis for found in outcomes if found.verdict == "right"}) == 5
 
 
+@pytest.mark.parametrize(
+    ("seed", "was"),
+    [
+        (4269, "an iteration that crept along a path of prescribed motions, taken for round-off"),
+        (4380, "the lowest mode of a loaded wire of L/h = 1e5, 10 % off"),
+        (8365, "the same as 4269 on a curved wire"),
+    ],
+)
+def test_random_models_that_once_were_wrong(seed, was):
+    assert judged(seed).verdict == "right", was
+
+
 @pytest.mark.slow
 def test_10_000_random_models_end_right_or_in_a_named_error(capsys):
     outcomes = run(range(MANY))

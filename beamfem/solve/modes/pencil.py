@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 from beamfem.assembly.equations import INERTIA, MIXED, STATICS, linearise, residual, with_stresses
 from beamfem.assembly.round_off import lost_digits
 from beamfem.assembly.system import System
-from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
+from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 
 _RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
 _AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
@@ -44,8 +44,25 @@ class Pencil:
         return self._tangent((1.0, 0.0, -shift))
 
     def _tangent(self, coefficients: tuple[float, float, float]) -> Tangent:
-        zeros = np.zeros(len(self.p))
-        return linearise(self.system, self.p, zeros, zeros, self.load_factor, coefficients)[1]
+        mixed = MIXED in self.system.proven and coefficients != INERTIA
+        stresses = self.balanced_stresses if mixed else None
+        return linearise(self.system, *self._at_rest, self.load_factor, coefficients, stresses)[1]
+
+    @property
+    def _at_rest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return self.p, np.zeros(len(self.p)), np.zeros(len(self.p))
+
+    @cached_property
+    def balanced_stresses(self) -> Stresses | None:
+        """The stress resultants (ne, nq, ns) of each block that balance the loads, as rounded strains may not.
+
+        None in the reference, where rounding is all there is.
+        """
+        if np.array_equal(self.p, self.system.reference):
+            return None
+        plain = linearise(self.system, *self._at_rest, self.load_factor, STATICS)[1]
+        mixed = with_stresses(self.system, self._at_rest, self.load_factor, STATICS, None, plain)
+        return mixed.factorised(self.system.rotated).correction(self.unbalanced)[1]
 
     @cached_property
     def mass(self) -> csr_array:
@@ -87,9 +104,8 @@ class Pencil:
         """Return K - shift M with stress resultants as unknowns, which keeps the digits of soft parts."""
         if MIXED in self.system.proven:
             return self.shifted(shift)
-        state = (self.p, np.zeros(len(self.p)), np.zeros(len(self.p)))
-        coefficients = (1.0, 0.0, -shift)
-        return with_stresses(self.system, state, self.load_factor, coefficients, None, self.shifted(shift))
+        plain, coefficients = self.shifted(shift), (1.0, 0.0, -shift)
+        return with_stresses(self.system, self._at_rest, self.load_factor, coefficients, self.balanced_stresses, plain)
 
     def shift(self, rigid: int) -> float:
         """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.

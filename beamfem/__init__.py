@@ -56,6 +56,7 @@ from beamfem.section import Circle, Layer, Layered, Rectangle, Section, Tube
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.own_steps import EquationsOfMotion, Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling, solve_buckling
@@ -87,6 +88,7 @@ __all__ = [
     "DistributedLoad",
     "ElasticLine",
     "Element",
+    "EquationsOfMotion",
     "FieldOnBasis",
     "Fields",
     "FileError",
@@ -98,6 +100,7 @@ __all__ = [
     "Gravity",
     "Hinge",
     "InputError",
+    "Integrator",
     "Interpolated",
     "Lagrange",
     "Layer",

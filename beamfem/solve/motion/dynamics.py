@@ -16,7 +16,8 @@ from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha
-from beamfem.solve.motion.march import ITERATIONS, Last, Record, initial_acceleration, march, new_statistics
+from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
+from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lack
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import courses, name_unresolved
@@ -31,24 +32,30 @@ def simulate(
     model: Model,
     duration: float,
     step: float,
-    integrator: GeneralizedAlpha | None = None,
+    integrator: GeneralizedAlpha | Integrator | None = None,
     start: State | None = None,
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,
 ) -> Solution:
     """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
 
-    start: a state to start from, such as the last of a static solution; velocity: initial velocity field;
-    save_every: keep each so many-th step, and the last.
+    integrator: GeneralizedAlpha() by default, or an `Integrator` of one's own; start: a state to start from, such as
+    the last of a static solution; velocity: initial velocity field; save_every: keep each so many-th step and the last.
     Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails. Any other
     exception on the way, such as KeyboardInterrupt, gets the states so far as its `solution` as well.
     """
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
-    if integrator is not None and not isinstance(integrator, GeneralizedAlpha):
-        raise InputError(f"integrator must be a GeneralizedAlpha(rho_inf=...), got {shown(integrator)}")
+    own = not isinstance(integrator, GeneralizedAlpha | None)
+    if own and (isinstance(integrator, type) or not callable(getattr(integrator, "step", None))):
+        raise InputError(
+            "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end) as "
+            f"bf.Integrator describes it, got {shown(integrator)}"
+        )
     system = system_of(model, static=False)
+    if own:
+        refuse_what_own_steps_lack(system)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
     integrator = integrator or GeneralizedAlpha()
@@ -82,9 +89,7 @@ def simulate(
     solution = _solution(system, times, record, last, further, unresolved)
     if failed is not None:
         raise ConvergenceError(
-            f"the iteration of the step from {failed[0]:.6g} s to {failed[1]:.6g} s did not converge: "
-            f"the last correction was {record.statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
-            "A smaller step may help",
+            f"the iteration of the step from {failed.begin:.6g} s to {failed.end:.6g} s did not converge: {failed.why}",
             solution,
         )
     return solution

@@ -11,6 +11,7 @@ from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion
 from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.own_steps import Integrator, OwnSteps
 from beamfem.solve.motion.sparse_motion import SparseMotion
 from beamfem.solve.motion.time_steps import Stretch
 
@@ -50,32 +51,44 @@ class Last:
     step: tuple[int, np.ndarray, np.ndarray]
 
 
+@dataclass(frozen=True)
+class Failure:
+    """The step that could not be completed: its beginning and end [s], and why."""
+
+    begin: float
+    end: float
+    why: str
+
+
 def march(
     system: System,
-    integrator: GeneralizedAlpha,
+    integrator: GeneralizedAlpha | Integrator,
     parts: tuple[Stretch, ...],
     held: np.ndarray,
     state: np.ndarray,
     record: Record,
     last: Last,
-) -> tuple[float, float] | None:
+) -> Failure | None:
     """March from p, p', p'' and the auxiliary acceleration (4, n), in place, through stretches of steps.
 
-    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return the
-    beginning and end [s] of the step that failed, None where none did.
+    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return where and
+    why it failed, None where it did not.
     """
-    kind = BandMotion if system.unknowns.pattern is None else SparseMotion
-    limits, statistics = np.array([_TOLERANCE, ITERATIONS]), record.statistics
-    done, row, size, failed = 0, 0, max(_FIRST_CHUNK // system.model.size, 1), None
+    statistics = record.statistics
+    done, row, failed = 0, 0, None
+    own = not isinstance(integrator, GeneralizedAlpha)
+    # an integrator of one's own may raise anything, and what it has reached before is kept
+    size = 1 if own else max(_FIRST_CHUNK // system.model.size, 1)
     turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
-            rule = integrator.rule(part.step)
             if number > 0:
-                _begin_anew(system, integrator.rule(parts[number - 1].step), part, state, _kept(record, done, part))
+                if isinstance(integrator, GeneralizedAlpha):
+                    _keep_momentum(integrator.rule(parts[number - 1].step), state)
+                _begin_anew(system, part, state, _kept(record, done, part))
                 statistics[[4, 6, 7]] = -1.0, 0.0, 0.0
-            motion = kind(system, rule, limits, statistics)
+            motion = _steps(system, integrator, part, statistics)
             loaded = np.append(part.times[1:-1], part.loads_to)
             begun, steps = 0, len(loaded)
             while begun < steps and failed is None:
@@ -89,11 +102,12 @@ def march(
                 row, begun = row + completed, begun + completed
                 done += completed if part.whole else 0
                 if completed < now:
-                    failed = float(part.times[begun]), float(part.times[begun + 1])
+                    why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
+                    failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
                 if part.whole and completed:
                     last.step = done, state[:3].copy(), turned.copy()
                     report(float(part.times[begun]))
-                if part.whole and spent < _CHUNK_SECONDS:
+                if part.whole and spent < _CHUNK_SECONDS and not own:
                     size *= 4
             if failed is not None:
                 break
@@ -110,13 +124,34 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
     return record.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
 
 
-def _begin_anew(system: System, rule: np.ndarray, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:
-    """Begin a stretch with accelerations that satisfy the equations under the loads there; rule: of the steps before.
+def _steps(
+    system: System, integrator: GeneralizedAlpha | Integrator, part: Stretch, statistics: np.ndarray
+) -> BandMotion | SparseMotion | OwnSteps:
+    """Return what takes the steps of a stretch."""
+    if not isinstance(integrator, GeneralizedAlpha):
+        return OwnSteps(system, integrator, part.loads_from, statistics)
+    kind = BandMotion if system.unknowns.pattern is None else SparseMotion
+    return kind(system, integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS]), statistics)
 
-    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. What the
-    auxiliary acceleration a still had to give goes to p', so that this is so across stretches, and momentum is kept.
+
+def _why(statistics: np.ndarray) -> str:
+    return (
+        f"the last correction was {statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
+        "A smaller step may help"
+    )
+
+
+def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
+    """Give p' what the auxiliary acceleration a still had to give at the end of a stretch; rule: of its steps.
+
+    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. So it does across
+    stretches, and momentum is kept.
     """
     state[1] += rule[0] * (0.5 - rule[2]) * (state[3] - state[2])
+
+
+def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:
+    """Begin a stretch with accelerations that satisfy the equations under the loads there."""
     begin = float(part.times[0])
     if kept is not None and part.loads_from > begin:
         kept[2] = initial_acceleration(system, state, begin)

@@ -8,6 +8,7 @@ is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed for
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
@@ -25,7 +26,8 @@ _REFINEMENTS = 2  # each equation then holds to the digits of its own terms, how
 class MixedFactors:
     """Factors of the tangent with stress resultants.
 
-    scale (n + m,): of coordinates, which come first, and resultants; kept (n,): coordinates without normals of rollers.
+    scale (n + m,): of coordinates, which come first, and resultants; kept (n,): coordinates without normals of rollers;
+    turn (n, n): takes these normals to x, None where there are none.
     """
 
     lu: SuperLU
@@ -34,8 +36,9 @@ class MixedFactors:
     kept: np.ndarray
     tangent: "MixedTangent"
     rotated: Rotated
+    turn: csr_array | None
 
-    @property
+    @cached_property
     def negative_pivots(self) -> int:
         """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
         found = negative_eigenvalues(csr_array(self.matrix))
@@ -61,8 +64,7 @@ class MixedFactors:
         return x, tuple(stresses)
 
     def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        turn = turning(len(right), self.rotated) if len(self.rotated[0]) else None
-        n = int(self.kept.sum())
+        turn, n = self.turn, int(self.kept.sum())
         known = np.concatenate([(right if turn is None else turn @ right)[self.kept], strain])
         known = self.scale * known
         found = self.lu.solve(known)
@@ -97,7 +99,7 @@ class MixedTangent:
     def factorised(self, rotated: Rotated) -> MixedFactors:
         """Return the factors. Raises LinAlgError."""
         n, zeros, couples = self.zeros.shape[0], self.zeros, self.slopes
-        kept = np.ones(n, dtype=bool)
+        kept, turn = np.ones(n, dtype=bool), None
         if len(rotated[0]):
             kept[rotated[0]] = False
             turn = turning(n, rotated)
@@ -118,7 +120,7 @@ class MixedTangent:
         shape = len(scale), len(scale)
         matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
         try:
-            return MixedFactors(splu(matrix), scale, matrix, kept, self, rotated)
+            return MixedFactors(splu(matrix), scale, matrix, kept, self, rotated, turn)
         except RuntimeError as error:
             raise LinAlgError("the tangent is singular") from error
 

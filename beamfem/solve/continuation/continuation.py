@@ -46,7 +46,7 @@ class PathPoint:
 class Corrected:
     """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
 
-    negative_pivots: fewest and most of the tangents on the way.
+    negative_pivots: fewest and most of the tangents on the way, where they were counted.
     """
 
     y: np.ndarray
@@ -114,14 +114,19 @@ class Continuation:
         return predicted_stresses(self.system, y[:-1], step[:-1]) if self.newton.independent_stresses else None
 
     def correct(
-        self, start: np.ndarray, stresses: Stresses | None, normal: np.ndarray, farthest: float = np.inf
+        self,
+        start: np.ndarray,
+        stresses: Stresses | None,
+        normal: np.ndarray,
+        farthest: float = np.inf,
+        counted: bool = False,
     ) -> Corrected:
         """Return the equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,).
 
         stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
-        beyond which no equilibrium is looked for.
+        beyond which no equilibrium is looked for; counted: whether the negative pivots on the way are asked for.
         """
-        problem = _InPlane(self, start, stresses, normal, farthest)
+        problem = _InPlane(self, start, stresses, normal, farthest, counted)
         found = iterate(problem, self.newton)
         return Corrected(problem.state, found.iterations, found.ended, problem.counts)
 
@@ -195,9 +200,10 @@ class _InPlane:
         stresses: Stresses | None,
         normal: np.ndarray,
         farthest: float,
+        counted: bool,
     ) -> None:
         self.line, self.system, self.start = line, line.system, start
-        self.stresses, self.normal, self.farthest = stresses, normal, farthest
+        self.stresses, self.normal, self.farthest, self.counted = stresses, normal, farthest, counted
         self.state = line.hold(start)
         self.counts = np.iinfo(int).max, 0
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
@@ -206,7 +212,7 @@ class _InPlane:
         """Take the next correction. Raises LinAlgError where the tangent or the path is singular across the plane."""
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
-        negative = factors.negative_pivots
+        negative = factors.negative_pivots if self.counted else 0
         self.counts = min(self.counts[0], negative), max(self.counts[1], negative)
         reach = line.dot(self.normal, along)
         if reach == 0.0:

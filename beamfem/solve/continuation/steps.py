@@ -78,7 +78,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     """Return the step of a length from a point with what lies in it, or why it is refused."""
     change = size * point.tangent
     farthest = _FARTHEST * size
-    corrected = line.correct(point.y + change, line.stresses(point.y, change), line.plane(point.tangent), farthest)
+    start, stresses, plane = point.y + change, line.stresses(point.y, change), line.plane(point.tangent)
+    corrected = line.correct(start, stresses, plane, farthest, counted=True)
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)
     if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:

@@ -7,6 +7,8 @@ import pytest
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamfem as bf
+from beamfem.assembly.equations import MIXED
+from beamfem.assembly.system import system_of
 from beamfem.linalg import eigenpairs
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
@@ -214,3 +216,20 @@ def test_a_stiff_bar_hinged_to_a_soft_wire_hides_none_of_its_modes(ratio):
         frequencies.append(modes.frequencies[1:])
     # a bar 1e5 times as stiff as the wire bends as much less
     assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("with_stresses", [False, True])
+@pytest.mark.parametrize("slenderness", [1e3, 1e5])
+@pytest.mark.parametrize("pinned", [False, True])
+def test_a_body_that_was_turned_vibrates_as_in_its_reference(pinned, slenderness, with_stresses):
+    """It moves freely, so that no correction balances the last digits of its state, by either kind of tangent."""
+    section = bf.Rectangle(1.0, 1.0 / slenderness)
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 8, bf.CRBF(3), section, bf.Material(1e9, 0.0, 1000.0))
+    led = bf.Model([beam], [bf.Prescribed(beam.start, ux=0.0, uy=0.0, rotation=1.0)])
+    model = bf.Model([beam], [bf.Pin(beam.start)] if pinned else [])
+    expected = bf.solve_modes(model, 6).frequencies
+    if with_stresses:
+        system_of(model, True).proven.add(MIXED)
+    found = bf.solve_modes(model, 6, about=bf.solve_static(led, steps=5)).frequencies
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * expected[-1])
+    assert list(found[:3] == 0.0) == [True, not pinned, not pinned]

@@ -12,7 +12,7 @@ from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import System
 
 _CORRECTIONS = 12
-_LARGEST = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
+LAST_DIGITS = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
 ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
 _PLENTY = 12.0  # digits that no further correction improves on
 LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
@@ -86,7 +86,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
             factors = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)[1].factorised(system.rotated)
         for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
-            if not np.max(np.abs(step) / system.scale, initial=0.0) <= _LARGEST:
+            if not np.max(np.abs(step) / system.scale, initial=0.0) <= LAST_DIGITS:
                 break
             unbalanced = found + change(system, p, step, load_factor)
             digits = _digits(system, p, unbalanced, load_factor)

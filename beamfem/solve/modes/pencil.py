@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import LinAlgError
 from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import INERTIA, MIXED, STATICS, linearise, residual, with_stresses
-from beamfem.assembly.round_off import lost_digits
+from beamfem.assembly.round_off import LAST_DIGITS, lost_digits
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 
@@ -56,13 +57,19 @@ class Pencil:
     def balanced_stresses(self) -> Stresses | None:
         """The stress resultants (ne, nq, ns) of each block that balance the loads, as rounded strains may not.
 
-        None in the reference, where rounding is all there is.
+        None in the reference, where rounding is all there is, and where the state is not held by its stiffness: no
+        correction balances it then.
         """
         if np.array_equal(self.p, self.system.reference):
             return None
         plain = linearise(self.system, *self._at_rest, self.load_factor, STATICS)[1]
         mixed = with_stresses(self.system, self._at_rest, self.load_factor, STATICS, None, plain)
-        return mixed.factorised(self.system.rotated).correction(self.unbalanced)[1]
+        try:
+            moved, stresses = mixed.factorised(self.system.rotated).correction(self.unbalanced)
+        except LinAlgError:
+            return None
+        scale = self.system.scale[self.system.free_dofs]
+        return stresses if np.max(np.abs(moved) / scale, initial=0.0) <= LAST_DIGITS else None
 
     @cached_property
     def mass(self) -> csr_array:

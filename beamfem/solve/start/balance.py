@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise
-from beamfem.assembly.round_off import digits_of, remainder
+from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.assembly.round_off import digits_of, load_size, remainder, row_floors
 from beamfem.assembly.system import System
 
 _TOLERANCE = 1e-6  # of the largest force: a state this far from equilibrium is none
@@ -28,7 +28,12 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
 
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
-    """Tell whether a state (n,) balances what acts but for its last digits."""
+    """Tell whether a state (n,) balances what acts but for its last digits; where nothing acts, all rows tell."""
+    if load_size(system, system.point_values(load_factor)) == 0.0 and not system.body(load_factor).any():
+        zeros = np.zeros_like(p)
+        left = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
+        if np.all(left <= row_floors(system, p)[system.free_dofs]):
+            return True
     if digits_of(system, p, load_factor) >= 1.0:
         return True
     return remainder(system, p, load_factor).digits >= 1.0

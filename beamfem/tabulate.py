@@ -5,15 +5,15 @@ import sys
 from collections.abc import Sequence
 from io import StringIO
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from beamfem.files import whole
+
+if TYPE_CHECKING:
+    from rich.box import Box
+    from rich.table import Table
 
 Rows = Sequence[Sequence[Any]]
 
@@ -36,6 +36,10 @@ def cells(rows: Rows) -> list[list[str]]:
 
 def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
     """Return a table with frames and the width of the terminal, or plain and as wide as it needs to be in a pipe."""
+    from rich import box  # slow to import
+    from rich.console import Console
+    from rich.text import Text
+
     terminal = sys.stdout.isatty()
     table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if _unicode() else box.ASCII2)
     table.title, table.title_justify = Text(title) if title else None, "left"  # [m] is no markup
@@ -47,6 +51,9 @@ def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
 
 def as_markdown(header: Sequence[str], rows: Rows) -> str:
     """Return a Markdown table."""
+    from rich import box  # slow to import
+    from rich.console import Console
+
     escaped = [[text.replace("|", "\\|") for text in line] for line in [list(header), *cells(rows)]]
     out = StringIO()
     Console(file=out, force_terminal=False, width=100_000).print(_table(escaped[0], escaped[1:], box.MARKDOWN))
@@ -72,8 +79,12 @@ def _unicode() -> bool:
     return (sys.stdout.encoding or "").lower().startswith("utf")
 
 
-def _table(header: Sequence[str], rows: Rows, frame: box.Box) -> Table:
-    table = Table(box=frame, pad_edge=frame is not box.SIMPLE_HEAD)
+def _table(header: Sequence[str], rows: Rows, frame: "Box") -> "Table":
+    from rich.box import SIMPLE_HEAD  # slow to import
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=frame, pad_edge=frame is not SIMPLE_HEAD)
     for column, title in enumerate(header):
         values = [row[column] for row in rows]
         words = any(isinstance(value, str) and value[:1].isalpha() for value in values)

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 SAFETY = 1.25  # Roache's factor for three or more meshes
 ROUND_OFF = 64 * np.finfo(float).eps
@@ -129,6 +128,8 @@ def fit_order(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) 
     Points that are small by chance end the range. None where fewer than two points are left or the finest error does
     not fall.
     """
+    from scipy.special import stdtrit  # slow to import
+
     known = np.nan_to_num(error, nan=0.0)
     first, clean = _finest_run(clean_points(h, known, highest), chance_hits(h, known, highest))
     if clean - first < 2:

@@ -6,7 +6,6 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
@@ -168,6 +167,8 @@ def _check_nodes(points: np.ndarray, size: float) -> None:
 
 def _check_ends(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
     """Return the distance [m] below which places are the same. Raises InputError for ends that are not joined."""
+    from scipy.spatial import cKDTree  # slow to import
+
     chord = np.linalg.norm(nodes[cells[:, 1]] - nodes[cells[:, 0]], axis=1)
     short = np.flatnonzero(chord <= _SAME * size)
     if len(short):

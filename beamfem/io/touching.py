@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from beamfem.errors import InputError, NotJoinedWarning
 
@@ -41,6 +40,8 @@ def parts_of(sets: Mapping[str, np.ndarray], owner: np.ndarray) -> dict[str, np.
 
 def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
     """Warn of ends that stand within `reach` [m] of another end or line and are not joined to it."""
+    from scipy.spatial import cKDTree  # slow to import
+
     ends = np.unique(cells[:, :2])
     pairs = ends[cKDTree(nodes[ends]).query_pairs(reach, output_type="ndarray")]
     _, beside, _ = _touches(nodes, cells, reach)
@@ -59,6 +60,8 @@ def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
 
 def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return cell, node and share of the way (n,) of ends that lie on a line between its own ends."""
+    from scipy.spatial import cKDTree  # slow to import
+
     ends = np.unique(cells[:, :2])
     start, end = nodes[cells[:, 0]], nodes[cells[:, 1]]
     chord = end - start

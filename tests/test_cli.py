@@ -64,9 +64,11 @@ def studies(tmp_path, monkeypatch):
     (folder / "helper.py").write_text('"""No study."""\ndef twice(x):\n    return 2 * x\n')
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
+    known = set(sys.modules)
     yield folder
-    for name in ("nothing", "helper"):
-        sys.modules.pop(name, None)
+    for name in set(sys.modules) - known:
+        if name.split(".")[0] in ("studies", "nothing", "helper", "factor", "times", "alone"):
+            del sys.modules[name]
 
 
 def test_run_prints_what_is_asked_for_and_writes_the_files(results):
@@ -220,7 +222,8 @@ def test_studies_are_listed_and_run_with_their_parameters(studies):
 
 def test_studies_in_sub_folders_go_by_their_file_or_with_their_folder(studies, monkeypatch):
     """Of two with one file name, the folder tells which is meant; both ways of sharing code work."""
-    monkeypatch.delitem(sys.modules, "studies", raising=False)
+    for name in [name for name in sys.modules if name.split(".")[0] == "studies"]:
+        monkeypatch.delitem(sys.modules, name)
     (studies / "__init__.py").touch()
     for name, factor in (("twice", 2), ("thrice", 3)):
         (studies / name).mkdir()
@@ -237,8 +240,6 @@ def test_studies_in_sub_folders_go_by_their_file_or_with_their_folder(studies, m
     done = invoke("study", "times")
     assert done.exit_code == 2
     assert "thrice/times or twice/times" in done.stderr
-    for name in [name for name in sys.modules if name.split(".")[0] in ("studies", "factor", "times", "alone")]:
-        monkeypatch.delitem(sys.modules, name)
 
 
 def test_help_of_a_study_comes_from_its_docstring(studies):

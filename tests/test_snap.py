@@ -245,3 +245,15 @@ def test_a_load_factor_that_goes_against_both_tangents_is_no_path():
     lower = replace(end, y=np.append(end.y[:-1], start.y[-1] - 0.1 * (end.y[-1] - start.y[-1])))
     with pytest.raises(SegmentLostError, match="another way than the tangents"):
         Segment(line, start, lower).limit_points()
+
+
+@pytest.mark.parametrize("elements", [1, 2, 3, 4, 5, 8])
+def test_a_bar_that_softens_everywhere_at_once_has_a_limit_point(elements):
+    """E A / (3 sqrt 3), where every part may go on or back, so that no step leads over it but by round-off."""
+    beam = bf.Beam(
+        bf.Line((0, 0), (1, 0)), elements, bf.ANCF(), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.0, 7800.0)
+    )
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-5e6, 0.0))])
+    with pytest.raises(bf.LimitPointError, match=r"a limit point at load factor 0\.7698") as caught:
+        bf.solve_static(model)
+    assert caught.value.load_factor * 5e6 == pytest.approx(2e7 / (3.0 * np.sqrt(3.0)), rel=1e-7)

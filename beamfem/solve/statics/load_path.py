@@ -19,6 +19,7 @@ _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
 _SLOWER = 0.8  # likewise where it slows down, as towards a limit point
 _FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
+_GAIN = 1e-7  # of the load factor: where a path would gain less before it turns back, it has come to its limit point
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
@@ -74,8 +75,8 @@ class PathFollower:
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
-        end: the load factor that none exceeds. Raises TurnsBackError at a limit point, PathLostError where no step
-        along the path is accepted, OutOfReachError where load factor 1 is too far at the pace of the last steps.
+        end: the load factor that none exceeds. Raises TurnsBackError at a limit point; PathLostError where no step
+        along the path is accepted elsewhere, OutOfReachError where load factor 1 is too far at the pace of the steps.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -83,9 +84,16 @@ class PathFollower:
             line, point = self.line, self.line.linearised(np.append(p, load_factor), growing)
         except LinAlgError:
             raise PathLostError("the tangent is singular there", 0, 0) from None
+        before: PathPoint | None = None
         while point.load_factor < beyond:
             self._require_pace(point.load_factor)
-            step, iterations, cuts = _step(line, point, self.size)
+            try:
+                step, iterations, cuts = _step(line, point, self.size)
+            except PathLostError as lost:
+                if before is None or not _at_maximum(line, before, point):
+                    raise
+                raise TurnsBackError(point.y, 2.0 * point.y - before.y, lost.iterations, lost.cuts) from lost
+            before = point
             self.passed.extend((cuts + 1) * [point.load_factor])
             self.size = step.next_size
             point = step.segment.after
@@ -111,6 +119,18 @@ class PathFollower:
                     0,
                     0,
                 )
+
+
+def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:
+    """Tell whether the load factor would not grow any more if the path went on as it did from the point before.
+
+    Where several paths cross in a limit point no step leads over it, as in a bar that softens everywhere at once.
+    """
+    first, now = float(before.tangent[-1]), float(point.tangent[-1])
+    if not 0.0 <= now < first:
+        return False
+    gain = 0.5 * now**2 * line.length(point.y - before.y) / (first - now)
+    return gain <= _GAIN * abs(point.load_factor)
 
 
 def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> PathPoint:

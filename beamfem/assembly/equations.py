@@ -171,10 +171,10 @@ def predicted_stresses(
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
-    """Return the change of the residual (n,) with the load factor, prescribed motions included.
+    """Return the change of the residual (n,) [N, N m] with the load factor, prescribed motions included.
 
     A central difference of the given width for loads, exact to round-off where they are proportional to the load
-    factor; that for prescribed motions is as wide as the stiffest strains of the beam allow.
+    factor; for prescribed motions one of fourth order at small strains, since slender parts stiffen within any width.
     """
     zeros, held = np.zeros(len(p)), system.prescribed_dofs
     ahead, behind = (residual(system, p, zeros, zeros, load_factor + at) for at in (width, -width))

@@ -24,10 +24,12 @@ from beamfem.validation import shown
 class EquationsOfMotion:
     """M(p) p'' + inertia of first order + elastic forces - loads = 0, for the unknown coordinates.
 
-    free (unknown,): their numbers among all coordinates; scale (unknown,): what a correction of each is measured by.
+    free (unknown,): their numbers among all coordinates; scale (unknown,): what a correction of each is measured by;
+    counted (1,): how often `solve` was asked, the iterations of the motion.
     """
 
     system: System
+    counted: np.ndarray
 
     @property
     def free(self) -> np.ndarray:
@@ -63,6 +65,7 @@ class EquationsOfMotion:
 
         Nothing moves along the normals of inclined rollers. Raises ConvergenceError where it is singular.
         """
+        self.counted[0] += 1
         stages, unknown = right.shape
         kept = np.ones(unknown, dtype=bool)
         kept[self.system.rotated[0]] = False
@@ -92,8 +95,8 @@ class OwnSteps:
     """Marches with an integrator of one's own; why: it could not go on."""
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
-        self.system, self.integrator, self.time, self.statistics = system, integrator, begin, statistics
-        self.motion, self.why = EquationsOfMotion(system), ""
+        self.system, self.integrator, self.time = system, integrator, begin
+        self.motion, self.why = EquationsOfMotion(system, statistics[:1]), ""
 
     def _begin(self, state: np.ndarray) -> State:
         p, v, a, _ = state.copy()
@@ -121,7 +124,7 @@ class OwnSteps:
             state[:3] = found
             state[:3, self.system.prescribed_dofs] = held[step]
             state[3] = state[2]
-            self.time, self.statistics[0] = time, self.statistics[0] + 1
+            self.time = time
             state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), time)
             count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:

@@ -57,6 +57,7 @@ class Assembler:
 
     def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
         self.equations, self.size, sheets = equations, equations.size, equations.sheets
+        self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
         count = len(sheets)
         whole = Arena(
             {
@@ -162,6 +163,7 @@ class Assembler:
         self.table[record.TANGENT] = int(matrix.size > 0)
         self.table[record.PREDICTED] = int(predicted and matrix.size > 0)
         model_passes.balance(self.address)
+        self.raise_errors()
 
     def predict(self, p: np.ndarray, step: np.ndarray) -> None:
         """Fill `stresses` with those after a linearised step (n,) from p (n,)."""
@@ -172,6 +174,12 @@ class Assembler:
         )
         for work in self.works:
             model_passes.predict_resultants(work.address, self.address)
+        self.raise_errors()
+
+    def raise_errors(self) -> None:
+        """Raise what the laws of sections have raised in compiled code; drivers that call them end with this."""
+        for law in self._laws:
+            law.raise_error()
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return e, e'' and elastic forces (N, per_node) of the only group in a state p, p', p'' (n,)."""
@@ -183,6 +191,7 @@ class Assembler:
         node_passes.place_nodes(work.address, self.address, 1)
         model_passes.clear_forces(work.address)
         element_passes.add_elements(work.address, self.address)
+        self.raise_errors()
         size, force = 2 * int(work.table[record.VECTORS]), int(work.table[record.FORCE])
         return work.rows(0, size), work.rows(size, size), work.rows(force, size)
 

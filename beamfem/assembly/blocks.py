@@ -4,6 +4,7 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
+from beamfem.assembly.law_pass import LawPass
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE, Block
@@ -14,7 +15,7 @@ _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kin
 
 
 def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
-    """Return the block of all beams (number, mesh) that share an element."""
+    """Return the block of all beams (number, mesh) that share an element and a law of the section."""
     field = element.field
     xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
@@ -38,12 +39,13 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
     # from derivatives by xi to those by arc length
     scale, inverse = joined["scale"][:, None, :], 1.0 / joined["jacobian"][:, :, None]
     second = (curved - joined.pop("jacobian_xi")[:, :, None] * inverse * table) * scale * inverse**2
-    bends = element.forces.code == ELASTIC_LINE
+    bends, law = element.forces.code == ELASTIC_LINE, own[0].beam.law
     return Block(
         measures=element.forces.code,
         slope=np.ascontiguousarray(table * scale * inverse),
         second=np.ascontiguousarray(second) if bends else np.empty((0, 0, 0)),
         director=np.ascontiguousarray(field.director(xi)),
+        law=None if law is None else LawPass(law),
         **joined,
     )
 

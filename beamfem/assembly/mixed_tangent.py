@@ -40,11 +40,11 @@ class MixedFactors:
 
     @cached_property
     def negative_pivots(self) -> int:
-        """How many eigenvalues of a symmetric tangent are negative: stress resultants have one each (Sylvester)."""
+        """How many eigenvalues of a symmetric tangent are negative: a positive stiffness has one each (Sylvester)."""
         found = negative_eigenvalues(csr_array(self.matrix))
         if found is None:
             return self.tangent.plain.factorised(self.rotated).negative_pivots
-        return found - (self.matrix.shape[0] - int(self.kept.sum()))
+        return found - self.tangent.positive
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
@@ -84,7 +84,8 @@ class MixedTangent:
 
     zeros (n, n): all but the elastic part; slopes (m, n): weights times strains by unknowns; flexibility (m, m):
     weights times inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places:
-    shape (ne, nq, ns) of each block's stress resultants and which of them resist; plain: K itself.
+    shape (ne, nq, ns) of each block's stress resultants and which of them resist; positive: eigenvalues of the
+    stiffnesses that are; plain: K itself.
     """
 
     zeros: csr_array
@@ -94,6 +95,7 @@ class MixedTangent:
     loads: np.ndarray
     strain: np.ndarray
     places: tuple[tuple[tuple[int, ...], np.ndarray], ...]
+    positive: int
     plain: Tangent
 
     def factorised(self, rotated: Rotated) -> MixedFactors:
@@ -153,7 +155,7 @@ def mixed(
     """
     none = np.empty(0, dtype=np.int64), np.empty((0, 2))
     tables = system.strain_rates
-    rates, strain = zip(*(table.at(p) for table in tables), strict=True)
+    rates, strain, flexible_at, positive = zip(*(table.at(p) for table in tables), strict=True)
     weight = np.concatenate([table.weight for table in tables])
     before = np.cumsum([0, *(len(table.weight) for table in tables)])
     pairs = list(zip(tables, before, strict=False))
@@ -161,7 +163,8 @@ def mixed(
     column = np.concatenate([table.column for table in tables])
     slopes = coo_array((np.concatenate(rates) * weight[point], (point, column)), shape=(len(weight), len(loads)))
     above, below = (np.concatenate([table.flexibility[side] + first for table, first in pairs]) for side in (0, 1))
-    inverse = np.concatenate([table.flexibility[2] for table in tables]) / factor
+    inverse = np.concatenate(flexible_at) / factor
     flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
     places = tuple((table.shape, table.resists) for table in tables)
-    return MixedTangent(zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, plain)
+    own = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
+    return MixedTangent(*own)

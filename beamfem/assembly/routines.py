@@ -85,11 +85,14 @@ _OF_KINDS = {"forces": ("place", 0), "mass": ("convect", 1), "tangent": ("curve"
 
 
 class Routines:
-    """A table of addresses for a strain measure; entries are filled when a task first needs them."""
+    """A table of addresses for a strain measure; entries are filled when a task first needs them.
 
-    def __init__(self, measures: int) -> None:
+    law: address of what takes the place of the linear law, if anything does.
+    """
+
+    def __init__(self, measures: int, law: int = 0) -> None:
         self.addresses = np.zeros(record.ROUTINE_COUNT, dtype=np.int64)
-        self._measures, self._ready = measures, set[tuple[str, int]]()
+        self._measures, self._law, self._ready = measures, law, set[tuple[str, int]]()
 
     def require(self, tasks: Iterable[str], kinds: Iterable[int]) -> None:
         """Compile, or load, what tasks need, for kinds of nodes that turn (numbers of `physics.kinematics.KINDS`)."""
@@ -104,7 +107,9 @@ class Routines:
         found = dict(_TASKS[task]) if kind < 0 else {}
         if kind < 0:
             found |= {number: getattr(own, name) for number, name in _PASSES.get(task, {}).items()}
-            if task == "forces":
+            if task == "forces" and self._law:
+                self.addresses[record.LAW] = self._law
+            elif task == "forces":
                 found[record.LAW] = linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants
         elif task in _OF_KINDS:
             name, step = _OF_KINDS[task]

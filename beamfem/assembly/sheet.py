@@ -16,6 +16,7 @@ from beamfem.kernels.block import (
     STRETCH,
     TURNED_GRADIENTS,
     Block,
+    Law,
     Layout,
     PointLoads,
 )
@@ -29,7 +30,8 @@ _SMALLEST = 16
 class Sheet:
     """A group of like elements as compiled code takes it.
 
-    table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds.
+    table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds, law: one whose address
+    its routines hold.
     """
 
     table: np.ndarray
@@ -39,6 +41,7 @@ class Sheet:
     constant: np.ndarray | None
     routines: Routines
     needs: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
+    law: Law | None
 
     def require(self, *tasks: str) -> None:
         """Have everything compiled that these tasks need: forces, tangent, mass, prediction."""
@@ -75,7 +78,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.GRAVITY: block.gravity,
         record.LENGTH: block.length,
     }
-    table, own = np.zeros(record.BLOCK_FIELDS, dtype=np.int64), routines(block.measures)
+    table, own = np.zeros(record.BLOCK_FIELDS, dtype=np.int64), _routines(block)
     first = 0
     for number, part in parts.items():
         table[number] = first
@@ -139,7 +142,11 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         else None
     )
     needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)))
-    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs)
+    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs, block.law)
+
+
+def _routines(block: Block) -> Routines:
+    return routines(block.measures) if block.law is None else Routines(block.measures, block.law.address)
 
 
 def _needs(kinds: np.ndarray, band: bool, loads: bool) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:

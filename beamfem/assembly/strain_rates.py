@@ -1,12 +1,22 @@
 """Strains at the points of a block and how they change with the unknowns, and what does not change of that."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.sheet import Sheet
-from beamfem.kernels.block import Block
+from beamfem.kernels.block import Block, Law
+
+
+class StrainsAt(NamedTuple):
+    """Rates by unknowns, strains (m,), weights times inverse stiffness and how many of its eigenvalues are positive."""
+
+    rates: np.ndarray
+    strain: np.ndarray
+    flexible: np.ndarray
+    positive: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +26,7 @@ class StrainRates:
     dof (coordinates,): of the model, -1 for none; coordinates: of an element; resists: the measures that are resisted
     at some point; loose (ne, nq, nr): where a point resists less than others do; place, point: of the rates by
     unknowns, among those by all coordinates (coordinates, m); column: their unknowns; weight (m,); flexibility: rows,
-    columns and values of weights times inverse stiffness.
+    columns and values of weights times inverse stiffness, of a law those at zero strain.
     """
 
     sheet: Sheet
@@ -29,16 +39,26 @@ class StrainRates:
     column: np.ndarray
     weight: np.ndarray
     flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
+    law: Law | None
 
-    def at(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the rates by unknowns and the strains (m,) in a state p (n,)."""
+    def at(self, p: np.ndarray) -> "StrainsAt":
+        """Return what they are in a state p (n,). Raises LinAlgError where a law has a singular stiffness."""
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
         places = np.arange(len(at)) % self.coordinates
         steps = (1.0 * (places == place) for place in range(self.coordinates + 1))
         *measured, zeros = resultants(self.sheet, at, steps)
         strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
         moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
-        return moved[self.place, self.point] - strain[self.point], strain
+        rates = moved[self.place, self.point] - strain[self.point]
+        if self.law is None:
+            return StrainsAt(rates, strain, self.flexibility[2], len(strain))
+        found, slope = self.law.linearised(zeros)
+        own = slope[:, :, self.resists[:, None], self.resists]
+        inverse = np.linalg.inv(own)
+        # strains to which the stiffness of this state, as that of a linear law, has these resultants
+        strain = (inverse @ found[:, :, self.resists, None]).ravel()
+        flexible = (self.weight.reshape(*own.shape[:3], 1) * inverse).ravel()
+        return StrainsAt(rates, strain, flexible, int(np.sum(np.linalg.eigvalsh(own) > 0.0)))
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -52,13 +72,13 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     points, strains = block.reference.shape[1:]
     own = block.node.ravel()
     dof = block.dof[own]
-    part = block._replace(
+    free_elements = block._replace(
         node=np.arange(len(own)).reshape(elements, nodes),
         dof=np.where(dof >= 0, np.arange(dof.size).reshape(dof.shape), -1),
         node_kind=block.node_kind[own],
         frame=block.frame[own],
-        stiffness=np.ascontiguousarray(np.broadcast_to(np.eye(strains), block.stiffness.shape)),
     )
+    part = free_elements.resisting(np.broadcast_to(np.eye(strains), block.stiffness.shape))
     resists = resisting(block)
     count = points * len(resists)
     column = np.where(dof >= 0, free[dof], -1).reshape(elements, -1).T
@@ -80,6 +100,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
         point=point,
         column=np.repeat(column[place, element], count),
         weight=weight[block.kind].ravel(),
+        law=block.law,
         flexibility=(
             np.broadcast_to(number[..., :, None], shape).ravel(),
             np.broadcast_to(number[..., None, :], shape).ravel(),

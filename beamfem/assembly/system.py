@@ -96,7 +96,7 @@ class System:
     @cached_property
     def without_stiffness(self) -> Equations:
         """The equations of beams that resist nothing."""
-        return self.equations_of([own._replace(stiffness=np.zeros_like(own.stiffness)) for own in self.blocks])
+        return self.equations_of([own.resisting(np.zeros_like(own.stiffness)) for own in self.blocks])
 
     @cached_property
     def strain_rates(self) -> tuple[StrainRates, ...]:

@@ -158,7 +158,8 @@ class Cells:
             what = "left out" if len(unknown) == len(self.meshes) else "nan"
             warnings.warn(
                 f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
-                "sections are given by a stiffness, or by moments without a height; Section(..., height=) gives it",
+                "sections are given by a stiffness, a law of their own, or moments without a height; "
+                "Section(..., height=) gives it",
                 UnknownStressWarning,
                 stacklevel=4,
             )

@@ -1,6 +1,6 @@
 """The plain data that a compiled kernel needs of a group of like elements."""
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -15,6 +15,23 @@ TURNED_GRADIENTS = 4
 GREEN_LAGRANGE = 0
 STRUCTURAL = 1
 ELASTIC_LINE = 2
+
+
+class Law(Protocol):
+    """What takes the place of the linear law of a block, see `kernels.linear_law`."""
+
+    @property
+    def address(self) -> int:
+        """Where its pass is; whoever calls it by address keeps this object alive."""
+        ...
+
+    def raise_error(self) -> None:
+        """Raise what it could not raise in compiled code."""
+        ...
+
+    def linearised(self, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (..., ns) and their derivatives (..., ns, ns) at strains (..., ns) from the reference's."""
+        ...
 
 
 class Block(NamedTuple):
@@ -33,7 +50,7 @@ class Block(NamedTuple):
     scale: np.ndarray  # (nc, nv) factor of a nodal vector: 1, or the mesh length where it is a gradient [m]
     jacobian: np.ndarray  # (nc, nq) ds/dxi of the reference [m]
     weight: np.ndarray  # (nc, nq) quadrature weight times ds/dxi [m]
-    stiffness: np.ndarray  # (nc, nq, ns, ns) section stiffness
+    stiffness: np.ndarray  # (nc, nq, ns, ns) section stiffness, of a law of its own that at zero strain
     reference: np.ndarray  # (nc, nq, ns) strain measures of the stress-free state
     mass: np.ndarray  # (nc, nv, nv) scalar consistent mass, one entry a pair of nodal vectors [kg]
     gravity: np.ndarray  # (nc, nv) mass carried by a nodal vector under a uniform acceleration [kg]
@@ -44,6 +61,15 @@ class Block(NamedTuple):
     frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `coordinates`
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element of the node, and its place there
+    law: Law | None = None  # instead of the linear one
+
+    def resisting(self, stiffness: np.ndarray) -> "Block":
+        """Return the block with the linear law of a stiffness (nc, nq, ns, ns)."""
+        return self._replace(stiffness=np.ascontiguousarray(stiffness), law=None)
+
+    def linearised(self, strain: np.ndarray) -> np.ndarray:
+        """Return the stiffness (ne, nq, ns, ns) at strains (ne, nq, ns) from the reference's."""
+        return self.stiffness[self.kind] if self.law is None else self.law.linearised(strain)[1]
 
 
 class PointLoads(NamedTuple):

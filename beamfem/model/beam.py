@@ -14,7 +14,9 @@ from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.jumps import find_jumps
+from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
+from beamfem.section.law import ElasticLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import called, count, finite, fulfils, function_of_one, shown
 
@@ -60,6 +62,7 @@ class Beam:
             )
         if not self.prismatic:
             function_of_one("section", self.section, "arc length")
+        require_law_fits(self)
         for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
             require_magnitudes(self, self.section_at(share * self.curve.length))
 
@@ -80,6 +83,11 @@ class Beam:
         if not fulfils(section, CrossSection):
             raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {shown(section)}")
         return section
+
+    @cached_property
+    def law(self) -> ElasticLaw | None:
+        """The law of its section, None where that is linear."""
+        return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
         """Return the point at a fraction in [0, 1] of the arc length."""

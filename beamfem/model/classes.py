@@ -76,11 +76,11 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
         rounded = np.round(lengths / unit[:, None], 12)
         for i, size, own in zip(numbers, unit.tolist(), rounded, strict=True):
             beam = grids[i].beam
-            found[i] = size, own.tobytes(), _by_value(beam.section), _by_value(beam.material)
+            found[i] = size, own.tobytes(), by_value(beam.section), by_value(beam.material)
     return found
 
 
-def _by_value(item: object) -> Hashable:
+def by_value(item: object) -> Hashable:
     """Return the item itself, or its identity where it cannot be compared by value."""
     try:
         hash(item)

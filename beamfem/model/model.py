@@ -1,6 +1,6 @@
 """A model: beams, what holds and joins them and what acts on them."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -12,6 +12,7 @@ from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
+from beamfem.model.classes import by_value
 from beamfem.model.contribution import Contribution, remembered, require_connector
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
@@ -136,10 +137,10 @@ class Model:
             require_body(grid)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
-        block_of = {element: number for number, element in enumerate(self.groups)}
+        block_of = {kind: number for number, kind in enumerate(self._kinds)}
         meshes = []
         for grid, carried in zip(grids, nodes, strict=True):
-            block = block_of[grid.beam.element]
+            block = block_of[_kind(grid.beam)]
             meshes.append(BeamMesh(**vars(grid), carried=carried, first_element=filled[block], block=block))
             filled[block] += grid.elements
         return tuple(meshes), size
@@ -177,8 +178,12 @@ class Model:
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:
-        """The different elements of the beams, in order of appearance."""
-        return tuple(dict.fromkeys(beam.element for beam in self.beams))
+        """The elements of the kinds of beams, in order of appearance; laws of sections make kinds of their own."""
+        return tuple(element for element, *_ in self._kinds)
+
+    @cached_property
+    def _kinds(self) -> tuple[tuple[Element, Hashable], ...]:
+        return tuple(dict.fromkeys(_kind(beam) for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
         """Return the place of a beam among the beams. Raises InputError, UnknownPointError."""
@@ -228,6 +233,12 @@ def _named(kinds: Any) -> str:
     """Return classes as a list in words."""
     names = [kind.__name__ for kind in get_args(kinds) or (kinds,)]
     return " or ".join(", ".join(names).rsplit(", ", 1))
+
+
+def _kind(beam: Beam) -> tuple[Element, Hashable]:
+    """Return what beams of one block have in common."""
+    law = beam.law
+    return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
 
 
 def _turns(support: PointSupport) -> bool:

@@ -199,6 +199,8 @@ def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
     strains = mesh.beam.element.forces.strains(now) - reference
+    if mesh.beam.law is not None:
+        return mesh.beam.law.energy(strains[..., :3].reshape(-1, 3)).reshape(strains.shape[:2]) @ weight
     return np.asarray(0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight)
 
 

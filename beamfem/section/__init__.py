@@ -1,8 +1,19 @@
 """Cross-sections: by area moments, by shape, by layers, by stiffness."""
 
+from beamfem.section.law import SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section
 from beamfem.section.shapes import Circle, Rectangle, ShapedSection, Tube
 from beamfem.section.stiffness import StiffnessSection
 
-__all__ = ["Circle", "Layer", "Layered", "Rectangle", "Section", "ShapedSection", "StiffnessSection", "Tube"]
+__all__ = [
+    "Circle",
+    "Layer",
+    "Layered",
+    "Rectangle",
+    "Section",
+    "SectionLaw",
+    "ShapedSection",
+    "StiffnessSection",
+    "Tube",
+]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.material import Material
+from beamfem.section.law import SectionLaw
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import CrossSection, HasParts
 
@@ -88,7 +89,7 @@ def distribution(section: CrossSection, material: Material | None, curvature: fl
     """Return how a section distributes N, V and M where the reference has a curvature [1/m], > 0 towards +y.
 
     A section that tells its `parts` is taken as it is, any other by the moments of its materials; one that is known by
-    its stiffness has no stress. Raises InputError without a material where the section needs one.
+    its stiffness, or has a law of its own, has no stress. Raises InputError without a material where one is needed.
     """
     bend = np.asarray(curvature, dtype=float)
     parts, layers = _parts(section, material), layers_of(section, material)
@@ -112,6 +113,8 @@ def layers_of(section: CrossSection, material: Material | None) -> tuple[tuple[f
 
 
 def _parts(section: CrossSection, material: Material | None) -> tuple[Part, ...]:
+    if isinstance(section, SectionLaw):
+        return ()  # how it spreads its resultants over the height is not known
     if isinstance(section, HasParts):
         return section.parts(material)
     low, high = section.bounds

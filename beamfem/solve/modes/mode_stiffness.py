@@ -27,11 +27,11 @@ def stiffness_of_modes(
     result = np.zeros((count, count))
     for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
-        unit = np.ascontiguousarray(np.broadcast_to(np.eye(measures), (classes, points, measures, measures)))
-        plain = free_sheet(block._replace(stiffness=unit), len(p))
+        unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
+        plain = free_sheet(block.resisting(unit), len(p))
         before, *after = resultants(plain, p, [zeros, *modes])
         strains = (np.array(after) - before).reshape(count, *before.shape)
-        stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.stiffness[block.kind], strains)
+        stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before), strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
     stresses = stresses_of(system, p, zeros if correction is None else correction)
     free = modes[:, system.free_dofs]

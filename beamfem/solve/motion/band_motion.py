@@ -78,7 +78,9 @@ class BandMotion:
         solver[[record.STEPS, record.FIRST_STEP, record.EVERY]] = len(held), first, every
         solver[[record.TURN_COUNT, record.LOADS_VARY]] = len(counted), int(varying)
         solver[record.BODY_STRIDE] = body[0].size if varying else 0
-        return int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
+        done = int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
+        assembler.raise_errors()
+        return done
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:

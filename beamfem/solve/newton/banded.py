@@ -43,7 +43,9 @@ class BandProblem:
     def correct(self) -> Correction:
         """Take corrections up to one that is small or stagnant. Raises LinAlgError where pivots are needed."""
         space, found = self.space, self.space.found
-        if not iterate(*space.addresses):
+        factorised = iterate(*space.addresses)
+        space.assembler.raise_errors()
+        if not factorised:
             raise LinAlgError("a pivot is tiny")
         space.prescribed_step[:] = space.prescribed_force[:] = 0.0
         return Correction(int(found[0]), found[1], found[2], int(found[6]))
@@ -68,7 +70,9 @@ class BandProblem:
         space = self.space
         space.step[:] = space.linear - self.start
         space.p[:] = self.start
-        return int(count_after_step(*space.addresses))
+        count = int(count_after_step(*space.addresses))
+        space.assembler.raise_errors()
+        return count
 
     def give_back(self) -> None:
         """Let the next solve have the space."""

@@ -1,0 +1,45 @@
+"""Which beams may have a section with a law of its own."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.element.structural import Structural
+from beamfem.errors import InputError
+from beamfem.section.law import SectionLaw, require_law
+from beamfem.validation import fulfils
+
+if TYPE_CHECKING:
+    from beamfem.model.beam import Beam
+
+
+def require_law_fits(beam: "Beam") -> None:
+    """Raise InputError where the section has a law, but the element takes it for linear, or the law is not sound.
+
+    A law is one function of all strains at a point. Elements that take some of them at other points than others, or
+    assume them there, know what to do with energies that are quadratic only.
+    """
+    name = type(beam.section).__name__
+    if not beam.prismatic:
+        if fulfils(beam.section_at(0.0), SectionLaw):
+            raise InputError(
+                "the section of a Beam is a function of the arc length, but a section with a law of its own must be "
+                "the same all along: join beams, each with its own"
+            )
+        return
+    if beam.law is None:
+        return
+    if not isinstance(beam.element.forces, Structural):
+        raise InputError(
+            f"{name} has a law of its own, of stretch, shear and curvature: it needs Structural forces, such as "
+            f"CRBF(order=2), but the element {beam.element.name} has {type(beam.element.forces).__name__}"
+        )
+    whole = np.ones((1, len(beam.element.energy_points()[0]), 4, 4))
+    whole[..., 3, :] = whole[..., :, 3] = 0.0  # thickness, which no law knows
+    counted = beam.element.energy_stiffness(whole, np.ones(whole.shape[:2]))
+    if not np.array_equal(counted, whole):
+        raise InputError(
+            f"{name} has a law of its own, for all strains at a point; the element {beam.element.name} takes some of "
+            f"them at other points: use CRBF(order=2) or another order"
+        )
+    require_law(beam.law)

@@ -20,7 +20,9 @@ _JUMP = 1e-3  # of a segment: points that stay further apart however close their
 _DISTANCE = 5e-3  # of the part of a segment that is searched: samples are no closer to a bifurcation
 _TOGETHER = 4.0  # of the distance: bifurcations closer than this are found together
 _SHARPNESS = 1e-5  # of a segment: parts that are not divided further
+_CLEAR = 0.02  # of a segment: in parts as short as this stiffnesses and counts of pivots tell the same
 _TRIALS = 12
+_SETTLED = 3  # trials after which roots come closer to where they end
 _GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiffnesses are looked at
 
 
@@ -81,8 +83,11 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
     fractions = np.array([start, end])
-    roots = _roots(known, fractions, (start, end))
-    for _ in range(_TRIALS):
+    unclear = end - start < _CLEAR and not _shows(known[start], known[end], change)
+    if line.system.symmetric and unclear:
+        raise SegmentLostError("round-off decides where the tangent is singular")
+    roots, moved = _roots(known, fractions, (start, end)), np.inf
+    for trial in range(_TRIALS):
         if len(roots) != abs(change):
             return middle
         if roots[-1] - roots[0] > _TOGETHER * distance:
@@ -91,7 +96,12 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
         fractions = segment.beside(roots[0], roots[-1], distance, start, end)
         known |= {x: condensed(line, segment.at(x), directions) for x in fractions.tolist() if x not in known}
         before, roots = roots, _roots(known, fractions, (start, end))
-        if len(roots) == len(before) and np.abs(roots - before).max() < 0.1 * distance:
+        if len(roots) != len(before):
+            return middle
+        last, moved = moved, float(np.abs(roots - before).max())
+        if trial >= _SETTLED and moved > 0.5 * last:
+            return middle
+        if moved < 0.1 * distance:
             left, right = (
                 max(fractions[fractions < roots[0]], default=start),
                 min(fractions[fractions > roots[-1]], default=end),
@@ -101,6 +111,12 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
             samples = Samples(segment, fractions, [known[x] for x in fractions.tolist()], left, change, distance)
             return crossings(samples, roots)
     return middle
+
+
+def _shows(start: Condensed, end: Condensed, change: int) -> bool:
+    """Tell whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots."""
+    before, after = (int(np.sum(np.linalg.eigvalsh(one.stiffness) < 0.0)) for one in (start, end))
+    return after - before == change
 
 
 def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarray:

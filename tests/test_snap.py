@@ -172,7 +172,7 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
 
 
 def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):
-    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on."""
+    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on, each time for longer."""
     _, model = toggle(1.0)
     system = System(model, static=True)
     limit = np.append(system.reference, 0.3)
@@ -191,7 +191,21 @@ def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_moti
     rest = snap.rest_state(system, limit, beyond, bf.Newton())
     assert rest.ended is Termination.CONVERGED
     assert rest.state is found.state
-    assert rest.iterations == 4 * (1 + 3)
+    tries, steps = 4, 1 + 2 + 4 + 8
+    assert rest.iterations == 3 * tries + steps
+
+
+def test_a_motion_whose_steps_lead_nowhere_ends(monkeypatch):
+    """Where no step is taken they are halved until they are a billionth of the first, not 2000 times."""
+    _, model = toggle(1.0)
+    system, steps = System(model, static=True), []
+    limit = np.append(system.reference, 0.3)
+    beyond = limit.copy()
+    beyond[system.free_dofs] += 1e-4 * system.scale[system.free_dofs]
+    monkeypatch.setattr(snap, "_step", lambda system, p, load_factor, time: (steps.append(time), (None, 1))[1])
+    assert snap.rest_state(system, limit, beyond, bf.Newton()).ended is Termination.EXHAUSTED
+    assert len(steps) == 30
+    assert steps[0] / steps[-1] == pytest.approx(2.0**29)
 
 
 @pytest.mark.parametrize(("load", "steps"), [(100.0, 10), (900.0, 1), (900.0, 2), (3e3, 1), (1e4, 1)])

@@ -16,6 +16,7 @@ from beamfem.solve.newton.newton import solve_equilibrium
 
 _STEPS = 2000
 _ITERATIONS = 8  # of Newton's method in a step
+_SHORTEST = 1e-9  # of the first step, which moves by much: shorter ones lead nowhere
 _LARGEST_MOVE = 0.1  # in a step: lengths of the model, radians
 _NEAR = 1e-3  # a step that moves less than this, however long, is close to rest
 _CLOSE = 1e-9  # of the move: the last correction of a step
@@ -39,8 +40,11 @@ def rest_state(
     mass = _mass(system, p, load_factor)
     pull = abs(float(aside[free] @ _unbalanced(system, p, load_factor)[free]))
     time = float(aside[free] @ (mass @ aside[free])) / max(pull, np.finfo(float).tiny)
-    iterations = 0
+    iterations = waits = wait = 0
+    shortest = _SHORTEST * time
     for _ in range(_STEPS):
+        if time < shortest:
+            break
         moved, used = _step(system, p, load_factor, time)
         iterations += used
         size = np.inf if moved is None else _size(system, moved - p)
@@ -51,7 +55,9 @@ def rest_state(
         if _size(system, p - limit[:-1]) > farthest:
             break
         time *= 2.0
-        if size < _NEAR:
+        waits += 1
+        if size < _NEAR and waits > wait:
+            waits, wait = 0, 2 * wait + 1  # Newton's method costs several steps: where it fails, the next try waits
             result = solve_equilibrium(system, p, load_factor, newton, keep=0)
             iterations += result.iterations
             near = _size(system, result.state - p) < _LARGEST_MOVE
@@ -86,7 +92,7 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
         right = -unbalanced[free] - mass @ (moved - p)[free] / time
         try:
             factors = tangent.factorised(system.rotated)
-            if system.symmetric and factors.negative_pivots > 0:
+            if iteration == 1 and system.symmetric and factors.negative_pivots > 0:
                 return None, iteration
             change = factors.solve(right)
         except LinAlgError:
@@ -96,7 +102,8 @@ def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tup
         if not size < 1e3:
             return None, iteration
         if size <= _CLOSE + 1e-3 * _size(system, moved - p) * (iteration > 1):
-            return moved, iteration
+            left = iteration > 1 and system.symmetric and factors.negative_pivots > 0
+            return None if left else moved, iteration
     return None, _ITERATIONS
 
 

@@ -172,7 +172,7 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
 
 
 def test_rest_is_an_equilibrium_that_is_found_stable_and_close_to_where_the_motion_ends(monkeypatch):
-    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on, each time for longer."""
+    """Solves that fail, end in an unstable state or far away are not taken; the motion goes on, longer each time."""
     _, model = toggle(1.0)
     system = System(model, static=True)
     limit = np.append(system.reference, 0.3)

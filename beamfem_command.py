@@ -2,7 +2,11 @@
 
 import os
 import signal
+import sys
+from importlib import import_module
 from types import FrameType
+
+_TOLD_AT_ONCE = {"--version", "--help", "-h"}
 
 
 def main() -> None:
@@ -12,6 +16,8 @@ def main() -> None:
         signal.signal(signal.SIGINT, _end)
     from beamfem.cli.app import main as run
 
+    if not set(sys.argv[1:]) <= _TOLD_AT_ONCE:
+        import_module("beamfem.public")
     if signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, usual)
     run()

@@ -24,6 +24,8 @@ def offer(method: Callable[..., Any], function: str) -> None:
 def offered(method: Callable[..., Any]) -> Callable[..., Any]:
     """Return the function that does what a method declares. Raises NotImplementedError where no room offers one."""
     if method not in _FUNCTIONS:
+        import_module("beamfem.public")  # an object may come from another process before anything else is imported
+    if method not in _FUNCTIONS:
         raise NotImplementedError(f"no room above offers {method.__qualname__}")
     module, name = _FUNCTIONS[method].split(":")
     function: Callable[..., Any] = getattr(import_module(module), name)

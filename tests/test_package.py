@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
@@ -13,13 +14,45 @@ from beamfem.view.page import Part, write_page
 from studies import all as main_job
 from studies.paper import pendulum, pendulum_figures, pendulum_page
 
+PICTURES = ("vtkmodules", "vtk", "pyvista", "matplotlib", "h5py", "meshio")
 
-def test_import_loads_no_pictures():
-    code = "import sys, beamfem; print([m for m in sys.modules if m.split('.')[0] in ('vtkmodules', 'vtk', 'pyvista', "
-    code += "'matplotlib', 'h5py', 'meshio')])"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == "[]"
+
+def run(code, *arguments):
+    """Return what a fresh process prints."""
+    found = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True)
     assert found.stderr == ""
+    return found.stdout.strip()
+
+
+def test_import_loads_next_to_nothing():
+    code = "import sys, beamfem; print(sorted({'numpy', 'scipy', 'skfem', 'numba'} & set(sys.modules)), dir(beamfem))"
+    loaded, names = run(code).split("] ", 1)
+    assert loaded == "["
+    assert "solve_static" in names
+
+
+def test_what_is_public_loads_no_pictures():
+    code = f"import sys, beamfem; beamfem.Beam; print([m for m in sys.modules if m.split('.')[0] in {PICTURES}])"
+    assert run(code) == "[]"
+
+
+def test_every_public_name_is_there_in_a_fresh_process():
+    names = run("from beamfem import *; import beamfem; print(all(name in globals() for name in beamfem.__all__))")
+    assert names == "True"
+    assert all(getattr(bf, name).__doc__ for name in bf.__all__)
+
+
+def test_a_name_that_is_not_there_is_named():
+    with pytest.raises(AttributeError, match="module 'beamfem' has no attribute 'solve_statik'"):
+        bf.solve_statik  # noqa: B018
+
+
+def test_a_solution_from_another_process_draws_before_anything_else_is_asked_of_the_package(tmp_path):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(order=1), bf.Rectangle(0.1, 0.1), bf.Material(1e9, 0.3, 1e3))
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, 1.0))]))
+    (tmp_path / "a").write_bytes(pickle.dumps(solution))
+    code = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb'))._repr_html_()[:6])"
+    assert run(code, str(tmp_path / "a")) == solution._repr_html_()[:6]
 
 
 def test_pendulum_study_draws_every_figure(tmp_path):

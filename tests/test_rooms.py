@@ -17,6 +17,7 @@ ROOMS = (
     "__main__",
     "cli",
     "__init__",
+    "public",
     "convergence",
     "sweeps",
     "view",

@@ -58,7 +58,9 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
         return
     try:
         found = _together(segment, start, end, change)
-    except LinAlgError:
+    except LinAlgError as error:
+        if end - start < _CLEAR:
+            raise SegmentLostError("the tangent is singular at the ends of every part") from error
         found = 0.5 * (start + end)
     if not isinstance(found, float):
         yield from found
@@ -83,8 +85,7 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
     fractions = np.array([start, end])
-    unclear = end - start < _CLEAR and not _shows(known[start], known[end], change)
-    if line.system.symmetric and unclear:
+    if end - start < _CLEAR and not _shows(known[start], known[end], change, line.system.symmetric):
         raise SegmentLostError("round-off decides where the tangent is singular")
     roots, moved = _roots(known, fractions, (start, end)), np.inf
     for trial in range(_TRIALS):
@@ -113,8 +114,14 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
     return middle
 
 
-def _shows(start: Condensed, end: Condensed, change: int) -> bool:
-    """Tell whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots."""
+def _shows(start: Condensed, end: Condensed, change: int, symmetric: bool) -> bool:
+    """Tell whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots.
+
+    Of those that are not symmetric only the sign of the determinant counts.
+    """
+    if not symmetric:
+        signs = [np.sign(np.linalg.det(one.stiffness)) for one in (start, end)]
+        return bool(signs[0] * signs[1] == (-1.0) ** change)
     before, after = (int(np.sum(np.linalg.eigvalsh(one.stiffness) < 0.0)) for one in (start, end))
     return after - before == change
 

@@ -1,0 +1,64 @@
+"""What users see of the package, and where it is: `beamfem` gets it from here when it is first asked for."""
+
+from beamfem import view as view  # offers plot() and the like on results, and imports what draws at the first call
+from beamfem.assembly.rigid_velocity import RigidVelocity
+from beamfem.convergence.study import converge
+from beamfem.curves import (
+    Arc,
+    BSpline,
+    Chain,
+    Curve,
+    Line,
+    Parametric,
+    Polyline,
+    elliptic_arc,
+    spline_through_hermite,
+    without_removable_knots,
+)
+from beamfem.element.coordinates import Gradients, Rotation, ShearFree
+from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
+from beamfem.element.fields import Cubic, Lagrange
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
+from beamfem.errors import (
+    BeamfemError,
+    ChangedCodeWarning,
+    ConvergenceError,
+    FileError,
+    FreeMotionError,
+    InputError,
+    LimitPointError,
+    NotJoinedWarning,
+    NotStoredWarning,
+    RoundOffWarning,
+    UnknownPointError,
+    UnknownStressWarning,
+    UnstableWarning,
+)
+from beamfem.io.cad import read_dxf
+from beamfem.io.frame import Frame
+from beamfem.io.mesh import LineMesh, read_mesh
+from beamfem.io.results import load
+from beamfem.material import Material
+from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import At, Contribution, Remembering
+from beamfem.model.grading import graded
+from beamfem.model.joints import Hinge, Rigid
+from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
+from beamfem.model.model import Model
+from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.model.time_functions import Interpolated, Piecewise
+from beamfem.results.on_basis import FieldOnBasis, field_on_basis
+from beamfem.results.path import Bifurcation, Path, PathState
+from beamfem.results.postprocess import Fields, SectionForces
+from beamfem.results.solution import Solution, State
+from beamfem.results.status import Status
+from beamfem.section import Circle, Layer, Layered, Rectangle, Section, SectionLaw, Tube
+from beamfem.solve.modes.modes import Modes, solve_modes
+from beamfem.solve.motion.dynamics import simulate
+from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.own_steps import EquationsOfMotion, Integrator
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.paths.trace import trace_equilibrium
+from beamfem.solve.stability.buckling import Buckling, solve_buckling
+from beamfem.solve.statics.statics import solve_static
+from beamfem.sweeps.sweep import sweep

@@ -8,21 +8,29 @@ from beamfem.validation import convert, finite, positive
 
 @dataclass(frozen=True)
 class Material:
-    """Hookean material.
+    """Hookean material, damped after Kelvin and Voigt where it has a retardation time.
 
-    youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]. Raises InputError.
+    youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]; retardation_time t [s]: in motions every
+    stress resultant is C (eps + t eps'), so that a small vibration of angular frequency w has the damping ratio t w / 2
+    and a rigid motion is not damped. Raises InputError.
     """
 
     youngs_modulus: float
     poisson_ratio: float
     density: float
+    retardation_time: float = 0.0
 
     def __post_init__(self) -> None:
         convert(self, positive, "youngs_modulus", "density")
-        convert(self, finite, "poisson_ratio")
+        convert(self, finite, "poisson_ratio", "retardation_time")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise InputError(
                 f"poisson_ratio of Material must lie between -1 and 0.5 (both excluded), got {self.poisson_ratio}"
+            )
+
+        if self.retardation_time < 0.0:
+            raise InputError(
+                f"retardation_time of Material must not be negative, got {self.retardation_time}: it would gain energy"
             )
 
     @property

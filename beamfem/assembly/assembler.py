@@ -130,9 +130,9 @@ class Assembler:
         return places
 
     def weigh(self, coefficients: Sequence[float]) -> None:
-        """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too."""
+        """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia and damping out."""
         self._factors[:] = coefficients
-        self.table[record.MOVING] = int(coefficients[2] != 0.0)
+        self.table[record.MOVING] = self.table[record.RATED] = int(coefficients[2] != 0.0)
 
     def require(self, *tasks: str) -> None:
         """Have everything compiled that compiled drivers will call: forces always, "tangent", "prediction"."""
@@ -182,11 +182,11 @@ class Assembler:
             law.raise_error()
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return e, e'' and elastic forces (N, per_node) of the only group in a state p, p', p'' (n,)."""
+        """Return e, e'' and forces of the strains and their rates (N, per_node) of the only group in p, p', p''."""
         (work,), table, nothing = self.works, self.table, np.zeros(self.size)
         self.place(p, v, a, nothing, np.empty(0))
         self.weigh((1.0, 0.0, 0.0))
-        table[[record.TANGENT, record.PREDICTED, record.LOADED]] = 0
+        table[[record.TANGENT, record.PREDICTED, record.LOADED]], table[record.RATED] = 0, 1
         self.require()
         node_passes.place_nodes(work.address, self.address, 1)
         model_passes.clear_forces(work.address)

@@ -61,7 +61,12 @@ _TASKS: dict[str, dict[int, Routine]] = {
         record.ADD_MATRICES: element_matrices.add_matrices,
     },
     "mass": {record.ADD_SCALED: inertia.add_scaled, record.ADD_MASS: inertia.add_mass},
-    "prediction": {record.NODE_RATES: model_passes.add_node_rates},
+    "prediction": {record.NODE_RATES: model_passes.add_node_rates, record.RATE_NODES: model_passes.rate_nodes},
+    "damping": {
+        record.NODE_RATES: model_passes.add_node_rates,
+        record.RATE_NODES: model_passes.rate_nodes,
+        record.VISCOUS: linear_law.add_viscous,
+    },
     "band": {record.ADD_TO_BAND: reduction.add_to_band},
     "sparse": {record.ADD_TO_SPARSE: reduction.add_to_sparse},
     "angles": {record.TURN: nodes.turn},
@@ -79,6 +84,7 @@ _PASSES: dict[str, dict[int, str]] = {
     "forces": {record.STRAINS: "strains", record.FORCES: "forces"},
     "tangent": {record.HESSIAN: "hessian"},
     "prediction": {record.RATES: "rates"},
+    "damping": {record.RATES: "rates"},
 }
 # what kinds of nodes add to a task: the number of their pass
 _OF_KINDS = {"forces": ("place", 0), "mass": ("convect", 1), "tangent": ("curve", 2)}

@@ -78,16 +78,21 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.GRAVITY: block.gravity,
         record.LENGTH: block.length,
     }
+    damped = bool(block.damping.any())
+    if damped:
+        parts[record.DAMPING] = block.damping[:, None]
     table, own = np.zeros(record.BLOCK_FIELDS, dtype=np.int64), _routines(block)
     first = 0
     for number, part in parts.items():
         table[number] = first
         first += part.shape[1]
     tables = np.concatenate(list(parts.values()), axis=1)
-    gathered = 2 * size + 2 * turned * turning
+    velocity = 2 * size + 2 * turned * turning
+    gathered = velocity + size * damped
     chunk_rows = gathered + turning * turning + 2 * size
     table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
     table[record.CONVECTIVE] = 2 * size + turned * turning
+    table[record.VELOCITY], table[record.DAMPED] = velocity, damped
     table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
     table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
     used = rows_of.py_func(nodes, vectors, points, gathered, tables.shape[1])[-1]
@@ -141,7 +146,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds
         else None
     )
-    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)))
+    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)), damped)
     return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs, block.law)
 
 
@@ -149,12 +154,15 @@ def _routines(block: Block) -> Routines:
     return routines(block.measures) if block.law is None else Routines(block.measures, block.law.address)
 
 
-def _needs(kinds: np.ndarray, band: bool, loads: bool) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
+def _needs(
+    kinds: np.ndarray, band: bool, loads: bool, damped: bool
+) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
     """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
     angles = tuple(int(kind) - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
     turns = bool(angles or rotated)
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
+    forces += ("damping",) if damped else ()
     tangent = ["tangent", "band" if band else "sparse"]
     tangent += ["turning tangent"] if turns else []
     tangent += ["load tangent"] if loads else []

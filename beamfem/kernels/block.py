@@ -61,6 +61,7 @@ class Block(NamedTuple):
     frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, |r_x| in the reference; see `coordinates`
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element of the node, and its place there
+    damping: np.ndarray  # (nc,) retardation time [s]: rates of strains add that much of the stiffness
     law: Law | None = None  # instead of the linear one
 
     def resisting(self, stiffness: np.ndarray) -> "Block":

@@ -5,7 +5,7 @@ from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.point import FORCE as POINT_FORCE
 from beamfem.kernels.point import HESSIAN as POINT_HESSIAN
-from beamfem.kernels.point import RESULTANT
+from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
@@ -15,6 +15,7 @@ _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
+_rate_nodes, _viscous = caller("iii"), caller("iidrrrr")
 
 
 @routine("ii")
@@ -26,8 +27,10 @@ def add_elements(group, system):
     size, slots_ = 2 * vectors, nodes * vectors
     measures, moving, tangent, predicted = b[r.MEASURES], s[r.MOVING], s[r.TANGENT], s[r.PREDICTED]
     stiff = tangent != 0 and reals(s[r.FACTORS])[0] != 0.0
-    gathered = b[r.CURVATURE]
-    rows = gathered if tangent != 0 else (2 * size if moving != 0 else size)
+    gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
+    if damped:
+        _rate_nodes(call[r.RATE_NODES], group, system, b[r.VELOCITY])
+    rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
     beams, place = wholes(b[r.BEAM]), wholes(b[r.PLACE])
@@ -81,6 +84,23 @@ def add_elements(group, system):
                 at(t, (b[r.REFERENCE] + number * measures) * ROW),
                 q,
             )
+            if damped:
+                rate, factors = at(q, RATE * ROW), reals(s[r.FACTORS])
+                velocity = at(e, b[r.VELOCITY] * ROW)
+                _interpolate(
+                    call[r.INTERPOLATE], nodes, vectors, bends, count, rows, slope, second, factor, velocity, rate
+                )
+                _measure(call[r.RATES], count, q)
+                _viscous(
+                    call[r.VISCOUS],
+                    count,
+                    measures,
+                    factors[1] / factors[0] if stiff else 0.0,
+                    weight,
+                    at(t, (b[r.STIFFNESS] + number * pairs) * ROW),
+                    at(t, b[r.DAMPING] * ROW),
+                    q,
+                )
             _measure(call[r.FORCES], count, q)
             _spread(call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f)
             if predicted != 0:

@@ -4,7 +4,7 @@ C comes as the rows of its upper triangle. Laws are passes over rows: strains in
 """
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.point import RESULTANT, STIFFNESS, STRAIN
+from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
@@ -57,3 +57,26 @@ def six_resultants(count, tangent, weight, c, reference, x):
             to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
             for i in range(count):
                 to[i] = weight[i] * own[i]
+
+
+@routine("iidrrrr", fastmath=FAST)
+def add_viscous(count, measures, ratio, weight, c, time, x):
+    """Add resultants time C eps' of the rates of strains, and their stiffness times the ratio of the weights of p', p.
+
+    time: row of retardation times [s]; Kelvin and Voigt. How eps' changes with p at constant p' is left out.
+    """
+    rate, s, stiffness, pair = at(x, RATE * ROW), at(x, RESULTANT * ROW), at(x, STIFFNESS * ROW), 0
+    for row in range(measures):
+        for column in range(row, measures):
+            own, to = at(c, pair * ROW), at(stiffness, pair * ROW)
+            one, other = at(s, row * ROW), at(s, column * ROW)
+            its, own_rate = at(rate, column * ROW), at(rate, row * ROW)
+            for i in range(count):
+                one[i] += weight[i] * time[i] * own[i] * its[i]
+            if column != row:
+                for i in range(count):
+                    other[i] += weight[i] * time[i] * own[i] * own_rate[i]
+            if ratio != 0.0:
+                for i in range(count):
+                    to[i] += ratio * weight[i] * time[i] * own[i]
+            pair += 1

@@ -83,13 +83,36 @@ def add_node_rates(first, count, linear, turned, turning, stride, dof, step, tra
                     to[i] += factor[i] * step[own[i]]
 
 
+@routine("iii")
+def rate_nodes(group, system, row):
+    """Fill e' = B p' of all nodes of a group into rows of theirs from `row` on."""
+    b, s = wholes(group), wholes(system)
+    call, chunks, first = wholes(b[r.ROUTINES]), reals(b[r.CHUNKS]), 0
+    while first < b[r.NODES]:
+        count, chunk = min(LANES, b[r.NODES] - first), at(chunks, first // LANES * b[r.NODE_ROWS] * ROW)
+        _node_rates(
+            call[r.NODE_RATES],
+            first,
+            count,
+            2 * b[r.VECTORS] - b[r.TURNED],
+            b[r.TURNED],
+            b[r.TURNING],
+            b[r.NODES],
+            wholes(b[r.DOF]),
+            reals(s[r.COORDINATES_V]),
+            at(chunk, b[r.TRANSFORM] * ROW),
+            at(chunk, row * ROW),
+        )
+        first += count
+
+
 @routine("ii")
 def predict_resultants(group, system):
     """Fill `STRESS` with C (eps + (d eps / de) B dp), B and eps at p, dp in the place of p'.
 
     The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
     """
-    b, s = wholes(group), wholes(system)
+    b = wholes(group)
     call, x, chunks, director = (
         wholes(b[r.ROUTINES]),
         reals(b[r.SPACE]),
@@ -105,23 +128,7 @@ def predict_resultants(group, system):
     )
     size, slots, stress = 2 * vectors, nodes * vectors, reals(b[r.STRESS])
     _three(call[r.PLACE_NODES], group, system, 0)
-    first = 0
-    while first < b[r.NODES]:
-        count, chunk = min(LANES, b[r.NODES] - first), at(chunks, first // LANES * b[r.NODE_ROWS] * ROW)
-        _node_rates(
-            call[r.NODE_RATES],
-            first,
-            count,
-            size - b[r.TURNED],
-            b[r.TURNED],
-            b[r.TURNING],
-            b[r.NODES],
-            wholes(b[r.DOF]),
-            reals(s[r.COORDINATES_V]),
-            at(chunk, b[r.TRANSFORM] * ROW),
-            at(chunk, b[r.ACCELERATION] * ROW),
-        )
-        first += count
+    _three(call[r.RATE_NODES], group, system, b[r.ACCELERATION])
     _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
     pairs = measures * (measures + 1) // 2

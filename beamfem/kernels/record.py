@@ -72,7 +72,10 @@ FILLED = 54  # elements of the batch whose tables are in the work space
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
 FILLED_WITH = 57  # their class, or -1 - the first element where they are of several
-BLOCK_FIELDS = 58
+DAMPED = 58  # whether resultants depend on rates of strains
+DAMPING = 59  # rows of a class: (1,) retardation time
+VELOCITY = 60  # rows of a node: e', where resultants depend on it
+BLOCK_FIELDS = 61
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
@@ -96,7 +99,8 @@ SPRING_DOF = 17
 SPRING_STIFFNESS = 18
 SPRING_REST = 19
 SPRING_PLACE = 20
-SYSTEM_FIELDS = 21
+RATED = 21  # rates of strains count
+SYSTEM_FIELDS = 22
 
 # ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
 (
@@ -140,9 +144,11 @@ SYSTEM_FIELDS = 21
     ADD_SCALED,
     FORM_MATRICES,
     ADD_MATRICES,
-) = range(40)
-PLACE_KIND = 40  # place, convect and curve of each kind of node that turns
-ROUTINE_COUNT = 49
+    RATE_NODES,
+    VISCOUS,
+) = range(42)
+PLACE_KIND = 42  # place, convect and curve of each kind of node that turns
+ROUTINE_COUNT = 51
 
 # ------------------------------------------------------------------ the unknown coordinates and how to solve for them
 UNKNOWN = 0

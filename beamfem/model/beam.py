@@ -13,6 +13,7 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic
 from beamfem.errors import InputError
 from beamfem.material import Material
+from beamfem.model.damping import retardation_time
 from beamfem.model.jumps import find_jumps
 from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
@@ -64,7 +65,9 @@ class Beam:
             function_of_one("section", self.section, "arc length")
         require_law_fits(self)
         for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
-            require_magnitudes(self, self.section_at(share * self.curve.length))
+            section = self.section_at(share * self.curve.length)
+            require_magnitudes(self, section)
+            retardation_time(section, self.material)
 
     def __repr__(self) -> str:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
 from beamfem.model.reference import energy_points, energy_stiffness_at, inertia_points, jacobians, length_points, scales
 
@@ -25,6 +26,7 @@ class Classes:
     mass: np.ndarray
     gravity: np.ndarray
     length: np.ndarray
+    damping: np.ndarray
 
 
 def element_classes(grid: Grid) -> Classes:
@@ -56,6 +58,7 @@ def element_classes(grid: Grid) -> Classes:
         mass,
         gravity,
         length,
+        np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material)),
     )
 
 

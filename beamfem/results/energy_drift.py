@@ -36,7 +36,7 @@ class EnergyDrift:
 def energy_drift(solution: "Solution") -> EnergyDrift | None:
     """Return the drift of a motion's energy; None where something does work on it.
 
-    That is so under loads with an amplitude, loads that follow and pressures, and where supports move.
+    That is so under loads with an amplitude, loads that follow and pressures, where supports move and materials damp.
     """
     if solution.static or solution.loaded is not None or not _conservative(solution):
         return None
@@ -57,4 +57,5 @@ def _conservative(solution: "Solution") -> bool:
         or (not isinstance(load, Gravity | PointMoment) and load.follower)
         for load in solution.model.loads
     )
-    return not moved and not driven and system.connectors.keep_energy
+    damped = any(block.damping.any() for block in system.blocks)
+    return not moved and not driven and not damped and system.connectors.keep_energy

@@ -1,0 +1,35 @@
+"""The retardation time of a beam: how far rates of its strains add to its stresses."""
+
+from functools import lru_cache
+
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.section.protocol import CrossSection
+
+
+def retardation_time(section: CrossSection, material: Material | None) -> float:
+    """Return the retardation time [s] of a section and the material of its beam, which a layered one does not need.
+
+    Raises InputError where layers have different ones.
+    """
+    try:
+        return _known_time(section, material)  # type: ignore[arg-type]
+    except TypeError:  # a section of the user's that has no hash
+        return _time(section, material)
+
+
+def _time(section: CrossSection, material: Material | None) -> float:
+    try:
+        times = {own.retardation_time for own, _ in section.moments(material)}
+    except InputError:  # known by its stiffness
+        return 0.0 if material is None else material.retardation_time
+    if len(times) > 1:
+        raise InputError(
+            f"the materials of a {type(section).__name__} section have different retardation times {sorted(times)} s; "
+            "a beam has one: damping is proportional to its stiffness"
+        )
+    return times.pop()
+
+
+# the beams of a frame share few sections
+_known_time = lru_cache(maxsize=64)(_time)

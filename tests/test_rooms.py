@@ -42,6 +42,7 @@ ROOMS = (
     "section",
     "material",
     "curves",
+    "brief",
     "tabulate",
     "files",
     "progress",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.model.beam import Beam
 from beamfem.model.loads import PointForce, Scaled, factor
 from beamfem.model.mesh import BeamMesh
@@ -29,6 +30,8 @@ class Energy:
     kinetic: np.ndarray
     strain: np.ndarray
     potential: np.ndarray
+
+    __repr__ = brief
 
     @property
     def total(self) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 from skfem import Basis
 from skfem.element import DiscreteField
 
+from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.forms import axis_basis, beam_basis
 from beamfem.model.beam import Beam
@@ -25,6 +26,8 @@ class FieldOnBasis:
 
     basis: Basis
     values: np.ndarray
+
+    __repr__ = brief
 
     def interpolate(self, row: int = -1) -> DiscreteField:
         """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for forms.

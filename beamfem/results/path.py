@@ -6,6 +6,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.model.beam import Beam, Point
 from beamfem.results.fitting import require_crossing
 from beamfem.results.postprocess import Components, Fields, SectionForces
@@ -23,6 +24,8 @@ class PathState(State):
     """
 
     stability: bool | None = field(default=None, kw_only=True)
+
+    __repr__ = brief
 
     @property
     def load_factor(self) -> float:
@@ -78,6 +81,8 @@ class Bifurcation(PathState):
     mode: np.ndarray
     tangent: np.ndarray
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         super().__post_init__()
         require_crossing(self)
@@ -93,6 +98,11 @@ class Path(Solution):
 
     limit_points: tuple[PathState, ...] = ()
     bifurcations: tuple[Bifurcation, ...] = ()
+
+    def __repr__(self) -> str:
+        counts = (("limit point", len(self.limit_points)), ("bifurcation", len(self.bifurcations)))
+        found = ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts)
+        return f"{super().__repr__()[:-1]}; {found})"
 
     @overload
     def __getitem__(self, row: int) -> PathState: ...

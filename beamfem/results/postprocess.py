@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.element import coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
@@ -37,6 +38,8 @@ class Fields:
     green_strain: "Components"
     stress: "Components"
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True)
 class Components:
@@ -45,6 +48,8 @@ class Components:
     xx: np.ndarray
     yy: np.ndarray
     xy: np.ndarray
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True)
@@ -61,6 +66,8 @@ class SectionForces:
     normal: np.ndarray
     shear: np.ndarray
     moment: np.ndarray
+
+    __repr__ = brief
 
 
 def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
@@ -44,6 +45,8 @@ class State:
     at: float
     model: Model
     turned: np.ndarray | None = field(default=None, kw_only=True)
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         require_state(self)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamfem import tabulate
+from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
@@ -37,6 +38,8 @@ class Sweep:
     shape: tuple[int, ...]
     computed: int
     labels: tuple[Mapping[str, str], ...] = field(repr=False)
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.values)

@@ -17,6 +17,7 @@ from beamfem.errors import InputError
 SMALLEST, LARGEST = math.sqrt(np.finfo(float).tiny), math.sqrt(np.finfo(float).max)
 _MOST = 2**53  # from here on, floating-point numbers cannot count
 _SHOWN = 200  # characters of a value in a message
+_ENTRIES = 6  # of an array in a message
 
 
 def shown(value: Any) -> str:
@@ -224,9 +225,15 @@ def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
     try:
         return function(*arguments)
     except Exception as error:
-        given = ", ".join(f"{value:g}" if isinstance(value, float) else shown(value) for value in arguments)
+        given = ", ".join(map(_argument, arguments))
         what = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         raise InputError(f"{name}({given}) cannot be computed: {what}") from error
+
+
+def _argument(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:g}"
+    return f"array {value.shape}" if isinstance(value, np.ndarray) and value.size > _ENTRIES else shown(value)
 
 
 def function_of_one(name: str, function: Any, argument: str) -> None:

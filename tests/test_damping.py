@@ -47,12 +47,12 @@ def test_the_tangent_knows_the_force_of_damping(element, rng):
     zeros, free = np.zeros(model.size), system.free_dofs
     turned = np.empty(0, dtype=np.int64), np.empty((0, 2))
     h, step = 1e-5, rng.standard_normal(model.size)
-    weights = (0.3, 0.7, 0.0)
-    own = linearise(system, p, zeros, zeros, 0.0, (*weights[:2], 1e-300))[1].sparse(turned) @ step[free]
     by_rate = residual(system, p, h * step, zeros, 0.0) - residual(system, p, -h * step, zeros, 0.0)
     by_place = residual(system, p + h * step, zeros, zeros, 0.0) - residual(system, p - h * step, zeros, zeros, 0.0)
-    found = (weights[0] * by_place + weights[1] * by_rate)[free] / (2 * h)
-    assert own == pytest.approx(found, rel=1e-5, abs=1e-5 * np.abs(found).max())
+    for ck, cv in ((0.3, 0.7), (0.0, 0.7), (0.3, 0.0)):
+        own = linearise(system, p, zeros, zeros, 0.0, (ck, cv, 0.0))[1].sparse(turned) @ step[free]
+        found = (ck * by_place + cv * by_rate)[free] / (2 * h)
+        assert own == pytest.approx(found, rel=1e-5, abs=1e-5 * np.abs(found).max())
 
 
 @pytest.mark.parametrize("element", [bf.CRBF(order=2), bf.ANCF(), bf.ANCFCRBF(), bf.BilinearCRBF()], ids=identify)
@@ -112,6 +112,44 @@ def test_what_a_large_motion_loses_does_not_depend_on_how_it_is_integrated():
     assert found[0] > 1e-3
     assert found[1] == pytest.approx(found[0], rel=2e-3)
     assert found[2] == pytest.approx(found[1], rel=5e-3)
+
+
+@pytest.mark.parametrize("rho", [1.0, 0.9, 0.5, 0.0])
+@pytest.mark.parametrize("framed", [False, True], ids=["chain", "frame"])
+def test_a_beam_creeps_under_a_sudden_load_and_back(rho, framed):
+    """1 - exp(-time / t), in steps far longer than the period of its vibration.
+
+    The acceleration of the first instant moved it to many times its static deflection, in silence.
+    """
+    material = bf.Material(7e6, 0.3, 1000.0, retardation_time=1e3)
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.02, 0.04), material)
+    beams, joints, supports = [own], [], [bf.Clamp(own.start)]
+    if framed:
+        stands = [bf.Beam(bf.Line((0, 0), (0, 0.1)), 1, own.element, own.section, material) for _ in range(2)]
+        beams, joints = [own, *stands], [bf.Rigid(own.start, stand.start) for stand in stands]
+        supports += [bf.Clamp(stand.end) for stand in stands]
+    loaded = bf.Model(beams, supports, [bf.PointForce(own.end, (0, -0.01))], joints)
+    free = bf.Model(beams, supports, [], joints)
+    static = bf.solve_static(loaded)
+    last = static.displacement(own.end)[-1, 1]
+    given = {"duration": 3e3, "step": 10.0, "integrator": bf.GeneralizedAlpha(rho)}
+    onto, back = bf.simulate(loaded, **given), bf.simulate(free, start=static[-1], **given)
+    crept = 1.0 - np.exp(-onto.time / 1e3)
+    assert onto.displacement(own.end)[:, 1] / last == pytest.approx(crept, abs=8e-3)
+    assert back.displacement(own.end)[:, 1] / last == pytest.approx(1.0 - crept, abs=8e-3)
+    assert back.energy().total.max() <= back.energy().total[0] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("time", [1e-4, 5e-3, 0.1, 10.0])
+def test_stages_of_radau_know_the_damping(time):
+    """Its tangents weigh p, p' and p'' each with zero somewhere."""
+    material = bf.Material(7e6, 0.3, 1000.0, retardation_time=time)
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=2), bf.Rectangle(0.02, 0.04), material)
+    model = bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, (0, -0.3))])
+    stages = bf.simulate(model, duration=0.05, step=1e-3, integrator=Radau())
+    fine = bf.simulate(model, duration=0.05, step=1e-4, integrator=bf.GeneralizedAlpha(1.0))
+    expected = fine.displacement(own.end)[-1, 1]
+    assert stages.displacement(own.end)[-1, 1] == pytest.approx(expected, rel=2e-3)
 
 
 def test_section_forces_hold_the_damping():

@@ -130,9 +130,13 @@ class Assembler:
         return places
 
     def weigh(self, coefficients: Sequence[float]) -> None:
-        """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia and damping out."""
+        """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too.
+
+        Likewise cv = ca = 0 leaves out damping.
+        """
         self._factors[:] = coefficients
-        self.table[record.MOVING] = self.table[record.RATED] = int(coefficients[2] != 0.0)
+        moving, rated = coefficients[2] != 0.0, coefficients[1] != 0.0
+        self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 
     def require(self, *tasks: str) -> None:
         """Have everything compiled that compiled drivers will call: forces always, "tangent", "prediction"."""

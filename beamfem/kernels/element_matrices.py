@@ -36,6 +36,8 @@ def form_matrices(group, system, count, x):
         at(x, k * ROW),
     )
     ck, linear = factors[0], size - turned
+    if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # weighed at the points
+        ck = 1.0 if ck != 0.0 or factors[1] != 0.0 else 0.0
     transform, director = at(e, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
     if ck != 0.0:
         for m in range(nodes):

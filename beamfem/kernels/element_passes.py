@@ -15,7 +15,7 @@ _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
-_rate_nodes, _viscous = caller("iii"), caller("iidrrrr")
+_rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 
 
 @routine("ii")
@@ -26,8 +26,9 @@ def add_elements(group, system):
     nodes, vectors, bends, elements = b[r.NODES_PER_ELEMENT], b[r.VECTORS], b[r.BENDS], b[r.ELEMENTS]
     size, slots_ = 2 * vectors, nodes * vectors
     measures, moving, tangent, predicted = b[r.MEASURES], s[r.MOVING], s[r.TANGENT], s[r.PREDICTED]
-    stiff = tangent != 0 and reals(s[r.FACTORS])[0] != 0.0
     gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
+    ck, cv = reals(s[r.FACTORS])[0], reals(s[r.FACTORS])[1] if damped else 0.0
+    stiff = tangent != 0 and (ck != 0.0 or cv != 0.0)
     if damped:
         _rate_nodes(call[r.RATE_NODES], group, system, b[r.VELOCITY])
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
@@ -85,8 +86,7 @@ def add_elements(group, system):
                 q,
             )
             if damped:
-                rate, factors = at(q, RATE * ROW), reals(s[r.FACTORS])
-                velocity = at(e, b[r.VELOCITY] * ROW)
+                rate, velocity = at(q, RATE * ROW), at(e, b[r.VELOCITY] * ROW)
                 _interpolate(
                     call[r.INTERPOLATE], nodes, vectors, bends, count, rows, slope, second, factor, velocity, rate
                 )
@@ -95,7 +95,8 @@ def add_elements(group, system):
                     call[r.VISCOUS],
                     count,
                     measures,
-                    factors[1] / factors[0] if stiff else 0.0,
+                    ck if stiff else 0.0,
+                    cv if stiff else 0.0,
                     weight,
                     at(t, (b[r.STIFFNESS] + number * pairs) * ROW),
                     at(t, b[r.DAMPING] * ROW),
@@ -113,6 +114,11 @@ def add_elements(group, system):
                 _spread(
                     call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g
                 )
+            if stiff and damped:
+                for row in range(measures):
+                    resultant = at(q, (RESULTANT + row) * ROW)
+                    for i in range(count):
+                        resultant[i] *= ck
             if stiff:
                 _measure(call[r.HESSIAN], count, q)
                 _copy(call[r.COPY], 21, count, at(q, POINT_HESSIAN * ROW), at(x, (h + 21 * number) * ROW))

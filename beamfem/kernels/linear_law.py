@@ -59,9 +59,9 @@ def six_resultants(count, tangent, weight, c, reference, x):
                 to[i] = weight[i] * own[i]
 
 
-@routine("iidrrrr", fastmath=FAST)
-def add_viscous(count, measures, ratio, weight, c, time, x):
-    """Add resultants time C eps' of the rates of strains, and their stiffness times the ratio of the weights of p', p.
+@routine("iiddrrrr", fastmath=FAST)
+def add_viscous(count, measures, ck, cv, weight, c, time, x):
+    """Add resultants time C eps' of the rates of strains; weigh the stiffness by ck, and add theirs weighed by cv.
 
     time: row of retardation times [s]; Kelvin and Voigt. How eps' changes with p at constant p' is left out.
     """
@@ -76,7 +76,7 @@ def add_viscous(count, measures, ratio, weight, c, time, x):
             if column != row:
                 for i in range(count):
                     other[i] += weight[i] * time[i] * own[i] * own_rate[i]
-            if ratio != 0.0:
+            if ck != 0.0 or cv != 0.0:
                 for i in range(count):
-                    to[i] += ratio * weight[i] * time[i] * own[i]
+                    to[i] = ck * to[i] + cv * weight[i] * time[i] * own[i]
             pair += 1

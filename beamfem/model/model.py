@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
 from typing import Any, get_args
 
 import numpy as np
@@ -224,6 +225,10 @@ class Model:
     @property
     def foundations(self) -> tuple[Foundation, ...]:
         return tuple(support for support in self.supports if isinstance(support, Foundation))
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Any:
+        """Draw the model before any solve, with its supports and loads; return the figure."""
+        return offered(Model.plot)(self, path)
 
     def _repr_html_(self) -> str:
         return offered(Model._repr_html_)(self)

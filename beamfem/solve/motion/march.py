@@ -77,6 +77,9 @@ def march(
     statistics = record.statistics
     done, row, failed = 0, 0, None
     own = not isinstance(integrator, GeneralizedAlpha)
+    damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
+    # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration
+    relaxed = damped and isinstance(integrator, GeneralizedAlpha) and integrator.rho_inf < 1.0
     # an integrator of one's own may raise anything, and what it has reached before is kept
     size = 1 if own else max(_FIRST_CHUNK // system.model.size, 1)
     turned = record.turned[0].copy()
@@ -88,6 +91,8 @@ def march(
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
                 statistics[[4, 6, 7]] = -1.0, 0.0, 0.0
+            if relaxed:
+                state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
             motion = _steps(system, integrator, part, statistics)
             loaded = np.append(part.times[1:-1], part.loads_to)
             begun, steps = 0, len(loaded)
@@ -159,10 +164,12 @@ def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarr
     state[3] = state[2]
 
 
-def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.ndarray:
+def initial_acceleration(system: System, state: np.ndarray, time: float, step: float = 0.0) -> np.ndarray:
     """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates.
 
-    Multipliers among p are set as well.
+    Multipliers among p are set as well. step [s]: (M + step D) p'' = what is unbalanced, the mean over a step that
+    damping D may leave little of: from p'' itself, which a creeping beam has for an instant only, the
+    generalized-alpha method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step it is the same.
     """
     p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
     free = system.free_dofs
@@ -173,6 +180,7 @@ def initial_acceleration(system: System, state: np.ndarray, time: float) -> np.n
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, time)
         state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
         return a
-    _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, INERTIA)
+    weights = (0.0, step, 1.0) if step > 0.0 else INERTIA
+    _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, weights)
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a

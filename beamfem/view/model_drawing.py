@@ -1,0 +1,29 @@
+"""Drawings of a model before any solve: what is where, held and loaded."""
+
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from beamfem.assembly.system import system_of
+from beamfem.model.model import Model
+from beamfem.results.solution import Solution
+from beamfem.results.status import Statistics
+from beamfem.view.drawing import plot_shapes
+from beamfem.view.plots import save_figure
+
+
+def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
+    """Draw the bodies of a model as they are without stress, with supports, joints and full loads; return the figure.
+
+    path: where to write it (PNG, SVG, PDF; folders are made). Nothing is solved, so that a model may be drawn that
+    moves freely or is loaded beyond its strength. Raises BeamfemError without matplotlib.
+    """
+    p = system_of(model, static=True).reference[None]
+    rates = np.zeros_like(p)
+    at_rest = Solution(model, True, np.ones(1), p, rates, rates, Statistics(0, 0, 0, "the model without stress"))
+    figure = plot_shapes(at_rest, undeformed=False)
+    figure.axes[0].set_title("as it is without stress, with all loads", fontsize=10)
+    if path is not None:
+        save_figure(figure, path)
+    return figure

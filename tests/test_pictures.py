@@ -129,7 +129,8 @@ def test_a_model_is_drawn_before_any_solve(framed, tmp_path):
     (solved,) = framed.plot(shapes=1, undeformed=False).axes
     assert (tmp_path / "model.svg").stat().st_size > 1000
     drawn, expected = (Counter(type(part) for part in one.get_children()) for one in (axes, solved))
-    assert drawn == expected
+    assert not expected - drawn
+    assert drawn[Quiver] > 0
     places = np.concatenate([mesh.position for mesh in framed.model.meshes])
     drawn = np.concatenate([segment for lines in lines_of(axes) for segment in lines.get_segments()])
     distances = np.linalg.norm(places[:, None] - drawn, axis=2).min(axis=1)

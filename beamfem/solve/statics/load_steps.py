@@ -20,29 +20,35 @@ Snap = Literal["error", "jump"]
 _CUTS = 4  # in succession, before the path is followed by its length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
-_SAME = 1e-12  # of the load factor: no nearer than this are two of them
+SAME = 1e-12  # of the load factor: no nearer than this are two of them
 _BESIDE = 1e-4  # of the load factor of a limit point, which is located to about 1e-8
 _SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
 
 
 def reach(
-    system: System, done: StaticRecord, step: float, newton: Newton, snap: Snap, stops: Sequence[float] = ()
+    system: System,
+    done: StaticRecord,
+    step: float,
+    newton: Newton,
+    snap: Snap,
+    stops: Sequence[float] = (),
+    end: float = 1.0,
 ) -> None:
-    """Add the rows from the last one to load factor 1; `step` is the first load step.
+    """Add the rows from the last one to the load factor `end`, 1 at most; `step` is the first load step.
 
     stops: load factors that get a row of their own, but for those that a jump leaves out.
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
-    ahead = sorted({stop for stop in stops if _SAME < stop < 1.0 - _SAME} | {1.0})
+    ahead = sorted({stop for stop in stops if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
     # what remembers goes through the steps that are asked for
     longest = step if len(system.connectors.memory) else 1.0
-    with progress("load factor", 1.0) as report:
-        while done.reached < 1.0:
+    with progress("load factor", end) as report:
+        while done.reached < end:
             step = _within_a_turn(system, done, step)
-            stop = next((stop for stop in ahead if stop > done.reached + _SAME), 1.0)
-            target = stop if done.reached + step > stop - _SAME else done.reached + step
+            stop = next((stop for stop in ahead if stop > done.reached + SAME), end)
+            target = stop if done.reached + step > stop - SAME else done.reached + step
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not skips_limit_points(system, done, target, result, newton):

@@ -1,45 +1,88 @@
 """Static equilibrium under loads that grow with a load factor from 0 to 1."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 
+import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.system import system_of
-from beamfem.errors import ConvergenceError
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
+from beamfem.results.turns import start_rotations
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import require_independent
-from beamfem.solve.statics.load_steps import Snap, reach
+from beamfem.solve.statics.load_steps import SAME, Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord
-from beamfem.validation import count, one_of
+from beamfem.validation import count, finite, items, one_of, shown
 
 _NEWTON = Newton()
 
 
-def solve_static(model: Model, steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error") -> Solution:
+def solve_static(
+    model: Model,
+    steps: int = 1,
+    newton: Newton | None = None,
+    *,
+    at: Sequence[float] | None = None,
+    snap: Snap = "error",
+) -> Solution:
     """Return the equilibria from load factor 0 to 1 along the path that starts at 0.
 
     A load step is accepted where the iterates keep the count of negative pivots; else the path is followed by its
     length. At a bifurcation it goes on along the primary path, and a warning tells of unstable rows.
     steps: load steps to start with, grown and cut as needed. Rows of the result: load factor 0 (loads with
-    scale=False), ..., 1. snap: what to do at a limit point, "error", or "jump" to the state in which a slow, damped
-    structure comes to rest under the same load, and go on from there.
+    scale=False), ..., 1. at: load factors from 0 to 1, ascending, to have rows at instead: exactly these, but for those
+    that a jump leaves out; the last of them ends the solve. snap: what to do at a limit point, "error", or "jump" to
+    the state in which a slow, damped structure comes to rest under the same load, and go on from there.
     Raises InputError and FreeMotionError before; LimitPointError with its load factor, and ConvergenceError where it
     cannot go on, both with the states found. Any other exception on the way, such as KeyboardInterrupt, gets them as
     its `solution` as well.
     """
-    return solve_through(model, (), steps, newton, snap=snap)
+    if at is None:
+        return solve_through(model, (), steps, newton, snap=snap)
+    wanted = _ascending(at)
+    return _rows_at(solve_through(model, wanted, steps, newton, snap=snap, end=wanted[-1]), wanted)
+
+
+def _ascending(at: Sequence[float]) -> list[float]:
+    """Check the load factors that a user wants rows at."""
+    wanted = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
+    rising = all(after - before > SAME for before, after in pairwise(wanted))
+    if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
+        raise InputError(
+            "at of solve_static must be load factors that rise within 0 and 1, such as [0.25, 0.5, 1.0], got "
+            f"{shown(at)}"
+        )
+    return wanted
+
+
+def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
+    """Return the rows at some load factors, with the turns of sections as all rows counted them."""
+    near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
+    # behind a jump the last of several states at a load factor
+    rows = np.array([np.flatnonzero(own)[-1] for own in near if own.any()], dtype=int)
+    stability = None if solution.stability is None else solution.stability[rows]
+    states = {name: getattr(solution, name)[rows] for name in ("at", "p", "v", "a")}
+    return replace(solution, **states, stability=stability, turned=start_rotations(solution)[rows])
 
 
 def solve_through(
-    model: Model, stops: Sequence[float], steps: int = 1, newton: Newton | None = None, *, snap: Snap = "error"
+    model: Model,
+    stops: Sequence[float],
+    steps: int = 1,
+    newton: Newton | None = None,
+    *,
+    snap: Snap = "error",
+    end: float = 1.0,
 ) -> Solution:
-    """Return the same with rows at load factors `stops` in between."""
+    """Return the same with rows at load factors `stops` in between, up to the load factor `end`."""
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
     system = system_of(model, static=True)
@@ -59,7 +102,7 @@ def solve_through(
     done.add(0.0, state, first.negative_pivots, first.ended, first.digits)
     with kept(done.solution):
         try:
-            reach(system, done, 1.0 / steps, newton, snap, stops)
+            reach(system, done, 1.0 / steps, newton, snap, stops, end)
         except LinAlgError as error:
             raise ConvergenceError(f"beyond load factor {done.reached:.6g}: {error}", done.solution()) from error
     return done.solution(complete=True)

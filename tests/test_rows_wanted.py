@@ -1,0 +1,80 @@
+"""Rows of a static solve at the load factors that are asked for, and the turns counted between them."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+SQUARE, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
+EI = 2e11 * 1e-8 / 12
+
+
+def roll(element, turns):
+    """A strip that an end moment rolls up; each load factor is a share of the turns."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 12, element, SQUARE, STEEL)
+    return beam, bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 2 * np.pi * turns * EI)])
+
+
+@pytest.mark.parametrize("steps", [1, 15])
+def test_rows_are_those_that_are_asked_for(steps):
+    beam, model = roll(bf.CRBF(order=3), 1.0)
+    at = [0.0, 0.1, 1 / 3, 0.5, 0.9]
+    solution = bf.solve_static(model, steps, at=at)
+    assert solution.load_factor.tolist() == at
+    assert solution.rotation(beam.end) == pytest.approx(2 * np.pi * np.array(at), rel=1e-5, abs=1e-9)
+
+
+def test_what_is_behind_the_last_row_is_not_solved_for():
+    """Half a toggle frame gives way between the two."""
+    half = bf.Beam(bf.Line((0, 0), (1, 0.04)), 6, bf.CRBF(order=3), SQUARE, STEEL)
+    supports = [bf.Clamp(half.start), bf.Prescribed(half.end, ux=0.0, rotation=0.0)]
+
+    def model(force):
+        return bf.Model([half], supports, [bf.PointForce(half.end, (0, -force))])
+
+    path = bf.trace_equilibrium(model(1.0), until=1e5)
+    limit = path.limit_points[0].load_factor
+    before = bf.solve_static(model(2.0 * limit), at=[0.2, 0.4])
+    assert before.load_factor.tolist() == [0.2, 0.4]
+    assert before.stable.all()
+    with pytest.raises(bf.LimitPointError):
+        bf.solve_static(model(2.0 * limit), at=[0.2, 0.6])
+    behind = bf.solve_static(model(2.0 * limit), at=[0.2, 0.4, 0.6, 1.0], snap="jump")
+    assert behind.load_factor.tolist() == [0.2, 0.4, 0.6, 1.0]
+    heights = behind.position(half.end)[:, 1]
+    assert heights[1] > 0.0 > heights[2]
+
+
+def test_turns_between_rows_are_counted():
+    """Gradients know a rotation up to full turns only; rows more than half a turn apart come of rows in between."""
+    element = bf.ANCF(bf.Structural())
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 12, element, SQUARE, STEEL)
+    stub = bf.Beam(bf.Line((1, 0), (1.1, 0)), 1, element, SQUARE, STEEL)
+    turning = bf.Prescribed(beam.start, ux=0.0, uy=0.0, rotation=lambda factor: 5.0 * np.pi * factor)
+    model = bf.Model([beam, stub], [turning], [], [bf.Rigid(beam.end, stub.start)])
+    solution = bf.solve_static(model, at=[0.0, 1.0])
+    assert solution.rotation(stub.end) == pytest.approx([0.0, 5.0 * np.pi], abs=1e-6)
+
+
+def test_load_at_zero_alone_is_the_state_without_load():
+    beam, model = roll(bf.CRBF(order=2), 0.1)
+    solution = bf.solve_static(model, at=[0.0])
+    assert (len(solution), solution.displacement(beam.end).tolist()) == (1, [[0.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ([], "must be load factors that rise"),
+        ([0.5, 0.25], "must be load factors that rise"),
+        ([0.5, 0.5], "must be load factors that rise"),
+        ([0.5, 1.5], "within 0 and 1"),
+        ([-0.5], "within 0 and 1"),
+        ([np.nan], r"at\[0\] must be finite"),
+        (["1"], r"at\[0\] must be a number"),
+        (0.5, "at must be a list"),
+    ],
+)
+def test_rows_that_there_cannot_be_are_refused(at, said):
+    with pytest.raises(bf.InputError, match=said):
+        bf.solve_static(roll(bf.CRBF(order=2), 0.1)[1], at=at)

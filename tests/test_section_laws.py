@@ -258,3 +258,24 @@ def test_results_of_a_law_cannot_be_saved(tmp_path):
     solution = bf.solve_static(arm(RambergOsgood(**SECTION, knee=30.0), force=(0.0, 10.0))[1])
     with pytest.raises(bf.InputError, match="RambergOsgood cannot be saved"):
         solution.save(tmp_path / "a.h5")
+
+
+def test_a_motion_does_not_jump_to_another_one():
+    """A law that pushes back with 1e300 N m beyond a curvature: corrections of 1e3 models and more were taken."""
+
+    @dataclass(frozen=True)
+    class Wall(LinearLaw):
+        def resultants(self, strain, material):
+            found = super().resultants(strain, material)
+            beyond = np.abs(strain[:, 2].real) > 2.5
+            found[:, 2] = np.where(beyond, 1e300 * strain[:, 2], found[:, 2])
+            return found
+
+        def energy(self, strain, material):
+            return super().energy(strain, material)
+
+    _, model = arm(Wall(**SECTION), force=(0.0, 300.0))
+    with pytest.raises(bf.ConvergenceError) as caught:
+        bf.simulate(model, duration=1.0, step=5e-3)
+    reached = caught.value.solution
+    assert abs(reached.rotation(model.beams[0].end)).max() < 10.0

@@ -1,7 +1,5 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
-import math
-
 from numba import types
 
 from beamfem.kernels import record as r
@@ -144,12 +142,12 @@ def march(system, solver, calls):
             if iteration == 1:
                 first_size = max(size, statistics[7])
             done = _judge(call[r.JUDGE], iteration, full, size, last, first_size, limits[0], rate)
-            if done != 0:
+            if done > 0:
                 break
             if full == 0:
-                fails = not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5))
+                fails = done < 0 or not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5))
             else:
-                fails = not (iteration < limits[1] and math.isfinite(size))
+                fails = done < 0 or not iteration < limits[1]
             if fails and full == 2:
                 break
             if fails:
@@ -160,7 +158,7 @@ def march(system, solver, calls):
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
-        if done == 0:
+        if done <= 0:
             for i in range(4 * n):
                 state[i] = before[i]
             return step

@@ -14,6 +14,7 @@ _REMAINDER = 1e-5
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
 # behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _NEGLECTED = 1e-8
+_LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
 
 
 @routine("iidrrrnrr")
@@ -62,11 +63,13 @@ def correct(n, unknown, state, right, free, inverse_scale, coefficients):
 
 @routine("iiddddr", types.int64)
 def judge(iteration, full, size, last, changed, tolerance, rate):
-    """Tell whether a step is done after a correction; rate (1,): that at which corrections shrink, updated.
+    """Return 1 if a step is done after a correction, -1 if it is lost; rate (1,): at which corrections shrink, updated.
 
     size, last: this correction and the one before; changed: what a change of acceleration changes in the step; full:
     each correction has its own tangent. Hairer and Wanner 1996, IV.8.
     """
+    if not size < _LARGEST:
+        return -1
     if iteration > 1:
         if last <= tolerance and size <= tolerance and size > 0.5 * last:
             # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent

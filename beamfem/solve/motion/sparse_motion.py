@@ -110,9 +110,9 @@ class SparseMotion:
             if iteration == 1:
                 first_size = max(size, statistics[7])
             self._number[0] = rate
-            done = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number) != 0
-            rate = float(self._number[0])
-            if not np.isfinite(size) or (not full and iteration > 1 and rate >= 0.5):
+            judged = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number)
+            done, rate = judged > 0, float(self._number[0])
+            if judged < 0 or (not full and iteration > 1 and rate >= 0.5):
                 break
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if not done or iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate

@@ -4,6 +4,8 @@ import pytest
 from fuzz import FEW, judged, run, summary
 from fuzz_judged import Outcome
 
+from beamfem.solve.continuation import bifurcations
+
 QUICK, MANY = 24, 10_000
 
 
@@ -29,6 +31,19 @@ def test_a_few_random_models_end_right_or_in_a_named_error():
 )
 def test_random_models_that_once_were_wrong(seed, was):
     assert judged(seed).verdict == "right", was
+
+
+def test_the_search_for_bifurcations_ends_where_round_off_decides(monkeypatch):
+    """Seed 919, stiffnesses 1e30 apart: every step was divided down to a hundred-thousandth, 5000 times and more."""
+    asked, condensed = [], bifurcations.condensed
+
+    def counted(line, point, directions):
+        asked.append(point)
+        return condensed(line, point, directions)
+
+    monkeypatch.setattr(bifurcations, "condensed", counted)
+    assert judged(919).verdict == "ConvergenceError"
+    assert 0 < len(asked) < 500
 
 
 @pytest.mark.slow

@@ -34,7 +34,7 @@ def test_random_models_that_once_were_wrong(seed, was):
 
 
 def test_the_search_for_bifurcations_ends_where_round_off_decides(monkeypatch):
-    """Seed 919, stiffnesses 1e30 apart: every step was divided down to a hundred-thousandth, 5000 times and more."""
+    """Seed 919, stiffnesses 1e30 apart: every step was divided down to a hundred-thousandth, with thousands of stiffnesses."""
     asked, condensed = [], bifurcations.condensed
 
     def counted(line, point, directions):
@@ -43,7 +43,7 @@ def test_the_search_for_bifurcations_ends_where_round_off_decides(monkeypatch):
 
     monkeypatch.setattr(bifurcations, "condensed", counted)
     assert judged(919).verdict == "ConvergenceError"
-    assert 0 < len(asked) < 500
+    assert 0 < len(asked) < 1500
 
 
 @pytest.mark.slow

@@ -34,7 +34,7 @@ def test_random_models_that_once_were_wrong(seed, was):
 
 
 def test_the_search_for_bifurcations_ends_where_round_off_decides(monkeypatch):
-    """Seed 919, stiffnesses 1e30 apart: each step was divided to a hundred-thousandth, with thousands of stiffnesses."""
+    """Seed 919, stiffnesses 1e30 apart: each step was divided to a hundred-thousandth, by thousands of tangents."""
     asked, condensed = [], bifurcations.condensed
 
     def counted(line, point, directions):

@@ -96,8 +96,9 @@ def test_a_small_vibration_decays_as_its_damping_ratio_says(element, framed):
     peaks = np.flatnonzero((tip[1:-1] > tip[:-2]) & (tip[1:-1] >= tip[2:])) + 1
     late = peaks[1:]
     decay = np.log(tip[late[0]] / tip[late[-1]]) / (motion.time[late[-1]] - motion.time[late[0]])
-    assert decay == pytest.approx(ratio * omega, rel=5e-3)
-    assert np.diff(motion.time[late]).mean() == pytest.approx(period / np.sqrt(1 - ratio**2), rel=5e-3)
+    # peaks are found to one step of 400 a period, over four periods
+    assert decay == pytest.approx(ratio * omega, rel=7e-4)
+    assert np.diff(motion.time[late]).mean() == pytest.approx(period / np.sqrt(1 - ratio**2), rel=7e-4)
     assert len(shape.frequencies) == 1
 
 
@@ -110,14 +111,14 @@ def test_what_a_large_motion_loses_does_not_depend_on_how_it_is_integrated():
         total = bf.simulate(model, duration=0.2, step=step, **integrator).energy().total
         found.append(total[0] - total[-1])
     assert found[0] > 1e-3
-    assert found[1] == pytest.approx(found[0], rel=2e-3)
-    assert found[2] == pytest.approx(found[1], rel=5e-3)
+    assert found[1] == pytest.approx(found[0], rel=4e-4)  # of second order in the step
+    assert found[2] == pytest.approx(found[1], rel=2e-4)
 
 
-@pytest.mark.parametrize("rho", [1.0, 0.9, 0.5, 0.0])
+@pytest.mark.parametrize(("rho", "lag"), [(1.0, 0.002), (0.9, 0.52), (0.5, 0.55), (0.0, 0.8)])
 @pytest.mark.parametrize("framed", [False, True], ids=["chain", "frame"])
-def test_a_beam_creeps_under_a_sudden_load_and_back(rho, framed):
-    """1 - exp(-time / t), in steps far longer than the period of its vibration.
+def test_a_beam_creeps_under_a_sudden_load_and_back(rho, lag, framed):
+    """1 - exp(-time / t) but for a lag, in steps, after the first; steps are far longer than a period of vibration.
 
     The acceleration of the first instant moved it to many times its static deflection, in silence.
     """
@@ -135,8 +136,8 @@ def test_a_beam_creeps_under_a_sudden_load_and_back(rho, framed):
     given = {"duration": 3e3, "step": 10.0, "integrator": bf.GeneralizedAlpha(rho)}
     onto, back = bf.simulate(loaded, **given), bf.simulate(free, start=static[-1], **given)
     crept = 1.0 - np.exp(-onto.time / 1e3)
-    assert onto.displacement(own.end)[:, 1] / last == pytest.approx(crept, abs=8e-3)
-    assert back.displacement(own.end)[:, 1] / last == pytest.approx(1.0 - crept, abs=8e-3)
+    assert onto.displacement(own.end)[:, 1] / last == pytest.approx(crept, abs=lag * 10.0 / 1e3)
+    assert back.displacement(own.end)[:, 1] / last == pytest.approx(1.0 - crept, abs=lag * 10.0 / 1e3)
     assert back.energy().total.max() <= back.energy().total[0] * (1.0 + 1e-9)
 
 

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from collections import Counter
 
 import numpy as np
 import pytest
@@ -121,30 +120,6 @@ def test_rotation_of_gradients_counts_turns_where_rows_are_left_out():
     last = Shapes(solution, np.array([0, len(solution) - 1]), "rotation").values[0][-1]
     assert last[-1] == pytest.approx(solution.rotation(beam.end)[-1], abs=1e-9)
     assert last[-1] > 4.0 * np.pi
-
-
-def test_a_model_is_drawn_before_any_solve(framed, tmp_path):
-    """As it is described: bodies in their reference, with the symbols that a solution has, at full load."""
-    (axes,) = framed.model.plot(tmp_path / "model.svg").axes
-    (solved,) = framed.plot(shapes=1, undeformed=False).axes
-    assert (tmp_path / "model.svg").stat().st_size > 1000
-    drawn, expected = (Counter(type(part) for part in one.get_children()) for one in (axes, solved))
-    assert not expected - drawn
-    assert drawn[Quiver] > 0
-    places = np.concatenate([mesh.position for mesh in framed.model.meshes])
-    drawn = np.concatenate([segment for lines in lines_of(axes) for segment in lines.get_segments()])
-    distances = np.linalg.norm(places[:, None] - drawn, axis=2).min(axis=1)
-    assert distances.max() < 1e-9
-
-
-def test_a_model_that_cannot_be_solved_is_drawn():
-    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(order=2), SECTION, STEEL)
-    model = bf.Model([beam], loads=[bf.PointForce(beam.end, (0, 1e9))])
-    with pytest.raises(bf.FreeMotionError):
-        bf.solve_static(model)
-    figure = model.plot()
-    figure.canvas.draw()
-    assert share_of_ink(figure.canvas.buffer_rgba()) > 0.01
 
 
 def test_supports_and_loads_can_be_left_out(framed):

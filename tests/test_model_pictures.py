@@ -1,0 +1,41 @@
+"""Pictures of models that nothing is solved of yet."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from drawn import SECTION, STEEL, frame, share_of_ink
+from matplotlib.collections import LineCollection
+from matplotlib.quiver import Quiver
+
+import beamfem as bf
+
+
+@pytest.fixture(scope="module")
+def framed():
+    return frame()
+
+
+def test_a_model_is_drawn_before_any_solve(framed, tmp_path):
+    """As it is described: bodies in their reference, with the symbols that a solution has, at full load."""
+    (axes,) = framed.model.plot(tmp_path / "model.svg").axes
+    (solved,) = framed.plot(shapes=1, undeformed=False).axes
+    assert (tmp_path / "model.svg").stat().st_size > 1000
+    drawn, expected = (Counter(type(part) for part in one.get_children()) for one in (axes, solved))
+    assert not expected - drawn
+    assert drawn[Quiver] > 0
+    places = np.concatenate([mesh.position for mesh in framed.model.meshes])
+    lines = [one for one in axes.collections if isinstance(one, LineCollection)]
+    points = np.concatenate([segment for one in lines for segment in one.get_segments()])
+    distances = np.linalg.norm(places[:, None] - points, axis=2).min(axis=1)
+    assert distances.max() < 1e-9
+
+
+def test_a_model_that_cannot_be_solved_is_drawn():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(order=2), SECTION, STEEL)
+    model = bf.Model([beam], loads=[bf.PointForce(beam.end, (0, 1e9))])
+    with pytest.raises(bf.FreeMotionError):
+        bf.solve_static(model)
+    figure = model.plot()
+    figure.canvas.draw()
+    assert share_of_ink(figure.canvas.buffer_rgba()) > 0.01

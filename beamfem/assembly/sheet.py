@@ -93,6 +93,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
     table[record.CONVECTIVE] = 2 * size + turned * turning
     table[record.VELOCITY], table[record.DAMPED] = velocity, damped
+    table[record.APART] = not block.mass.reshape(classes, nodes, vectors, nodes, vectors)[..., :-1, :, -1].any()
     table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
     table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
     used = rows_of.py_func(nodes, vectors, points, gathered, tables.shape[1])[-1]

@@ -13,7 +13,7 @@ _gather, _scatter = caller("iiiinirr"), caller("iiiiniirr")
 _fill_tables, _fill_body = caller("iiii"), caller("iinrr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
-_add_inertia = caller("iiiiiirrrrrr")
+_add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
 _rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 
@@ -60,6 +60,7 @@ def add_elements(group, system):
             rows,
             s[r.LOADED],
             moving,
+            b[r.APART],
             at(t, b[r.MASS] * ROW),
             at(t, b[r.GRAVITY] * ROW),
             at(t, b[r.LENGTH] * ROW),

@@ -7,10 +7,13 @@ from beamfem.kernels.record import ROW
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iiiiiirrrrrr", fastmath=FAST)
-def add_inertia(nodes, vectors, count, stride, loaded, moving, mass, gravity, length, body, e, f):
-    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e (nodes, stride, ROW), e'' behind e."""
-    slots = nodes * vectors
+@routine("iiiiiiirrrrrr", fastmath=FAST)
+def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, gravity, length, body, e, f):
+    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e (nodes, stride, ROW), e'' behind e.
+
+    apart: the mass of d has no entries with that of r0, as in every section that is as heavy above as below the axis.
+    """
+    slots, last = nodes * vectors, vectors - 1
     for slot in range(slots):
         x, y = at(f, 2 * slot * ROW), at(f, (2 * slot + 1) * ROW)
         if loaded != 0:
@@ -22,9 +25,16 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, mass, gravity, le
             for i in range(count):
                 x[i] = 0.0
                 y[i] = 0.0
-        if moving != 0:
+    if moving == 0:
+        return
+    for own_node in range(nodes):
+        for own_vector in range(vectors):
+            slot = own_node * vectors + own_vector
+            x, y = at(f, 2 * slot * ROW), at(f, (2 * slot + 1) * ROW)
+            begin = last if apart != 0 and own_vector == last else 0
+            end = last if apart != 0 and own_vector < last else vectors
             for n in range(nodes):
-                for s in range(vectors):
+                for s in range(begin, end):
                     m = at(mass, (slot * slots + n * vectors + s) * ROW)
                     own = at(e, (n * stride + 2 * vectors + 2 * s) * ROW)
                     for i in range(count):

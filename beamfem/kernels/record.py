@@ -75,7 +75,8 @@ FILLED_WITH = 57  # their class, or -1 - the first element where they are of sev
 DAMPED = 58  # whether resultants depend on rates of strains
 DAMPING = 59  # rows of a class: (1,) retardation time
 VELOCITY = 60  # rows of a node: e', where resultants depend on it
-BLOCK_FIELDS = 61
+APART = 61  # whether no entry of the mass is of d and r0
+BLOCK_FIELDS = 62
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0

@@ -42,6 +42,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.model.grading import graded
+from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model

@@ -10,7 +10,7 @@ import numpy as np
 import beamfem as bf
 from beamfem.element.coordinates import labels, nodal_rates
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.model.loads import factor
+from beamfem.model.load import factor
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.assembly.columns import coordinate_columns
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.round_off import _digits
-from beamfem.assembly.system import System, coordinate_columns
+from beamfem.assembly.system import System
 
 SECTION, SOFT = bf.Rectangle(0.1, 0.1), bf.Material(1e6, 0.3, 1.0)
 

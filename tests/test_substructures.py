@@ -56,7 +56,13 @@ def followed(beam):
     return bf.Model([beam], [bf.Clamp(beam.start)], loads)
 
 
-CASES = (cantilever, between_pin_and_roller, on_springs, moved, clamped_where_cut, followed)
+def curled(beam):
+    """Its curvature varies, so that its halves have strains of their own."""
+    muscle = bf.Actuation(beam, curvature=lambda s: 2.0 * s - 0.5, stretch=0.02)
+    return bf.Model([beam], [bf.Clamp(beam.start)], [muscle, bf.PointForce(beam.end, (0.0, EI))])
+
+
+CASES = (cantilever, between_pin_and_roller, on_springs, moved, clamped_where_cut, followed, curled)
 
 
 def beam_of(element, elements=9, curve=LINE):

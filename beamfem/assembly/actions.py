@@ -7,7 +7,8 @@ import numpy as np
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
-from beamfem.model.loads import LineLoad, PointLoad, Pressure, factor
+from beamfem.model.load import factor
+from beamfem.model.loads import LineLoad, PointLoad, Pressure
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, reference_position, scales

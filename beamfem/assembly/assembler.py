@@ -11,6 +11,7 @@ from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
 
 Stresses = Sequence[np.ndarray]
+_NONE = np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +96,7 @@ class Assembler:
         whole.arrays["groups"][:] = [work.address for work in self.works]
         self.numbers = sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
+        self._natural: tuple[np.ndarray, ...] = ()
         self.table[:] = equations.table
         self.table[record.GROUP_RECORDS], self.table[record.VALUES] = (
             whole.addresses["groups"],
@@ -112,13 +114,15 @@ class Assembler:
     def memory(self) -> tuple[np.ndarray, ...]:
         """The arrays that compiled code reads and writes, but for those that a state is placed in."""
         kept = [array for sheet in self.equations.sheets for array in sheet.kept]
-        return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *self._acting)
+        acting = (*self._acting, *self._natural)
+        return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *acting)
 
-    def load(self, body: np.ndarray, values: Sequence[np.ndarray]) -> list[int]:
+    def load(self, body: np.ndarray, values: Sequence[np.ndarray], imposing: np.ndarray = _NONE) -> list[int]:
         """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first.
 
-        Return their addresses.
+        imposing: see `impose`. Return their addresses, but for those of imposed strains.
         """
+        self.impose(imposing)
         parts = (body, *values)
         self._acting = (np.concatenate([part.ravel() for part in parts]),)
         places, address = [], address_of(self._acting[0])
@@ -127,6 +131,15 @@ class Assembler:
             address += 8 * part.size
         self.table[record.BODY], self.table[record.LOADED] = places[0], int(body.any())
         self._values[:] = places[1:]
+        return places
+
+    def impose(self, factors: np.ndarray) -> list[int]:
+        """Take factors (..., k) of the loads that impose strains; return the address of those of each group, or 0."""
+        found = [_imposed(work.sheet, factors) for work in self.works]
+        self._natural = tuple(own for own in found if own is not None)
+        places = [0 if own is None else address_of(own) for own in found]
+        for work, place in zip(self.works, places, strict=True):
+            work.table[record.NATURAL] = place
         return places
 
     def weigh(self, coefficients: Sequence[float]) -> None:
@@ -186,7 +199,10 @@ class Assembler:
             law.raise_error()
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return e, e'' and forces of the strains and their rates (N, per_node) of the only group in p, p', p''."""
+        """Return e, e'' and forces of the strains and their rates (N, per_node) of the only group in p, p', p''.
+
+        Strains that loads impose are taken off.
+        """
         (work,), table, nothing = self.works, self.table, np.zeros(self.size)
         self.place(p, v, a, nothing, np.empty(0))
         self.weigh((1.0, 0.0, 0.0))
@@ -218,6 +234,15 @@ class Assembler:
             node_passes.place_nodes(work.address, self.address, 0)
             smallest = min(smallest, model_passes.smallest_jacobian(work.address))
         return smallest
+
+
+def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:
+    """Return the strains (..., ne, nq, ns) that loads with factors (..., k) impose, None where there are none."""
+    if sheet.imposed is None or not factors.any():
+        return None
+    if factors.ndim == 1:
+        return np.ascontiguousarray(sheet.imposed.at(factors))
+    return np.array([sheet.imposed.at(row) for row in factors])
 
 
 def _address(values: np.ndarray, size: int | None = None) -> int:

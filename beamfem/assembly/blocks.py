@@ -4,18 +4,25 @@ from collections.abc import Hashable, Sequence
 
 import numpy as np
 
+from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE, Block
 from beamfem.model.classes import Classes, likenesses
+from beamfem.model.load import Imposing
 from beamfem.model.mesh import BeamMesh
 
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
 
-def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Block:
-    """Return the block of all beams (number, mesh) that share an element and a law of the section."""
+def build_block(
+    element: Element, meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, Imposing]] = ()
+) -> Block:
+    """Return the block of all beams (number, mesh) that share an element and a law of the section.
+
+    imposing: loads that impose strains, each with the number of its beam.
+    """
     field = element.field
     xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
@@ -46,6 +53,7 @@ def build_block(element: Element, meshes: Sequence[tuple[int, BeamMesh]]) -> Blo
         second=np.ascontiguousarray(second) if bends else np.empty((0, 0, 0)),
         director=np.ascontiguousarray(field.director(xi)),
         law=None if law is None else LawPass(law),
+        imposed=imposed_on(meshes, imposing) if imposing else None,
         **joined,
     )
 

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.assembly.connector_checks import follows_time, require_analytic, resists_rates
 from beamfem.model.contribution import remembered
-from beamfem.model.loads import factor
+from beamfem.model.load import factor
 from beamfem.model.model import Model
 
 _ROUND_OFF = 1e-13  # of the largest stiffness of a contribution

@@ -21,7 +21,7 @@ _KEPT = 200_000  # numbers of a work space up to which making it takes a part of
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
     result, assembler = np.empty(len(p)), _borrowed(system)
-    assembler.load(system.body(time), system.point_values(time))
+    assembler.load(*system.loads_at(time))
     assembler.weigh((1.0, 1.0, 1.0))
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _give_back(system, assembler)
@@ -65,7 +65,7 @@ def linearise(
     matrix, result = _entries(system), np.empty(len(p))
     borrowed = stresses is None and equations is None
     assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
-    assembler.load(system.body(time), system.point_values(time))
+    assembler.load(*system.loads_at(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if borrowed:
@@ -82,9 +82,9 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     """Return the static tangent in p (n,) with the stress resultants that a linear step (n,) from there leads to."""
     zeros = np.zeros(len(p))
     if MIXED in system.proven:
-        return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step))[1]
+        return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _borrowed(system)
-    assembler.load(system.body(time), system.point_values(time))
+    assembler.load(*system.loads_at(time))
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
@@ -132,17 +132,17 @@ def with_stresses(
 ) -> MixedTangent:
     """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
     p = state[0]
-    known = stresses or _sure_stresses(system, p)
+    known = stresses or _sure_stresses(system, p, time)
     loads, zeros = linearise(system, *state, time, coefficients, known, system.without_stiffness)
-    return mixed(system, p, coefficients[0], loads[system.free_dofs], zeros, plain)
+    return mixed(system, p, time, coefficients[0], loads[system.free_dofs], zeros, plain)
 
 
-def _sure_stresses(system: System, p: np.ndarray) -> tuple[np.ndarray, ...]:
+def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarray, ...]:
     """Return the stress resultants of a state, of each block (ne, nq, ns), zero where they may be round-off only.
 
     That of a stiff part would buckle, or hold, what is soft beside it.
     """
-    result = predicted_stresses(system, p, np.zeros(len(p)))
+    result = predicted_stresses(system, p, np.zeros(len(p)), time)
     reach, turn = sizes(system, p)
     for block, errors, stress in zip(system.blocks, system.stress_errors, result, strict=True):
         round_off = ROUND_OFF * (reach * errors[0] + turn * errors[1])
@@ -159,13 +159,15 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
 
 
 def predicted_stresses(
-    system: System, p: np.ndarray, step: np.ndarray, equations: Equations | None = None
+    system: System, p: np.ndarray, step: np.ndarray, time: float, equations: Equations | None = None
 ) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
 
+    time: at the end of the step, for strains that loads impose;
     equations: of other blocks, to take instead of those of the system.
     """
     assembler = Assembler(equations or system.equations)
+    assembler.impose(system.imposing(time))
     assembler.predict(_plain(p), _plain(step))
     return assembler.stresses
 

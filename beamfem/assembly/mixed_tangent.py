@@ -146,16 +146,16 @@ class MixedTangent:
 
 
 def mixed(
-    system: System, p: np.ndarray, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
+    system: System, p: np.ndarray, time: float, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
 ) -> MixedTangent:
-    """Return the tangent of a state p (n,).
+    """Return the tangent of a state p (n,) at a time.
 
     factor: of the elastic part; loads (n,): residual of all but the elastic forces, zeros: tangent of that; plain: of
     everything.
     """
     none = np.empty(0, dtype=np.int64), np.empty((0, 2))
-    tables = system.strain_rates
-    rates, strain, flexible_at, positive = zip(*(table.at(p) for table in tables), strict=True)
+    tables, imposing = system.strain_rates, system.imposing(time)
+    rates, strain, flexible_at, positive = zip(*(table.at(p, imposing) for table in tables), strict=True)
     weight = np.concatenate([table.weight for table in tables])
     before = np.cumsum([0, *(len(table.weight) for table in tables)])
     pairs = list(zip(tables, before, strict=False))

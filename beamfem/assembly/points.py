@@ -23,9 +23,13 @@ def no_loads(block: Block) -> PointLoads:
     return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
 
 
-def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray]) -> list[np.ndarray]:
-    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,)."""
+def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray], imposing: np.ndarray) -> list[np.ndarray]:
+    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,), less what is imposed.
+
+    imposing (k,): factors of the loads that impose strains.
+    """
     assembler, found = Assembler(Equations((sheet,), _NO_SPRINGS, len(p))), []
+    assembler.impose(imposing)
     for step in steps:
         assembler.predict(p, np.ascontiguousarray(step))
         found.append(assembler.stresses[0].copy())
@@ -33,12 +37,16 @@ def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray]) -> list
 
 
 def elastic_forces(
-    block: Block, p: np.ndarray, v: np.ndarray, a: np.ndarray
+    block: Block, p: np.ndarray, v: np.ndarray, a: np.ndarray, imposing: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n)."""
+    """Return e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n).
+
+    imposing (steps, k): factors of the loads that impose strains.
+    """
     assembler = Assembler(Equations((free_sheet(block, p.shape[1]),), _NO_SPRINGS, p.shape[1]))
     size = 2 * block.scale.shape[1] // block.node.shape[1]
     e, acceleration, force = np.empty((3, len(p), len(block.dof), size))
     for step in range(len(p)):
+        assembler.impose(imposing[step])
         e[step], acceleration[step], force[step] = assembler.elastic(p[step], v[step], a[step])
     return e, acceleration, force

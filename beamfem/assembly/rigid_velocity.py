@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.system import System, coordinate_columns
+from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.system import System
 from beamfem.model.mesh import BeamMesh
 from beamfem.validation import convert, finite, squared, vector
 

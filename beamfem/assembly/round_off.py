@@ -1,6 +1,5 @@
 """What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +7,8 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import MIXED, ROUND_OFF, STATICS, linearise, residual, sizes, with_stresses
+from beamfem.assembly.imposed_forces import imposed_forces
+from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import System
 
@@ -119,13 +120,18 @@ def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients:
     return with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
 
 
-def load_size(system: System, values: Sequence[np.ndarray]) -> float:
-    """Return the largest of forces and moments (..., 3) at points, forces times the size of the model [N m]."""
+def load_size(system: System, loads: LoadsAt) -> float:
+    """Return the largest of forces and moments at points and of those that impose strains [N m].
+
+    Forces are taken times the size of the model.
+    """
     largest = 0.0
-    for own in values:
+    for own in loads.points:
         if own.size:
             x, y, moment = np.abs(own.reshape(-1, 3)).max(axis=0).tolist()
             largest = max(largest, system.extent * max(x, y), moment)
+    if loads.imposing.any():
+        largest = max(largest, float(np.max(np.abs(imposed_forces(system, loads)) * system.scale)))
     return largest
 
 
@@ -140,7 +146,7 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     connected[system.connectors.multipliers] = 0.0
     reactions = max(reactions, float(np.max(np.abs(connected * system.scale), initial=0.0)))
     sprung = np.abs(springs.stiffness * (p[springs.dof] - springs.rest)) * system.scale[springs.dof]
-    return max(load_size(system, system.point_values(load_factor)), reactions, float(sprung.max(initial=0.0)))
+    return max(load_size(system, system.loads_at(load_factor)), reactions, float(sprung.max(initial=0.0)))
 
 
 def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
@@ -158,8 +164,9 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
         worst = max(worst, size * abs(float(rigid_rates(system, motion, p) @ left)))
     if worst == 0.0:
         return MOST_DIGITS
-    loaded = load_size(system, system.point_values(load_factor)) > 0.0 or bool(system.body(load_factor).any())
-    if not loaded and acting <= _NOTHING * float(np.max(row_floors(system, p) * system.scale)):
+    if not system.loads_at(load_factor).any and acting <= _NOTHING * float(
+        np.max(row_floors(system, p) * system.scale)
+    ):
         return MOST_DIGITS
     return min(max(float(np.log10(acting / worst)), 0.0), MOST_DIGITS) if acting > 0.0 else 0.0
 

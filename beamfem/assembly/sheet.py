@@ -16,6 +16,7 @@ from beamfem.kernels.block import (
     STRETCH,
     TURNED_GRADIENTS,
     Block,
+    Imposed,
     Law,
     Layout,
     PointLoads,
@@ -42,6 +43,7 @@ class Sheet:
     routines: Routines
     needs: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
     law: Law | None
+    imposed: Imposed | None
 
     def require(self, *tasks: str) -> None:
         """Have everything compiled that these tasks need: forces, tangent, mass, prediction."""
@@ -147,8 +149,8 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds
         else None
     )
-    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)), damped)
-    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs, block.law)
+    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)), damped, block.imposed is not None)
+    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs, block.law, block.imposed)
 
 
 def _routines(block: Block) -> Routines:
@@ -156,14 +158,14 @@ def _routines(block: Block) -> Routines:
 
 
 def _needs(
-    kinds: np.ndarray, band: bool, loads: bool, damped: bool
+    kinds: np.ndarray, band: bool, loads: bool, damped: bool, imposed: bool
 ) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
     """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
     angles = tuple(int(kind) - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
     turns = bool(angles or rotated)
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
-    forces += ("damping",) if damped else ()
+    forces += (*(("damping",) if damped else ()), *(("imposed",) if imposed else ()))
     tangent = ["tangent", "band" if band else "sparse"]
     tangent += ["turning tangent"] if turns else []
     tangent += ["load tangent"] if loads else []

@@ -41,12 +41,15 @@ class StrainRates:
     flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
     law: Law | None
 
-    def at(self, p: np.ndarray) -> "StrainsAt":
-        """Return what they are in a state p (n,). Raises LinAlgError where a law has a singular stiffness."""
+    def at(self, p: np.ndarray, imposing: np.ndarray) -> "StrainsAt":
+        """Return what they are in a state p (n,), less what is imposed by loads with the factors `imposing` (k,).
+
+        Raises LinAlgError where a law has a singular stiffness.
+        """
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
         places = np.arange(len(at)) % self.coordinates
         steps = (1.0 * (places == place) for place in range(self.coordinates + 1))
-        *measured, zeros = resultants(self.sheet, at, steps)
+        *measured, zeros = resultants(self.sheet, at, steps, imposing)
         strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
         moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
         rates = moved[self.place, self.point] - strain[self.point]

@@ -10,15 +10,17 @@ import numpy as np
 from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
+from beamfem.assembly.columns import columns_of
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.held import Held, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.layout import Unknowns, order_unknowns
+from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
-from beamfem.element.coordinates import across, labels
+from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.kernels.block import (
     GRADIENTS,
@@ -31,8 +33,7 @@ from beamfem.kernels.block import (
     PointLoads,
     Springs,
 )
-from beamfem.model.loads import factor
-from beamfem.model.mesh import BeamMesh
+from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.model.supports import Spring
 from beamfem.validation import shown
@@ -72,7 +73,7 @@ class System:
                 np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
             )
             values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
-            for label, nodes, dofs in _columns(block.node_kind, block.dof, element.field.vectors):
+            for label, nodes, dofs in columns_of(block.node_kind, block.dof, element.field.vectors):
                 if label == "s":
                     p[dofs] = speed[nodes]
                 elif label != "theta":
@@ -84,7 +85,7 @@ class System:
     def blocks(self) -> tuple[Block, ...]:
         numbered = list(enumerate(self.model.meshes))
         return tuple(
-            build_block(element, [(i, mesh) for i, mesh in numbered if mesh.block == number])
+            build_block(element, [(i, mesh) for i, mesh in numbered if mesh.block == number], self.model.imposing)
             for number, element in enumerate(self.model.groups)
         )
 
@@ -154,6 +155,14 @@ class System:
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
         return tuple(actions.values(time, self.static) for actions in self.actions)
+
+    def imposing(self, time: float) -> np.ndarray:
+        """Factors (k,) of the loads that impose strains at a time."""
+        return np.array([factor(load, time, self.static) for _, load in self.model.imposing])
+
+    def loads_at(self, time: float) -> LoadsAt:
+        """Return what acts at a time, in statics at a load factor."""
+        return LoadsAt(self.body(time), self.point_values(time), self.imposing(time))
 
     @cached_property
     def varying(self) -> bool:
@@ -320,23 +329,3 @@ def system_of(model: Model, static: bool) -> System:
     if static not in known:
         known[static] = System(model, static)
     return known[static]
-
-
-def coordinate_columns(mesh: BeamMesh) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
-
-    A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
-    """
-    return _columns(mesh.carried.node_kind, mesh.carried.dof, mesh.vectors)
-
-
-def _columns(
-    node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
-) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    result = []
-    for node_kind in np.unique(node_kinds).tolist():
-        nodes = np.flatnonzero(node_kinds == node_kind)
-        for column, label in enumerate(labels(node_kind, vectors)):
-            if node_kind != TURNED_GRADIENTS or not label.startswith("r_y"):
-                result.append((label, nodes, dof[nodes, column]))
-    return result

@@ -48,6 +48,18 @@ class _Body:
         """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
+    def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
+        """Return the change of the measures (n, 6) by free strains (n, 4), in the order of `Structural.imposed`.
+
+        The free section stands at the end of r0' + stretch n + shear t with d (1 + thickness) and d' - curvature n.
+        """
+        along, across = section_frame(reference.d)
+        stretch, shear, curvature, thickness = free.T[:, :, None]
+        r_s = reference.r_s + stretch * along + shear * across
+        d_s = reference.d_s - curvature * along
+        free_axis = (r_s, reference.d * (1.0 + thickness), d_s)
+        return evaluate(green_lagrange, *free_axis) - self.strains(reference)
+
     def points(self, degree: int, director_degree: int) -> int:
         """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
         return 2 * max(degree - 1, director_degree) + 1

@@ -42,6 +42,11 @@ class ElasticLine:
         matrix[0, 1] = matrix[1, 0] = rigidity.coupling
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
+    def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
+        """Return the measures (n, 4) of free strains (n, 4), in the order of `Structural.imposed`."""
+        stretch, shear, curvature, thickness = free.T
+        return np.column_stack([stretch, curvature, shear, thickness * (1.0 + 0.5 * thickness)])
+
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
         """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
         modulus = material.youngs_modulus

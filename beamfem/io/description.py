@@ -14,17 +14,18 @@ from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinu
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Rigid
+from beamfem.model.load import functions_along, kinks_along
 from beamfem.model.loads import (
     DistributedLoad,
     Gravity,
+    ImposedStrain,
     LineLoad,
     Load,
     PointForce,
     PointMoment,
     Pressure,
-    along,
-    kinks_along,
 )
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
@@ -79,6 +80,8 @@ _CLASSES = {
         SampledAlong,
         PointForce,
         PointMoment,
+        Actuation,
+        Temperature,
         Rigid,
         Hinge,
         Model,
@@ -127,15 +130,17 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
 
 def _with_own_values(load: Load, model: Model) -> Load:
     """Return a load along a beam with its values where it is a function: those that were used, and some to draw."""
-    if not isinstance(load, LineLoad) or not callable(along(load)):
+    if not isinstance(load, LineLoad | ImposedStrain):
         return load
-    mesh = model.mesh_of(load.beam.start)
-    points = mesh.arc_length(*length_points(mesh)[:2])
-    drawn = np.linspace(0.0, 1.0, _DRAWN * mesh.elements + 1) * load.beam.curve.length
-    at = np.unique(np.concatenate([points, drawn, [0.5 * load.beam.curve.length]]))
-    values = tuple(tuple(value) if np.ndim(value) else value for value in load.values(at).tolist())
-    saved = SampledAlong(tuple(at.tolist()), values, kinks_along(load))
-    return replace(load, value=saved) if isinstance(load, Pressure) else replace(load, vector=saved)
+    saved: dict[str, Any] = {}
+    for name in functions_along(load):
+        mesh = model.mesh_of(load.beam.start)
+        points = [mesh.arc_length(*length_points(mesh)[:2]), mesh.section_arc_length(*energy_points(mesh)[:2])]
+        drawn = np.linspace(0.0, 1.0, _DRAWN * mesh.elements + 1) * load.beam.curve.length
+        at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
+        values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
+        saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
+    return replace(load, **saved)
 
 
 class _Writer:

@@ -13,6 +13,7 @@ from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
+from beamfem.results.self_stress import self_stress
 from beamfem.results.stresses import in_the_plane, von_mises
 
 if TYPE_CHECKING:
@@ -64,7 +65,8 @@ class Samples:
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
         forces = section_forces(self.points, solution, rows)
-        result |= self._stress(forces)
+        own = self_stress(solution, self.mesh, element, xi, self.layer, self.y, rows)
+        result |= self._stress(forces, own)
         result["cauchy_stress"] = in_the_plane(
             result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
         )
@@ -82,10 +84,13 @@ class Samples:
         told = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
         return told | {"cauchy_stress": told["von_mises_stress"]}
 
-    def _stress(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis)."""
+    def _stress(self, forces: dict[str, np.ndarray], self_stress: np.ndarray | float = 0.0) -> dict[str, np.ndarray]:
+        """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis).
+
+        self_stress: what layers do against each other, of the same shape.
+        """
         own = self.distributions
-        along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"])
+        along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"]) + self_stress
         sheared = own.shear_stress(self.layer, self.y, forces["shear"])
         # beam theory: fibres do not press on each other
         found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}

@@ -34,6 +34,26 @@ class Law(Protocol):
         ...
 
 
+class Imposed(NamedTuple):
+    """Strain measures that loads impose on elements: m loads at most on one of them, ne elements, nq points."""
+
+    load: np.ndarray  # (m, ne) number of a load among all that impose strains, -1 where an element has fewer
+    first: np.ndarray  # (m, ne, nq, ns) measures by the factor of a load
+    second: np.ndarray  # (m, m, ne, nq, ns) by products of two factors; (0, 0, ne, nq, ns) where there are none
+
+    def at(self, factors: np.ndarray) -> np.ndarray:
+        """Return the measures (ne, nq, ns) of loads with these factors (k,)."""
+        own = np.append(factors, 0.0)[self.load]
+        result = np.einsum("me,meqs->eqs", own, self.first)
+        if self.second.size:
+            result += np.einsum("me,ke,mkeqs->eqs", own, own, self.second)
+        return np.asarray(result)
+
+    def of(self, elements: slice | np.ndarray) -> "Imposed":
+        """Return those of some elements."""
+        return Imposed(self.load[:, elements], self.first[:, elements], self.second[:, :, elements])
+
+
 class Block(NamedTuple):
     """Elements of one field and one kind of strain measures.
 
@@ -63,6 +83,7 @@ class Block(NamedTuple):
     home: np.ndarray  # (N, 2) an element of the node, and its place there
     damping: np.ndarray  # (nc,) retardation time [s]: rates of strains add that much of the stiffness
     law: Law | None = None  # instead of the linear one
+    imposed: Imposed | None = None  # strains of the state without stress, besides those of the reference
 
     def resisting(self, stiffness: np.ndarray) -> "Block":
         """Return the block with the linear law of a stiffness (nc, nq, ns, ns)."""

@@ -15,6 +15,7 @@ _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
+_release = caller("iiiiirr")
 _rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 
 
@@ -77,6 +78,8 @@ def add_elements(group, system):
             weight = at(t, (b[r.WEIGHT] + number) * ROW)
             _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, rows, slope, second, factor, e, q)
             _measure(call[r.STRAINS], count, q)
+            if b[r.NATURAL] != 0:
+                _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(
                 call[r.LAW],
                 count,

@@ -96,11 +96,12 @@ def march(system, solver, calls):
         reals(s[r.FACTORS]),
         reals(b[r.STEP]),
     )
-    groups, bodies, values, given = (
+    groups, bodies, values, given, naturals = (
         wholes(s[r.GROUP_RECORDS]),
         b[r.BODIES],
         wholes(s[r.VALUES]),
         wholes(b[r.LOAD_VALUES]),
+        wholes(b[r.NATURALS]),
     )
     saved, every, turned_by, saved_turns = (
         reals(b[r.SAVED]),
@@ -113,6 +114,9 @@ def march(system, solver, calls):
         for group in range(s[r.GROUPS]):
             loads = wholes(groups[group])[r.LOADS]
             values[group] = given[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
+            if b[r.NATURALS_VARY] != 0 and naturals[group] != 0:
+                own = wholes(groups[group])
+                own[r.NATURAL] = naturals[group] + 8 * step * own[r.ELEMENTS] * own[r.POINTS] * own[r.MEASURES]
         prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * held * step)
         _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule)
         size, first_size, iteration = 0.0, 0.0, 0

@@ -13,7 +13,7 @@ _one, _two, _three = caller("i"), caller("ii"), caller("iii")
 _take, _rotate = caller("iiiinrr"), caller("irrr")
 _gather, _fill_tables = caller("iiiinirr"), caller("iiii")
 _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
-_node_rates = caller("iiiiiinrrr")
+_node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
 @routine("i")
@@ -108,7 +108,7 @@ def rate_nodes(group, system, row):
 
 @routine("ii")
 def predict_resultants(group, system):
-    """Fill `STRESS` with C (eps + (d eps / de) B dp), B and eps at p, dp in the place of p'.
+    """Fill `STRESS` with C (eps + (d eps / de) B dp) less what is imposed; B and eps at p, dp in the place of p'.
 
     The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
     """
@@ -163,6 +163,8 @@ def predict_resultants(group, system):
                 strain, change = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                 for i in range(count):
                     strain[i] += change[i]
+            if b[r.NATURAL] != 0:
+                _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(
                 call[r.LAW],
                 count,

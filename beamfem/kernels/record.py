@@ -76,7 +76,8 @@ DAMPED = 58  # whether resultants depend on rates of strains
 DAMPING = 59  # rows of a class: (1,) retardation time
 VELOCITY = 60  # rows of a node: e', where resultants depend on it
 APART = 61  # whether no entry of the mass is of d and r0
-BLOCK_FIELDS = 62
+NATURAL = 62  # address (elements, points, measures): strains that loads impose; 0 where none do
+BLOCK_FIELDS = 63
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
@@ -147,9 +148,10 @@ SYSTEM_FIELDS = 22
     ADD_MATRICES,
     RATE_NODES,
     VISCOUS,
-) = range(42)
-PLACE_KIND = 42  # place, convect and curve of each kind of node that turns
-ROUTINE_COUNT = 51
+    RELEASE,
+) = range(43)
+PLACE_KIND = 43  # place, convect and curve of each kind of node that turns
+ROUTINE_COUNT = 52
 
 # ------------------------------------------------------------------ the unknown coordinates and how to solve for them
 UNKNOWN = 0
@@ -192,7 +194,9 @@ TURN_TABLE = 36  # (counted, 2)
 TURNED_BY = 37
 SAVED_TURNS = 38
 LINEAR = 39  # address (n,)
-SOLVER_FIELDS = 40
+NATURALS = 40  # address of addresses, of each group (steps or 1, elements, points, measures), 0 where there are none
+NATURALS_VARY = 41
+SOLVER_FIELDS = 42
 
 (
     BALANCE,

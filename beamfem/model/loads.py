@@ -2,46 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar
 
 import numpy as np
 
-from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point
-from beamfem.model.jumps import find_jumps
-from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, squared, vector
+from beamfem.model.imposed_strains import Actuation, Temperature
+from beamfem.model.load import Amplitude, check_along, check_common
+from beamfem.validation import called, convert, finite, squared, vector
 
-Amplitude = Callable[[float], float] | None
 Varying = Callable[[float], Sequence[float]]
-
-
-class Scaled(Protocol):
-    """What every load has besides its value."""
-
-    @property
-    def amplitude(self) -> Amplitude: ...
-    @property
-    def scale(self) -> bool: ...
-
-
-def factor(load: Scaled, time: float, static: bool) -> float:
-    """Return the multiplier of a load at a time, in statics at a load factor.
-
-    amplitude(time) where there is one; else the load factor in statics for loads with `scale`, else 1.
-    """
-    if load.amplitude is not None:
-        return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)
-    return time if static and load.scale else 1.0
-
-
-def _check_common(load: Scaled) -> None:
-    """Check what loads have besides their place and value: amplitude, scale, and where they have it follower."""
-    kind = type(load).__name__
-    if load.amplitude is not None:
-        function_of_one(f"amplitude of {kind}", load.amplitude, "time")
-    flag(f"scale of {kind}", load.scale)
-    if hasattr(load, "follower"):
-        flag(f"follower of {kind}", load.follower)
 
 
 @dataclass(frozen=True)
@@ -54,7 +24,7 @@ class Gravity:
 
     def __post_init__(self) -> None:
         convert(self, squared(vector), "vector")
-        _check_common(self)
+        check_common(self)
 
 
 @dataclass(frozen=True)
@@ -67,6 +37,8 @@ class DistributedLoad:
     Raises InputError.
     """
 
+    along: ClassVar[tuple[str, ...]] = ("vector",)
+
     beam: Beam
     vector: tuple[float, float] | Varying
     amplitude: Amplitude = None
@@ -75,12 +47,10 @@ class DistributedLoad:
 
     def __post_init__(self) -> None:
         require_beam("DistributedLoad", self.beam)
-        if callable(self.vector):
-            function_of_one("vector of DistributedLoad", self.vector, "arc length")
-            _check_along(self)
-        else:
+        if not callable(self.vector):
             convert(self, squared(vector), "vector")
-        _check_common(self)
+        check_along(self)
+        check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError where a function gives none."""
@@ -89,6 +59,10 @@ class DistributedLoad:
         given, name = self.vector, "vector of DistributedLoad"
         found = [vector(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()]
         return np.array(found).reshape(-1, 2)
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return the values at arc lengths (n,) [m]."""
+        return self.values(arc_length)
 
 
 @dataclass(frozen=True)
@@ -101,6 +75,8 @@ class Pressure:
     conservative where both ends of the beam are held in one direction at least, or close a ring. Raises InputError.
     """
 
+    along: ClassVar[tuple[str, ...]] = ("value",)
+
     beam: Beam
     value: float | Callable[[float], float]
     amplitude: Amplitude = None
@@ -108,12 +84,10 @@ class Pressure:
 
     def __post_init__(self) -> None:
         require_beam("Pressure", self.beam)
-        if callable(self.value):
-            function_of_one("value of Pressure", self.value, "arc length")
-            _check_along(self)
-        else:
+        if not callable(self.value):
             convert(self, squared(finite), "value")
-        _check_common(self)
+        check_along(self)
+        check_common(self)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError where a function gives none."""
@@ -122,6 +96,10 @@ class Pressure:
         given = self.value
         name = "value of Pressure"
         return np.array([finite(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()])
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return the values at arc lengths (n,) [m]."""
+        return self.values(arc_length)
 
 
 @dataclass(frozen=True)
@@ -137,7 +115,7 @@ class PointForce:
     def __post_init__(self) -> None:
         require_point("PointForce", self.point)
         convert(self, squared(vector), "vector")
-        _check_common(self)
+        check_common(self)
 
     @property
     def value(self) -> tuple[float, float, float]:
@@ -161,7 +139,7 @@ class PointMoment:
     def __post_init__(self) -> None:
         require_point("PointMoment", self.point)
         convert(self, squared(finite), "moment")
-        _check_common(self)
+        check_common(self)
 
     @property
     def value(self) -> tuple[float, float, float]:
@@ -171,27 +149,5 @@ class PointMoment:
 
 PointLoad = PointForce | PointMoment
 LineLoad = DistributedLoad | Pressure
-Load = Gravity | DistributedLoad | Pressure | PointForce | PointMoment
-
-
-def along(load: LineLoad) -> float | tuple[float, float] | Callable[[float], object]:
-    """Return what a load along a beam is per length, or the function that gives it."""
-    return load.value if isinstance(load, Pressure) else load.vector
-
-
-def kinks_along(load: LineLoad) -> tuple[float, ...]:
-    """Return the arc lengths (nj,) [m] at which a load along a beam jumps, or has kinks that it declares."""
-    given, beam = along(load), load.beam
-    if not callable(given):
-        return ()
-
-    def numbers(arc_length: float) -> np.ndarray:
-        return load.values(np.array([arc_length])).ravel()
-
-    return find_jumps(given, numbers, beam.curve.length, beam.samples)
-
-
-def _check_along(load: LineLoad) -> None:
-    if not isinstance(load.beam, Beam):
-        raise InputError(f"beam of {type(load).__name__} must be a Beam, one of the model's beams, got {load.beam!r}")
-    load.values(np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)
+ImposedStrain = Actuation | Temperature
+Load = Gravity | DistributedLoad | Pressure | PointForce | PointMoment | ImposedStrain

@@ -19,7 +19,8 @@ from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
 from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, Load, PointForce, PointMoment, Pressure, kinks_along
+from beamfem.model.load import AlongBeam, Imposing, functions_along, kinks_along
+from beamfem.model.loads import DistributedLoad, Gravity, ImposedStrain, Load, PointForce, PointMoment, Pressure
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
@@ -28,7 +29,7 @@ from beamfem.registry import offered
 from beamfem.validation import convert, items, shown
 
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
-_ON_BEAM = DistributedLoad | Pressure | Foundation
+_ON_BEAM = DistributedLoad | Pressure | ImposedStrain | Foundation
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,9 +124,13 @@ class Model:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
         for beam, own in zip(self.beams, fractions, strict=True):
             own += [jump / beam.curve.length for jump in beam.jumps]
-        lines: tuple[DistributedLoad | Pressure, ...] = (*self.distributed, *self.pressures)
+        lines: tuple[AlongBeam, ...] = (*self.distributed, *self.pressures, *(load for _, load in self.imposing))
         for line in lines:
-            fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks_along(line)]
+            own, kinks = (
+                fractions[self._numbers[id(line.beam)]],
+                [kinks_along(line, name) for name in functions_along(line)],
+            )
+            own += [kink / line.beam.curve.length for found in kinks for kink in found]
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
@@ -213,6 +218,11 @@ class Model:
     @property
     def pressures(self) -> tuple[Pressure, ...]:
         return tuple(load for load in self.loads if isinstance(load, Pressure))
+
+    @cached_property
+    def imposing(self) -> tuple[tuple[int, Imposing], ...]:
+        """Loads that impose strains, each with the number of its beam."""
+        return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
     @property
     def point_loads(self) -> tuple[PointForce | PointMoment, ...]:

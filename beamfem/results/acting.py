@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 class Rows:
     """Rows of a solution and what acts in them.
 
-    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: of each block (steps, nl, 3), see `Actions`.
+    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: of each block (steps, nl, 3), see `Actions`;
+    imposing (steps, k): factors of the loads that impose strains.
     """
 
     system: System
@@ -32,6 +33,7 @@ class Rows:
     a: np.ndarray
     body: np.ndarray
     values: tuple[np.ndarray, ...]
+    imposing: np.ndarray
 
 
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
@@ -43,7 +45,8 @@ def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
     values = tuple(
         np.array([own[block] for own in points]).reshape(len(times), -1, 3) for block in range(len(system.blocks))
     )
-    return Rows(system, solution.p[rows], solution.v[rows], solution.a[rows], body, values)
+    imposing = np.array([system.imposing(time) for time in times]).reshape(len(times), -1)
+    return Rows(system, solution.p[rows], solution.v[rows], solution.a[rows], body, values, imposing)
 
 
 @dataclass(frozen=True, eq=False)

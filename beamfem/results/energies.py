@@ -8,7 +8,8 @@ import numpy as np
 
 from beamfem.brief import brief
 from beamfem.model.beam import Beam
-from beamfem.model.loads import PointForce, Scaled, factor
+from beamfem.model.load import Scaled, factor
+from beamfem.model.loads import PointForce
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.supports import Foundation

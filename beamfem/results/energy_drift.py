@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.system import system_of
-from beamfem.model.loads import Gravity, PointMoment, Pressure
+from beamfem.model.loads import DistributedLoad, PointForce, Pressure
 from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def _conservative(solution: "Solution") -> bool:
     driven = any(
         load.amplitude is not None
         or isinstance(load, Pressure)
-        or (not isinstance(load, Gravity | PointMoment) and load.follower)
+        or (isinstance(load, PointForce | DistributedLoad) and load.follower)
         for load in solution.model.loads
     )
     damped = any(block.damping.any() for block in system.blocks)

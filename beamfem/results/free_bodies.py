@@ -92,8 +92,8 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     """Return elements (ne,), which rise, of a beam cut free in rows; p (steps, n): coordinates to take there."""
     block = rows.system.blocks[mesh.block]
     number = mesh.first_element + elements
-    states = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
-    found = elastic_forces(_parted(block, number), *states)
+    q, v, a = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
+    found = elastic_forces(_parted(block, number), q, v, a, rows.imposing)
     e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in found)
     acting = acting_on(rows, mesh, elements, e, acceleration)
     force -= acting.nodal(len(elements))
@@ -113,6 +113,7 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
     nodes = block.node[elements]
     flat = nodes.ravel()
     return block._replace(
+        imposed=None if block.imposed is None else block.imposed.of(elements),
         node=np.arange(len(flat)).reshape(nodes.shape),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
         **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof", "home")},

@@ -18,6 +18,7 @@ from beamfem.element.element import Element
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
 from beamfem.results import postprocess
+from beamfem.results.imposed import imposed_measures
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution, State
@@ -33,7 +34,10 @@ def locking_warnings(solution: "Solution") -> tuple[str, ...]:
     if not _locking_elements(solution.model):
         return ()
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
-    energy = sum(postprocess.strain_energy(mesh, solution.p[rows]) for mesh in solution.model.meshes)
+    energy = sum(
+        postprocess.strain_energy(mesh, solution.p[rows], imposed_measures(solution, mesh, rows))
+        for mesh in solution.model.meshes
+    )
     span = None if solution.static else float(np.ptp(solution.at))
     change = _change(solution[int(rows[np.argmax(energy)])], span)
     return _sentences(solution.model, change, "the largest displacement")
@@ -83,7 +87,7 @@ def _change(state: "State", span: float | None) -> float:
             step[free] = tangent.solve(-excess, system.rotated)
         except LinAlgError:
             return 0.0
-        stresses = predicted_stresses(system, state.p, step, equations)
+        stresses = predicted_stresses(system, state.p, step, state.at, equations)
     return float(np.linalg.norm(step[nodes], axis=1).max()) / moved
 
 
@@ -104,7 +108,7 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
         other = _unlocked(element)
         own = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
         changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in own]
-        blocks.append(system.blocks[number] if other == element else build_block(other, changed))
+        blocks.append(system.blocks[number] if other == element else build_block(other, changed, system.model.imposing))
     return tuple(blocks)
 
 

@@ -154,16 +154,18 @@ def fields(
     element: np.ndarray,
     xi: np.ndarray,
     forces: np.ndarray,
+    self_stress: np.ndarray | float,
     turned: np.ndarray | None = None,
 ) -> Fields:
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
 
-    forces (steps, 3, points): normal force, shear force and moment there; turned: see `nodal_rotations`.
+    forces (steps, 3, points): normal force, shear force and moment there; self_stress (steps, points, 1) [Pa]: what
+    layers do against each other; turned: see `nodal_rotations`.
     """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = strain_at_axis(mesh, now, element, xi)
     own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
-    along = own.normal_stress(None, height, forces[:, 0], forces[:, 2])[..., 0]
+    along = (own.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]
     sheared = own.shear_stress(None, height, forces[:, 1])[..., 0]
     angle = turning(mesh, p, now, element, xi, turned)
     stress = Components(along, 0.0 * along, sheared)
@@ -200,12 +202,15 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
     return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
 
 
-def strain_energy(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
-    """Return the strain energy of a beam (steps,) [J]."""
+def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
+    """Return the strain energy of a beam (steps,) [J]; imposed: see `imposed_measures`.
+
+    What layers do against each other where they cannot all take their free strains is not in it.
+    """
     element, xi, weight = energy_points(mesh)
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
-    strains = mesh.beam.element.forces.strains(now) - reference
+    strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
         return mesh.beam.law.energy(strains[..., :3].reshape(-1, 3)).reshape(strains.shape[:2]) @ weight
     return np.asarray(0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight)

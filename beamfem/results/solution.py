@@ -22,11 +22,13 @@ from beamfem.results.connected import connector_force, kinetic_of_connectors, mo
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.fitting import require_rows, require_state
+from beamfem.results.imposed import imposed_measures
 from beamfem.results.last_digits import remainders
 from beamfem.results.locking import locking_warnings
 from beamfem.results.postprocess import Fields, SectionForces
 from beamfem.results.reactions import reaction, support_forces
 from beamfem.results.section_forces import Cuts, at_points, section_forces
+from beamfem.results.self_stress import self_stress
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import start_rotations, turned_of
 from beamfem.validation import number_below, shown, whole
@@ -169,7 +171,8 @@ class Solution:
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
         forces = at_points(self, mesh, Cuts(element, xi))
-        found = postprocess.fields(mesh, self.p, element, xi, forces, turned_of(self, mesh))
+        own = self_stress(self, mesh, element, xi, None, np.zeros((1, 1)))
+        found = postprocess.fields(mesh, self.p, element, xi, forces, own, turned_of(self, mesh))
         return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
@@ -232,7 +235,8 @@ class Solution:
     def energy(self) -> Energy:
         """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
-        strain = sum((postprocess.strain_energy(mesh, self.p) for mesh in self.model.meshes), np.zeros(len(self)))
+        parts = (postprocess.strain_energy(mesh, self.p, imposed_measures(self, mesh)) for mesh in self.model.meshes)
+        strain = sum(parts, np.zeros(len(self)))
         return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
 
     @cached_property

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.element.coordinates import across
-from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure, along, factor
+from beamfem.model.load import factor, functions_along
+from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import length_points
 from beamfem.results.loading import loading
@@ -109,7 +110,7 @@ def _turned_by(vector: np.ndarray, angle: Any) -> np.ndarray:
 def _shares(load: LineLoad, mesh: BeamMesh) -> np.ndarray:
     """Return where along the beam arrows stand: spread evenly, and where a load that varies is largest."""
     even, length = np.linspace(0.0, 1.0, _ROW_OF_ARROWS), load.beam.curve.length
-    if not callable(along(load)):
+    if not functions_along(load):
         return even
     arc = mesh.arc_length(*length_points(mesh)[:2])
     sizes = [np.abs(load.values(at)).reshape(len(at), -1).max(axis=1) for at in (arc, even * length)]

@@ -11,6 +11,7 @@ from beamfem.cli.modelfile.parts import Kinds
 from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, shown
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
@@ -31,6 +32,8 @@ LOADS: Kinds = {
     "moment": PointMoment,
     "distributed": DistributedLoad,
     "pressure": Pressure,
+    "actuation": Actuation,
+    "temperature": Temperature,
 }
 JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 
@@ -112,7 +115,7 @@ def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
 
     readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
     readers |= {"point": places.point, "vector": vector}
-    readers |= dict.fromkeys(("ux", "uy", "rotation", "value"), value)
+    readers |= dict.fromkeys(("ux", "uy", "rotation", "value", *Actuation.along, *Temperature.along), value)
 
     def items(key: str, kinds: Kinds, trial: Callable[[Any], Model]) -> list[Any]:
         found = []

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, load_slope, predicted_stresses, residual
+from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.round_off import loses_digits
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError
@@ -111,7 +112,9 @@ class Continuation:
 
     def stresses(self, y: np.ndarray, step: np.ndarray) -> Stresses | None:
         """Return the stress resultants that a step from y predicts, None where Newton is to take those of the state."""
-        return predicted_stresses(self.system, y[:-1], step[:-1]) if self.newton.independent_stresses else None
+        if not self.newton.independent_stresses:
+            return None
+        return predicted_stresses(self.system, y[:-1], step[:-1], float(y[-1] + step[-1]))
 
     def correct(
         self,
@@ -275,10 +278,16 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
 
 
 def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:
-    """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled."""
+    """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled.
+
+    Imposed strains by the forces that would hinder them: where nothing moves they may buckle a model all the same.
+    """
     system, zeros, scale = line.system, np.zeros(len(p)), line.scale[:-1]
     ends = load_factor, load_factor + width
     forces = [residual(system, p, zeros, zeros, at)[system.free_dofs] for at in ends]
     held = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
     moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
+    if system.model.imposing:
+        hindered = [imposed_forces(system, system.loads_at(at)) for at in ends]
+        moved = max(moved, float(np.max(np.abs(hindered[1] - hindered[0]) * scale)) / stiffness)
     return max(moved, float(np.max(np.abs(held[1] - held[0]), initial=0.0))) / width

@@ -25,25 +25,26 @@ def stiffness_of_modes(
     """
     zeros, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
+    imposing = system.imposing(load_factor)
     for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
         unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
         plain = free_sheet(block.resisting(unit), len(p))
-        before, *after = resultants(plain, p, [zeros, *modes])
+        before, *after = resultants(plain, p, [zeros, *modes], imposing)
         strains = (np.array(after) - before).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before), strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
-    stresses = stresses_of(system, p, zeros if correction is None else correction)
+    stresses = stresses_of(system, p, zeros if correction is None else correction, load_factor)
     free = modes[:, system.free_dofs]
     result += free @ (weak_stiffness(system, p, load_factor, stresses) @ free.T)
     return np.asarray(0.5 * (result + result.T))
 
 
-def stresses_of(system: System, p: np.ndarray, correction: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants of a state, of each block (ne, nq, ns): none at all in the reference."""
-    if np.array_equal(p, system.reference):
+def stresses_of(system: System, p: np.ndarray, correction: np.ndarray, load_factor: float) -> tuple[np.ndarray, ...]:
+    """Return the stress resultants of a state, of each block (ne, nq, ns); in the reference only imposed ones."""
+    if np.array_equal(p, system.reference) and not system.imposing(load_factor).any():
         return tuple(np.zeros_like(stresses) for stresses in system.assembler().stresses)
-    return predicted_stresses(system, p, correction)
+    return predicted_stresses(system, p, correction, load_factor)
 
 
 def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:

@@ -29,7 +29,7 @@ def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
         return shapes, ()
     shapes /= np.abs(shapes / system.scale).max(axis=1)[:, None]
     free = system.free_dofs
-    loads = weak_stiffness(system, p, pencil.load_factor, stresses_of(system, p, np.zeros_like(p)))
+    loads = weak_stiffness(system, p, pencil.load_factor, stresses_of(system, p, np.zeros_like(p), pencil.load_factor))
     resistance = loads @ shapes[:, free].T * system.scale[free][:, None]
     _, sizes, combinations = svd(resistance, full_matrices=False)
     still = sizes <= _negligible_force(pencil) * system.extent * np.sqrt(resistance.size)
@@ -43,7 +43,7 @@ def _negligible_force(pencil: Pencil) -> float:
     """Return the force [N] that a unit turn of the state may change by for its round-off and what Newton leaves."""
     system, p, still = pencil.system, pencil.p, np.zeros_like(pencil.p)
     forces = [*system.point_values(pencil.load_factor), residual(system, p, still, still, pencil.load_factor)]
-    forces += [stresses[..., 0] for stresses in stresses_of(system, p, still)]
+    forces += [stresses[..., 0] for stresses in stresses_of(system, p, still, pencil.load_factor)]
     largest = max(float(np.abs(values).max(initial=0.0)) for values in forces)
     return _UNBALANCED * largest + round_off_floor(system, p)
 

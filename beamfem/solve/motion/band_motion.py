@@ -56,9 +56,10 @@ class BandMotion:
         turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
         """
         saved, first, every, counted, turned_by, saved_turns = saving
-        body, values = _sample_loads(self._system, times)
+        body, values, imposing = _sample_loads(self._system, times)
         assembler, solver, varying = self._assembler, self._solver, len(body) > 1
         places = assembler.load(body, values)
+        natural = np.array(assembler.impose(imposing), dtype=np.int64)
         given = np.array(places[1:], dtype=np.int64)
         n, place, room = state.shape[1], address_of(state), self._room
         states = place, place + 8 * n, place + 16 * n
@@ -77,16 +78,20 @@ class BandMotion:
             solver[field] = address_of(array)
         solver[[record.STEPS, record.FIRST_STEP, record.EVERY]] = len(held), first, every
         solver[[record.TURN_COUNT, record.LOADS_VARY]] = len(counted), int(varying)
+        solver[[record.NATURALS, record.NATURALS_VARY]] = address_of(natural), int(varying)
         solver[record.BODY_STRIDE] = body[0].size if varying else 0
         done = int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
         assembler.raise_errors()
         return done
 
 
-def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Body forces (steps, beams, 4) and point values of each block (steps, nl, 3); one row where nothing varies."""
+def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:
+    """Body forces (steps, beams, 4), point values of each block (steps, nl, 3), factors (steps, k) of imposed strains.
+
+    One row where nothing varies.
+    """
     if not system.varying:
         times = times[:1]
-    body = np.array([system.body(now) for now in times])
-    values = [system.point_values(now) for now in times]
-    return body, tuple(np.array([value[i] for value in values]) for i in range(len(system.blocks)))
+    loads = [system.loads_at(now) for now in times]
+    points = tuple(np.array([own.points[i] for own in loads]) for i in range(len(system.blocks)))
+    return np.array([own.body for own in loads]), points, np.array([own.imposing for own in loads])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.system import System
-from beamfem.model.loads import Gravity, LineLoad, Load
+from beamfem.model.loads import Gravity, ImposedStrain, LineLoad, Load
 from beamfem.model.model import Model
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
@@ -100,6 +100,6 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
 def _name(load: Load, model: Model) -> str:
     if isinstance(load, Gravity):
         return "Gravity"
-    if isinstance(load, LineLoad):
+    if isinstance(load, LineLoad | ImposedStrain):
         return f"{type(load).__name__} on beam {model.number_of(load.beam)}"
     return f"{type(load).__name__} at {load.point}"

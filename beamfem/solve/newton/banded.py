@@ -28,9 +28,9 @@ class BandProblem:
         keep: int | None,
     ) -> None:
         self.system, self.start, self.space = system, start, band_space(system)
-        values, space = system.point_values(load_factor), self.space
-        self.load = load_size(system, values)
-        space.assembler.load(system.body(load_factor), values)
+        loads, space = system.loads_at(load_factor), self.space
+        self.load = load_size(system, loads)
+        space.assembler.load(*loads)
         space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
         space.found[1:3] = np.inf
         space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force

@@ -69,7 +69,7 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
 def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray, jacobian: float) -> Balance:
     """Return the balance of a state whose residual (n,) and smallest r0' x d are known."""
     # the largest load counts where nothing reacts
-    load = load_size(system, system.point_values(load_factor))
+    load = load_size(system, system.loads_at(load_factor))
     largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
     force = float(np.max(np.abs(unbalanced) * system.scale, initial=0.0))
     return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0)

@@ -101,7 +101,7 @@ def _half(
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
     springs = Springs(dof - place.start, stiffness, zeros, diagonal)
     equations = Assembler(Equations((make_sheet(block, layout._replace(free=free), points),), springs, size))
-    equations.load(system.body(load_factor), (values[loaded],))
+    equations.load(system.body(load_factor), (values[loaded],), system.imposing(load_factor))
     equations.weigh(STATICS)
     return Substructure(
         place=place,
@@ -124,6 +124,7 @@ def _part(block: Block, elements: slice, first_dof: int) -> Block:
     nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
     dof = block.dof[nodes]
     return block._replace(
+        imposed=None if block.imposed is None else block.imposed.of(elements),
         node=node - nodes.start,
         dof=np.where(dof >= 0, dof - first_dof, -1),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},

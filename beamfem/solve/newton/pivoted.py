@@ -35,7 +35,7 @@ class PivotedProblem:
             step[free] -= factors.solve(self.step.force[free])
             after = None
         if self.newton.independent_stresses:
-            self.stresses = after or predicted_stresses(system, p, step)
+            self.stresses = after or predicted_stresses(system, p, step, self.load_factor)
         self.state, before = p + step, self.size
         self.number += 1
         self.size = float(np.max(np.abs(step) / system.scale, initial=0.0))

@@ -109,8 +109,8 @@ def trace_equilibrium(
 def _require_load(system: System) -> None:
     """Raise InputError where nothing changes with the load factor."""
     for at in (0.37, 1.0):
-        changes = [(system.body(at), system.body(0.0)), (system.prescribed_values(at), system.prescribed_values(0.0))]
-        changes += zip(system.point_values(at), system.point_values(0.0), strict=True)
+        changes = [(system.prescribed_values(at), system.prescribed_values(0.0))]
+        changes += zip(system.loads_at(at).arrays, system.loads_at(0.0).arrays, strict=True)
         if any(not np.array_equal(now, before) for now, before in changes):
             return
     raise InputError(

@@ -16,6 +16,8 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
     left = np.abs(system.along_free(unbalanced))
     acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
+    if system.imposing(load_factor).any():
+        acting.append(load_size(system, system.loads_at(load_factor)) / system.extent)
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
     round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))
@@ -29,7 +31,7 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Tell whether a state (n,) balances what acts but for its last digits; where nothing acts, all rows tell."""
-    if load_size(system, system.point_values(load_factor)) == 0.0 and not system.body(load_factor).any():
+    if not system.loads_at(load_factor).any:
         zeros = np.zeros_like(p)
         left = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
         if np.all(left <= row_floors(system, p)[system.free_dofs]):

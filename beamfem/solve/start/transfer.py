@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from beamfem.assembly.system import System, coordinate_columns, system_of
+from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.system import System, system_of
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from beamfem.assembly.equations import residual
-from beamfem.assembly.round_off import load_size, row_floors
+from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError
-from beamfem.model.loads import factor
+from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.model.supports import Prescribed
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
@@ -36,8 +36,11 @@ def _at_rest(system: System) -> bool:
         zeros = np.zeros(p.shape)
         balanced = np.all(np.abs(residual(system, p, zeros, zeros, 0.0)) <= row_floors(system, p))
         # a load that is lost in the round-off of stiff rows may bend the beam all the same
-        acts = load_size(system, system.point_values(0.0)) > 0.0 or bool(system.body(0.0).any())
-        if acts or not balanced or not np.array_equal(system.prescribed_values(0.0), p[system.prescribed_dofs]):
+        if (
+            system.loads_at(0.0).any
+            or not balanced
+            or not np.array_equal(system.prescribed_values(0.0), p[system.prescribed_dofs])
+        ):
             return False
         system.proven.add(_AT_REST)
     return True

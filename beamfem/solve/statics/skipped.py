@@ -39,7 +39,7 @@ def _differs_half_way(system: System, done: StaticRecord, target: float, end: np
     """
     done.iterations += 1
     zeros = np.zeros(len(end))
-    ends = (predicted_stresses(system, p, zeros) for p in (done.state, end))
+    ends = (predicted_stresses(system, p, zeros, at) for p, at in ((done.state, done.reached), (end, target)))
     mean = tuple(0.5 * (one + other) for one, other in zip(*ends, strict=True))
     middle = 0.5 * (done.state + end)
     _, tangent = linearise(system, middle, zeros, zeros, 0.5 * (done.reached + target), STATICS, mean)

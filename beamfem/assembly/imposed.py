@@ -1,0 +1,39 @@
+"""Strains that loads impose on the elements of a block."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from beamfem.kernels.block import Imposed
+from beamfem.model.free_strains import free_strains
+from beamfem.model.load import Imposing
+from beamfem.model.mesh import BeamMesh
+
+
+def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, Imposing]]) -> Imposed | None:
+    """Return what loads, each with the number of its beam, impose on a block of beams (number, mesh); None: nothing."""
+    by_beam: dict[int, list[int]] = {}
+    for number, (beam, _) in enumerate(loads):
+        by_beam.setdefault(beam, []).append(number)
+    own = [by_beam.get(beam, []) for beam, _ in meshes]
+    most = max(map(len, own))
+    if most == 0:
+        return None
+    parts = [
+        free_strains(mesh, [loads[i][1] for i in mine]) if mine else None
+        for mine, (_, mesh) in zip(own, meshes, strict=True)
+    ]
+    points, measures = next(part[0].shape[2:] for part in parts if part is not None)
+    ends = np.cumsum([mesh.elements for _, mesh in meshes])
+    pairs = most if any(part is not None and part[1].any() for part in parts) else 0
+    load = np.full((most, ends[-1]), -1)
+    first, second = np.zeros((most, ends[-1], points, measures)), np.zeros((pairs, pairs, ends[-1], points, measures))
+    for mine, part, (_, mesh), end in zip(own, parts, meshes, ends.tolist(), strict=True):
+        if part is None:
+            continue
+        here, count = slice(end - mesh.elements, end), len(mine)
+        load[:count, here] = np.array(mine)[:, None]
+        first[:count, here] = part[0]
+        if pairs:
+            second[:count, :count, here] = part[1]
+    return Imposed(load, first, second)

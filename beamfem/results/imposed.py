@@ -1,0 +1,24 @@
+"""Strains that loads impose on a beam, in the rows of a solution."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.mesh import BeamMesh
+from beamfem.results.loading import loading
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def imposed_measures(
+    solution: "Solution", mesh: BeamMesh, rows: slice | np.ndarray = slice(None)
+) -> np.ndarray | float:
+    """Return the measures (steps, points, ns) at the points of the strain energy of a beam; 0 where there are none."""
+    system, at = loading(solution)
+    imposed = system.blocks[mesh.block].imposed
+    if imposed is None:
+        return 0.0
+    own = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
+    found = [own.at(system.imposing(time)) for time in at[rows].tolist()]
+    return np.array(found).reshape(len(found), -1, own.first.shape[-1])

@@ -1,0 +1,64 @@
+"""Stress of layers that heat cannot let expand as each would: in balance with itself over the section."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.model.imposed_strains import Temperature
+from beamfem.model.mesh import BeamMesh
+from beamfem.results.loading import loading
+from beamfem.section.protocol import CrossSection
+from beamfem.section.thermal import expands_evenly, thermal_strain
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+def self_stress(
+    solution: "Solution",
+    mesh: BeamMesh,
+    element: np.ndarray,
+    xi: np.ndarray,
+    layer: int | None,
+    y: np.ndarray,
+    rows: slice | np.ndarray = slice(None),
+) -> np.ndarray | float:
+    """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points (element, xi); 0 where there is none.
+
+    eps, kappa: free strain of the section; y (n, heights) [m]; layer: where there are several, the one that y belongs
+    to; None: the one around the axis. It adds nothing to section forces.
+    """
+    beam, (system, at) = mesh.beam, loading(solution)
+    heated = [
+        (number, load)
+        for number, (_, load) in enumerate(system.model.imposing)
+        if isinstance(load, Temperature) and load.beam is beam
+    ]
+    arc = np.asarray(mesh.section_arc_length(element, xi))
+    sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
+    if not heated or all(expands_evenly(section, beam.material) for section in sections):
+        return 0.0
+    units = np.array([_units(section, mesh, layer, own) for section, own in zip(_each(sections, y), y, strict=True)])
+    factors = np.array([system.imposing(time) for time in at[rows].tolist()])
+    result = np.zeros((len(factors), *y.shape))
+    for number, load in heated:
+        heat = np.column_stack([load.values_of(name, arc) for name in load.along])
+        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat)
+    return result
+
+
+def _each(sections: list[CrossSection], y: np.ndarray) -> list[CrossSection]:
+    return sections * len(y) if len(sections) == 1 else sections
+
+
+def _units(section: CrossSection, mesh: BeamMesh, layer: int | None, y: np.ndarray) -> np.ndarray:
+    """Return the stress (heights, 2) [Pa] for a change of 1 K and a gradient of 1 K/m."""
+    own = mesh.beam.material
+    if layer is None:
+        found = [part for part, there in section.materials_at(np.zeros(1), own) if there.any()]
+    else:
+        parts = section.moments(own)
+        found = [parts[min(layer, len(parts) - 1)][0]]
+    free = thermal_strain(section, own)
+    hindered = free[0] - y[:, None] * free[1] - found[0].thermal_expansion * np.column_stack([np.ones_like(y), y])
+    return np.asarray(found[0].youngs_modulus * hindered)

@@ -1,0 +1,41 @@
+"""What heat does to a free section: how it stretches and bends."""
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.material import Material
+from beamfem.section.protocol import CrossSection
+
+
+def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarray:
+    """Return stretch, curvature [1/m] and thickness stretch (3, 2) of a free section, by change of temperature.
+
+    Columns: for a uniform change of 1 K and a gradient of 1 K/m towards +y. Of layers: eps - y kappa is nearest to
+    alpha T(y) in the measure of E dA, so that neither a normal force nor a moment is left (Timoshenko 1925).
+    """
+    parts = _parts(section, material)
+    expansions = [own.thermal_expansion for own, _ in parts]
+    alpha = expansions[0]
+    if expansions == [alpha] * len(expansions):
+        return np.array([[alpha, 0.0], [0.0, -alpha], [alpha, 0.0]])
+    e0, e1, e2 = (sum(own.youngs_modulus * moments[n] for own, moments in parts) for n in range(3))
+    f0, f1, f2 = (
+        sum(own.thermal_expansion * own.youngs_modulus * moments[n] for own, moments in parts) for n in range(3)
+    )
+    axial = np.linalg.solve(np.array([[e0, -e1], [-e1, e2]]), np.array([[f0, f1], [-f1, -f2]]))
+    return np.vstack([axial, [f0 / e0, f1 / e0]])
+
+
+def expands_evenly(section: CrossSection, material: Material | None) -> bool:
+    """Tell whether all of a section has one coefficient of thermal expansion."""
+    return len({own.thermal_expansion for own, _ in _parts(section, material)}) == 1
+
+
+def _parts(section: CrossSection, material: Material | None) -> list[tuple[Material, np.ndarray]]:
+    """Return the materials of a section with the integrals of 1, y, y^2, ... over their parts."""
+    try:
+        return section.moments(material)
+    except InputError:  # known by its stiffness
+        if material is None:
+            raise InputError("heat needs a coefficient of thermal expansion: give the beam a material") from None
+        return [(material, np.zeros(5))]

@@ -39,3 +39,13 @@ def test_a_model_that_cannot_be_solved_is_drawn():
     figure = model.plot()
     figure.canvas.draw()
     assert share_of_ink(figure.canvas.buffer_rgba()) > 0.01
+
+
+def test_actuation_and_heat_are_named_beside_their_beams():
+    steel = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
+    arm = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.01, 0.01), steel)
+    loads = [bf.Actuation(arm, curvature=1.5), bf.Temperature(arm, lambda s: 10.0 * s, gradient=2000.0)]
+    model = bf.Model([arm], [bf.Clamp(arm.start)], loads)
+    for figure in (model.plot(), bf.solve_static(model).plot()):
+        words = {text.get_text() for text in figure.axes[0].texts}
+        assert {"actuation: curvature 1.5 1/m", "temperature: change varies, gradient 2000 K/m"} <= words

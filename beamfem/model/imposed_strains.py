@@ -26,6 +26,7 @@ class Actuation:
     """
 
     along: ClassVar[tuple[str, ...]] = ("curvature", "stretch", "shear")
+    units: ClassVar[tuple[str, ...]] = ("1/m", "", "")
 
     beam: Beam
     curvature: Along = 0.0
@@ -61,6 +62,7 @@ class Temperature:
     """
 
     along: ClassVar[tuple[str, ...]] = ("change", "gradient")
+    units: ClassVar[tuple[str, ...]] = ("K", "K/m")
 
     beam: Beam
     change: Along

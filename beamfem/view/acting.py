@@ -6,13 +6,14 @@ import numpy as np
 
 from beamfem.element.coordinates import across
 from beamfem.model.load import factor, functions_along
-from beamfem.model.loads import Gravity, LineLoad, Load, PointForce, PointMoment, Pressure
+from beamfem.model.loads import Gravity, ImposedStrain, LineLoad, Load, PointForce, PointMoment, Pressure
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import length_points
 from beamfem.results.loading import loading
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 from beamfem.view.held import Stamps
+from beamfem.view.imposed import draw_imposed
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -34,6 +35,8 @@ def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
             acting.append((load, float(weights[best]), int(rows[best])))
     forces = [item for item in acting if isinstance(item[0], PointForce)]
     drawn = _forces(axes, solution, forces) if forces else []
+    imposed = [(load, weight, row) for load, weight, row in acting if isinstance(load, ImposedStrain)]
+    drawn += draw_imposed(axes, solution, imposed, FORCE)
     stamps = Stamps()
     for load, weight, row in acting:
         if isinstance(load, PointMoment):

@@ -12,7 +12,8 @@ class Material:
 
     youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]; retardation_time t [s]: in motions every
     stress resultant is C (eps + t eps'), so that a small vibration of angular frequency w has the damping ratio t w / 2
-    and a rigid motion is not damped; thermal_expansion alpha [1/K], of a length, for `Temperature`. Raises InputError.
+    and a rigid motion is not damped, but every change of strain is, a free expansion too; thermal_expansion alpha
+    [1/K], of a length, for `Temperature`. Raises InputError.
     """
 
     youngs_modulus: float

@@ -3,14 +3,14 @@
 Strains are written out once more; B = de/dp, shape functions and what sections and rules are come from the package.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 import beamfem as bf
-from beamfem.element.coordinates import labels, nodal_rates
+from beamfem.element.coordinates import Gradients, labels, nodal_rates
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.model.load import factor
+from beamfem.model.load import factor, jumps_along
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
@@ -52,8 +52,37 @@ def strains(name: str, at) -> np.ndarray:
     return np.stack(parts, axis=-1)
 
 
-def elastic_force(mesh, e: np.ndarray) -> np.ndarray:
-    """Derivative (elements, nv, 2) of the strain energy by the nodal vectors e (nodes, vectors, 2) of each element."""
+def imposed(mesh, model: bf.Model, at: float, static: bool) -> np.ndarray | float:
+    """Strain measures (points, measures) of the beam when nothing hinders what loads impose, less the reference's."""
+    loads = [load for load in model.loads if isinstance(load, bf.Actuation | bf.Temperature)]
+    own = [load for load in loads if load.beam is mesh.beam]
+    if not own:
+        return 0.0
+    element, xi, _ = energy_points(mesh)
+    free = 0.0
+    for load in own:
+        arc = mesh.arc_length_inside(element, xi, jumps_along(load))
+        free = free + factor(load, at, static) * load.free_strain(arc)
+    stretch, shear, curvature, thickness = free.T
+    thickness = thickness * isinstance(mesh.beam.element.coordinates, Gradients)
+    name, start = mesh.beam.element.forces.name, reference_axis(mesh, element, xi)
+    if name == "structural":
+        return np.stack([stretch, shear, curvature, thickness], axis=-1)
+    if name == "elastic-line":
+        return np.stack([stretch, curvature, shear, thickness + 0.5 * thickness**2], axis=-1)
+    upward = start.d / np.hypot(*start.d.T)[:, None]
+    normal = -across(upward)
+    r_s = start.r_s + stretch[:, None] * normal + shear[:, None] * upward
+    d, d_s = ((1.0 + thickness)[:, None] * vector for vector in (start.d, start.d_s))
+    free = replace(start, r_s=r_s, d=d, d_s=d_s - curvature[:, None] * normal)
+    return strains(name, free) - strains(name, start)
+
+
+def elastic_force(mesh, e: np.ndarray, taken: np.ndarray | float = 0.0) -> np.ndarray:
+    """Derivative (elements, nv, 2) of the strain energy by the nodal vectors e (nodes, vectors, 2) of each element.
+
+    taken: see `imposed`.
+    """
     element, xi, weight = energy_points(mesh)
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
     local = e[mesh.node].reshape(mesh.elements, -1, 2)
@@ -62,7 +91,7 @@ def elastic_force(mesh, e: np.ndarray) -> np.ndarray:
     for slot in range(count):
         for c in (0, 1):
             moved[2 * slot + c, :, slot, c] += 1j * _STEP
-    eps = strains(mesh.beam.element.forces.name, interpolate(mesh, moved[:, element], element, xi)) - reference
+    eps = strains(mesh.beam.element.forces.name, interpolate(mesh, moved[:, element], element, xi)) - reference - taken
     density = 0.5 * np.einsum("sqi,qij,sqj->sq", eps, stiffness, eps) * weight
     energy = density.reshape(2 * count, mesh.elements, -1).sum(axis=2)
     return np.moveaxis((energy.imag / _STEP).reshape(count, 2, mesh.elements), 2, 0)
@@ -112,7 +141,7 @@ def external(mesh, model: bf.Model, solution: bf.Solution, row: int, at: float, 
             else:
                 force = weight * np.array([load.vector])
                 add(element, xi, turned(element, xi, force) if load.follower else force)
-        elif load.beam is mesh.beam:
+        elif load.beam is mesh.beam and not isinstance(load, bf.Actuation | bf.Temperature):
             element, xi, length = length_points(mesh)
             values = weight * load.values(mesh.arc_length(element, xi))
             if isinstance(load, bf.Pressure):
@@ -192,11 +221,11 @@ def to_coordinates(mesh, p: np.ndarray, force: np.ndarray, size: int) -> np.ndar
     return result
 
 
-def elastic(model: bf.Model, p: np.ndarray) -> np.ndarray:
-    """Generalized elastic forces (n,) of all beams."""
+def elastic(model: bf.Model, p: np.ndarray, at: float, static: bool) -> np.ndarray:
+    """Generalized elastic forces (n,) of all beams, at a load factor or time for strains that loads impose."""
     parts = []
     for mesh in model.meshes:
-        force = elastic_force(mesh, nodal_vectors(mesh, p[None])[0])
+        force = elastic_force(mesh, nodal_vectors(mesh, p[None])[0], imposed(mesh, model, at, static))
         parts.append(to_coordinates(mesh, p, force, model.size))
     return np.sum(parts, axis=0)
 

@@ -187,7 +187,7 @@ def _spread(at: bf.Solution, values: np.ndarray) -> np.ndarray:
 def residual(at: bf.Solution) -> np.ndarray:
     """Elastic forces less all others (n,) of the only row, by complex steps."""
     model, p = at.model, at.p[0]
-    result = elastic(model, p) - sprung(model, p - system_of(model, True).reference)
+    result = elastic(model, p, float(at.at[0]), True) - sprung(model, p - system_of(model, True).reference)
     for mesh in model.meshes:
         e = nodal_vectors(mesh, p[None])[0]
         for forces in external(mesh, model, at, 0, float(at.at[0]), True):

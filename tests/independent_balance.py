@@ -53,7 +53,7 @@ def balance(solution: bf.Solution, row: int = -1) -> Balance:
     system = system_of(model, solution.static)
     at = float(solution.at[row])
     scale, size = system.scale, system.extent
-    inner = elastic(model, p)
+    inner = elastic(model, p, at, solution.static)
     outer, acting, parts = np.zeros(model.size), 0.0, np.zeros(3)
     for mesh in model.meshes:
         e = nodal_vectors(mesh, p[None])
@@ -119,7 +119,10 @@ def floor_of(solution: bf.Solution, row: int = -1) -> np.ndarray:
     only, system = solution[row:] if row == -1 else solution[row : row + 1], system_of(solution.model, True)
 
     def forces(q: np.ndarray) -> np.ndarray:
-        result, moved = elastic(model, q) - sprung(model, q - system.reference), replace(only, p=q[None])
+        result, moved = (
+            elastic(model, q, at, solution.static) - sprung(model, q - system.reference),
+            replace(only, p=q[None]),
+        )
         for mesh in model.meshes:
             e = nodal_vectors(mesh, q[None])[0]
             for acting in external(mesh, model, moved, 0, at, solution.static):

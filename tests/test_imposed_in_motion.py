@@ -173,6 +173,28 @@ curvature = 0.3
     assert turned == pytest.approx(0.3 - 1.2e-5 * 500.0, rel=1e-9)
 
 
+BRASS = bf.Material(1e11, 0.3, 8500.0, thermal_expansion=1.9e-5)
+
+
+def strip(upper):
+    return bf.Layered([bf.Layer(STEEL, 0.001), bf.Layer(upper, 0.001)], 0.01)
+
+
+def uneven_at_its_end():
+    return straight(
+        bf.CRBF(2, forces=bf.SplitContinuum()), material=None, section=lambda s: strip(BRASS if s > 0.9 else STEEL)
+    )
+
+
+def test_a_beam_may_expand_in_a_part_of_it_only():
+    cold = bf.Material(2e11, 0.3, 7800.0)
+    own = straight(
+        material=None, section=lambda s: strip(STEEL) if s > 0.25 else bf.Layered([bf.Layer(cold, 0.002)], 0.01)
+    )
+    state = bf.solve_static(clamped(own, bf.Temperature(own, 100.0)))
+    assert state.displacement(own.end)[-1, 0] == pytest.approx(0.75 * 1.2e-3, rel=1e-8)
+
+
 REFUSED = {
     "no beam": (lambda own: bf.Actuation("beam", 1.0), "beam of Actuation must be a Beam"),
     "nan": (lambda own: bf.Actuation(own, curvature=np.nan), "curvature of Actuation"),
@@ -196,6 +218,11 @@ REFUSED = {
             10.0,
         ),
         "layers that expand differently",
+    ),
+    "uneven further on": (lambda own: bf.Temperature(uneven_at_its_end(), 10.0), "layers that expand differently"),
+    "inextensible but bent": (
+        lambda own: bf.Temperature(straight(bf.ShearRigid(False), material=None, section=strip(BRASS)), 0.0, 100.0),
+        "do not stretch",
     ),
     "amplitude": (lambda own: bf.Actuation(own, 1.0, amplitude=3.0), "amplitude of Actuation"),
 }

@@ -137,16 +137,42 @@ def test_a_moment_and_a_curvature_add_up():
     assert solution.section_forces(own).moment[-1] == pytest.approx(0.5 * EI, rel=1e-8)
 
 
-def test_a_curvature_may_vary_along_the_beam_and_jump():
-    """Elements end at the jump, so that two parts of one beam are two beams."""
+JUMPING = [
+    bf.CRBF(4),
+    bf.ANCF(forces=bf.ElasticLine()),  # these take strains at the ends of elements too
+    bf.ANCF(forces=bf.Structural()),
+    bf.ANCF(forces=bf.SplitContinuum(), integration="lobatto"),
+    bf.ShearRigid(),
+]
 
-    def along(s):
-        return 1.0 if s < 0.37 else -2.0
 
-    own = straight(elements=6)
-    solution = bf.solve_static(clamped(own, bf.Actuation(own, curvature=along)))
-    assert solution.rotation(own.end)[-1] == pytest.approx(0.37 - 2.0 * 0.63, rel=1e-9)
-    assert 0.37 in solution.model.meshes[0].vertices.round(12)
+@pytest.mark.parametrize("element", JUMPING, ids=identify)
+@pytest.mark.parametrize("declared", [True, False])
+def test_what_is_imposed_may_jump_along_the_beam(element, declared):
+    """Elements end there, and each takes the value of its own side."""
+
+    def bend(s):
+        return 0.1 if s < 0.37 else -0.2
+
+    def heat(s):
+        return 100.0 if s < 0.37 else -50.0
+
+    if declared:
+        bend, heat = bf.Piecewise(bend, [0.37]), bf.Piecewise(heat, [0.37])
+    own = straight(element, elements=13)
+    bent = bf.solve_static(clamped(own, bf.Actuation(own, curvature=bend)))
+    assert bent.rotation(own.end)[-1] == pytest.approx(0.037 - 0.126, rel=1e-5)
+    assert 0.37 in bent.model.meshes[0].vertices.round(12)
+    ends = [bf.Pin(own.start), bf.Roller(own.end)]  # a clamp would hold the thickness of gradients
+    heated = bf.solve_static(bf.Model([own], ends, [bf.Temperature(own, heat)]))
+    assert heated.displacement(own.end)[-1, 0] == pytest.approx(ALPHA * (37.0 - 31.5), rel=1e-6)
+
+
+def test_elements_end_where_only_the_expansion_jumps():
+    warmer = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=2.4e-5)
+    own = straight(material=None, section=lambda s: bf.Layered([bf.Layer(STEEL if s < 0.37 else warmer, 0.01)], 0.01))
+    state = bf.solve_static(clamped(own, bf.Temperature(own, 100.0, 1000.0)))
+    assert state.rotation(own.end)[-1] == pytest.approx(-1000.0 * (0.37 * 1.2e-5 + 0.63 * 2.4e-5), rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -182,6 +208,26 @@ def test_a_free_beam_expands_whatever_its_forces(forces):
     free = bf.solve_static(pinned)
     assert free.displacement(own.end)[-1] == pytest.approx([ALPHA * 100.0, 0.0], rel=1e-9, abs=1e-12)
     assert free.energy().strain[-1] < 1e-16 * EA
+
+
+CURVED = [
+    bf.CRBF(4),
+    bf.ANCF(),
+    bf.Element(Lagrange(4), Gradients(), bf.ContinuumMechanics()),
+    bf.Element(Lagrange(4), Gradients(), bf.SplitContinuum()),
+    bf.ANCF(forces=bf.ElasticLine()),
+]
+
+
+@pytest.mark.parametrize("element", CURVED, ids=identify)
+def test_a_heated_arc_keeps_its_shape(element):
+    """A free body of one material grows alike in all directions."""
+    own = bf.Beam(bf.Arc((0.0, 0.0), 1.0, 0.0, np.pi / 2), 12, element, bf.Rectangle(0.05, 0.05), STEEL)
+    held = [bf.Pin(own.start), bf.Roller(own.end, (0.0, 1.0))]
+    state = bf.solve_static(bf.Model([own], held, [bf.Temperature(own, 100.0)]))
+    chord = np.linalg.norm(state.position(own.end)[-1] - state.position(own.start)[-1])
+    assert (chord / np.sqrt(2.0) - 1.0) / (100.0 * ALPHA) == pytest.approx(1.0, rel=1e-4)
+    assert state.rotation(own.at(0.5))[-1] == pytest.approx(state.rotation(own.start)[-1], abs=1e-6)
 
 
 def bimetal(axis=None):

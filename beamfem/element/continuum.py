@@ -51,12 +51,12 @@ class _Body:
     def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
         """Return the change of the measures (n, 6) by free strains (n, 4), in the order of `Structural.imposed`.
 
-        The free section stands at the end of r0' + stretch n + shear t with d (1 + thickness) and d' - curvature n.
+        The free body has r0' + stretch n + shear t, d (1 + thickness) and d' (1 + thickness) - curvature n.
         """
         along, across = section_frame(reference.d)
         stretch, shear, curvature, thickness = free.T[:, :, None]
         r_s = reference.r_s + stretch * along + shear * across
-        d_s = reference.d_s - curvature * along
+        d_s = reference.d_s * (1.0 + thickness) - curvature * along
         free_axis = (r_s, reference.d * (1.0 + thickness), d_s)
         return evaluate(green_lagrange, *free_axis) - self.strains(reference)
 

@@ -16,7 +16,7 @@ from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Rigid
-from beamfem.model.load import functions_along, kinks_along
+from beamfem.model.load import functions_along, jumps_along, kinks_along
 from beamfem.model.loads import (
     DistributedLoad,
     Gravity,
@@ -135,7 +135,8 @@ def _with_own_values(load: Load, model: Model) -> Load:
     saved: dict[str, Any] = {}
     for name in functions_along(load):
         mesh = model.mesh_of(load.beam.start)
-        points = [mesh.arc_length(*length_points(mesh)[:2]), mesh.section_arc_length(*energy_points(mesh)[:2])]
+        used, jumps = (length_points(mesh)[:2], energy_points(mesh)[:2], stations(mesh)), jumps_along(load)
+        points = [mesh.arc_length_inside(*places, jumps) for places in used]
         drawn = np.linspace(0.0, 1.0, _DRAWN * mesh.elements + 1) * load.beam.curve.length
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())

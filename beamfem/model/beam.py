@@ -19,6 +19,7 @@ from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
 from beamfem.section.law import ElasticLaw, law_of
 from beamfem.section.protocol import CrossSection
+from beamfem.section.thermal import expansion
 from beamfem.validation import called, count, finite, fulfils, function_of_one, shown
 
 Tapered = Callable[[float], CrossSection]
@@ -122,10 +123,11 @@ class Beam:
         return max(self.element_count, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
-        """Return what elastic forces, inertia and drawing take of the section at an arc length, as numbers."""
+        """Return what elastic forces, inertia, heat and drawing take of the section at an arc length, as numbers."""
         section = self.section_at(arc_length)
         parts = (section.rigidity(self.material), section.inertia(self.material))
-        return np.array([*(value for part in parts for value in vars(part).values()), *section.bounds])
+        numbers = [value for part in parts for value in vars(part).values()]
+        return np.array([*numbers, *section.bounds, *expansion(section, self.material).ravel()])
 
     @property
     def start(self) -> "Point":

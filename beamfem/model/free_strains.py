@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.element.coordinates import Gradients
 from beamfem.model.grid import Grid
-from beamfem.model.load import Imposing
+from beamfem.model.load import Imposing, jumps_along
 from beamfem.model.reference import energy_points, reference_axis
 
 _THICKNESS = 3  # column of the thickness stretch
@@ -20,8 +20,8 @@ def free_strains(grid: Grid, loads: Sequence[Imposing]) -> tuple[np.ndarray, np.
     """
     own = grid.beam.element
     element, xi, _ = energy_points(grid)
-    reference, arc = reference_axis(grid, element, xi), np.asarray(grid.section_arc_length(element, xi))
-    free = np.array([load.free_strain(arc) for load in loads])
+    reference = reference_axis(grid, element, xi)
+    free = np.array([load.free_strain(grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
     if not isinstance(own.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
 

@@ -1,6 +1,6 @@
 """The mesh of one beam in its reference: elements over the arc length, nodes, and where they stand."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -77,12 +77,16 @@ class Grid:
 
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc length [m] at which sections of points (element, xi) are taken: inside where they jump."""
+        return self.arc_length_inside(element, xi, self.beam.jumps)
+
+    def arc_length_inside(self, element: np.ndarray, xi: np.ndarray, jumps: Sequence[float]) -> np.ndarray:
+        """Return the arc length [m] of points (element, xi), inside of an element that ends at one of the jumps [m]."""
         arc = self.arc_length(element, xi)
-        if not self.beam.jumps:
+        if not jumps:
             return arc
         length = self.vertices[-1]
-        jumps = np.abs(self.vertices[:, None] - np.array(self.beam.jumps)).min(axis=1) < _INSIDE * length
-        inside = np.where(jumps, _INSIDE * length, 0.0)
+        near = np.abs(self.vertices[:, None] - np.array(jumps)).min(axis=1) < _INSIDE * length
+        inside = np.where(near, _INSIDE * length, 0.0)
         return np.clip(arc, (self.vertices + inside)[element], (self.vertices - inside)[element + 1])
 
     def _along(self, arc_length: float) -> float:

@@ -37,10 +37,7 @@ class Actuation:
 
     def __post_init__(self) -> None:
         _check(self)
-        if self.shear != 0.0 and isinstance(self.beam.element.coordinates, ShearFree):
-            raise InputError(f"Actuation: nodes of {self.beam.element.name} do not shear; take another element")
-        if self.stretch != 0.0:
-            _require_stretchable(self)
+        _require_followed(self)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
         """Return curvature, stretch or shear at arc lengths (n,) [m]. Raises InputError where a function gives none."""
@@ -73,19 +70,19 @@ class Temperature:
     def __post_init__(self) -> None:
         _check(self)
         beam = self.beam
-        if self.change != 0.0:
-            _require_stretchable(self)
-        section = beam.section_at(0.0)
-        if not thermal_strain(section, beam.material).any():
+        sections = [beam.section_at(s) for s in _places(beam).tolist()]
+        if not any(thermal_strain(section, beam.material).any() for section in sections):
             raise InputError(
                 "Temperature changes nothing: give a material of its beam a coefficient of thermal expansion, "
                 "Material(..., thermal_expansion=1.2e-5)"
             )
-        if not expands_evenly(section, beam.material) and (beam.element.forces.fills_body or beam.law is not None):
+        evenly = all(expands_evenly(section, beam.material) for section in sections)
+        if not evenly and (beam.element.forces.fills_body or beam.law is not None):
             raise InputError(
                 "Temperature of layers that expand differently needs Structural() or ElasticLine() forces and a linear "
                 f"section, got {beam.element.forces.name} forces"
             )
+        _require_followed(self)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
         """Return change or gradient at arc lengths (n,) [m]. Raises InputError where a function gives none."""
@@ -110,10 +107,21 @@ def _check(load: Actuation | Temperature) -> None:
     check_common(load)
 
 
-def _require_stretchable(load: Actuation | Temperature) -> None:
-    coordinates = load.beam.element.coordinates
-    if isinstance(coordinates, ShearFree) and not coordinates.stretchable:
-        raise InputError(f"{type(load).__name__}: nodes of {load.beam.element.name} do not stretch; let them")
+def _places(beam: Beam) -> np.ndarray:
+    """Arc lengths (3,) [m] at which what depends on the place is looked at."""
+    return np.array([0.0, 0.5, 1.0]) * beam.curve.length
+
+
+def _require_followed(load: Actuation | Temperature) -> None:
+    """Raise InputError where nodes cannot take what they are given."""
+    coordinates, name = load.beam.element.coordinates, load.beam.element.name
+    if not isinstance(coordinates, ShearFree):
+        return
+    stretch, shear, *_ = load.free_strain(_places(load.beam)).T
+    if shear.any():
+        raise InputError(f"{type(load).__name__}: nodes of {name} do not shear; take another element")
+    if stretch.any() and not coordinates.stretchable:
+        raise InputError(f"{type(load).__name__}: nodes of {name} do not stretch; let them")
 
 
 def _along(load: Actuation | Temperature, name: str, arc_length: np.ndarray) -> np.ndarray:

@@ -78,6 +78,12 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
     return find_jumps(getattr(load, name), numbers, beam.curve.length, beam.samples)
 
 
+def jumps_along(load: AlongBeam) -> tuple[float, ...]:
+    """Return the arc lengths [m] at which what a load gives a beam jumps, by itself or with the section."""
+    kinks = [kinks_along(load, name) for name in functions_along(load)]
+    return (*load.beam.jumps, *(kink for found in kinks for kink in found))
+
+
 def check_along(load: AlongBeam) -> None:
     """Raise InputError for functions of the arc length that are none."""
     kind = type(load).__name__

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.imposed_strains import Temperature
+from beamfem.model.load import jumps_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.results.loading import loading
 from beamfem.section.protocol import CrossSection
@@ -34,15 +35,18 @@ def self_stress(
         for number, (_, load) in enumerate(system.model.imposing)
         if isinstance(load, Temperature) and load.beam is beam
     ]
-    arc = np.asarray(mesh.section_arc_length(element, xi))
+    if not heated:
+        return 0.0
+    arc = mesh.section_arc_length(element, xi)
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
-    if not heated or all(expands_evenly(section, beam.material) for section in sections):
+    if all(expands_evenly(section, beam.material) for section in sections):
         return 0.0
     units = np.array([_units(section, mesh, layer, own) for section, own in zip(_each(sections, y), y, strict=True)])
     factors = np.array([system.imposing(time) for time in at[rows].tolist()])
     result = np.zeros((len(factors), *y.shape))
     for number, load in heated:
-        heat = np.column_stack([load.values_of(name, arc) for name in load.along])
+        there = mesh.arc_length_inside(element, xi, jumps_along(load))
+        heat = np.column_stack([load.values_of(name, there) for name in load.along])
         result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat)
     return result
 

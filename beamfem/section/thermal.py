@@ -26,6 +26,14 @@ def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarr
     return np.vstack([axial, [f0 / e0, f1 / e0]])
 
 
+def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
+    """Return `thermal_strain`, zeros where a section has no material."""
+    try:
+        return thermal_strain(section, material)
+    except InputError:
+        return np.zeros((3, 2))
+
+
 def expands_evenly(section: CrossSection, material: Material | None) -> bool:
     """Tell whether all of a section has one coefficient of thermal expansion."""
     return len({own.thermal_expansion for own, _ in _parts(section, material)}) == 1

@@ -145,7 +145,10 @@ class Support:
 
 @dataclass(frozen=True)
 class Load:
-    """ "force" (fx, fy), "moment" (m, 0) at a place, "line" (qx, qy), "pressure" (p, 0) on a bar; "gravity"."""
+    """ "force" (fx, fy), "moment" (m, 0) at a place, "line" (qx, qy), "pressure" (p, 0) on a bar; "gravity".
+
+    "muscle" (curvature, stretch) of a bar.
+    """
 
     kind: str
     place: Place
@@ -299,6 +302,11 @@ def _loads(load: Load, view: View, at: bf.Point, parts) -> list[bf.model.loads.L
     if load.kind == "pressure":
         size = (-1.0 if view.backwards else 1.0) * view.sense * load.values[0] * view.force / view.length
         return [bf.Pressure(beam, size, **how) for beam in parts[load.place[0]]]
+    if load.kind == "muscle":
+        curvature = (-1.0 if view.backwards else 1.0) * view.sense * load.values[0] / view.length
+        beams = parts[load.place[0]]
+        stretches = getattr(beams[0].element.coordinates, "stretchable", True)
+        return [bf.Actuation(beam, curvature, load.values[1] * stretches, **how) for beam in beams]
     how["follower"] = load.follower
     if load.kind == "force":
         return [bf.PointForce(at, view.vector(load.values, view.force), **how)]

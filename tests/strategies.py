@@ -10,7 +10,7 @@ MODULUS = 1e9
 # those whose halves share everything across a rigid joint; other cubics have a stretch of their own at each side
 SHARING = ("bilinear ANCF", "bilinear CRBF", "CRBF(1)", "CRBF(2)", "CRBF(3)", "CRBF(4)", "shear-rigid 3")
 NAMED = (*SHARING, "ANCF", "ANCF line", "ANCF structural", "ANCF-CRBF", "ANCF-CRBF structural", "shear-rigid")
-CONSERVATIVE = ("force", "moment", "line", "gravity")
+CONSERVATIVE = ("force", "moment", "line", "gravity", "muscle")
 
 signs = st.sampled_from((-1.0, 1.0))
 
@@ -90,7 +90,8 @@ def recipes(
         supports.append(
             Support("foundation", (draw(st.integers(0, count - 1)), 0.0), (draw(between(0.1, 20.0)) * unit, 0.0))
         )
-    loads = tuple(draw(_load(count, largest * unit, load_kinds, followers)) for _ in range(draw(st.integers(1, 3))))
+    of_loads = _load(count, largest * unit, unit, load_kinds, followers)
+    loads = tuple(draw(of_loads) for _ in range(draw(st.integers(1, 3))))
     if not any(load.scale for load in loads):
         loads = (replace(loads[0], scale=True), *loads[1:])
     return Recipe("drawn", tuple(bars), tuple(supports), loads, tuple(joints), MODULUS, 1000.0)
@@ -114,14 +115,17 @@ def _ends(draw, place: tuple[int, float], unit: float, led: bool) -> list[Suppor
 
 
 @st.composite
-def _load(draw, count: int, unit: float, kinds: tuple[str, ...], followers: bool) -> Load:
-    """A load of up to a unit: inside an element or at an end, dead or following."""
+def _load(draw, count: int, unit: float, bending: float, kinds: tuple[str, ...], followers: bool) -> Load:
+    """A load of up to a unit, on bars of a bending stiffness: inside an element or at an end, dead or following."""
     kind, bar, angle = draw(st.sampled_from(kinds)), draw(st.integers(0, count - 1)), draw(angles)
     size = draw(between(0.01, 1.0)) * unit
     place = bar, draw(st.sampled_from((0.5, 1.0, 0.35, 0.8)))
     scale = draw(st.integers(0, 3)) > 0
     if kind in ("moment", "pressure"):
         return Load(kind, place, (draw(signs) * size, 0.0), scale=scale)
+    if kind == "muscle":  # what a moment of this size would bend it by
+        curvature = draw(signs) * size / bending
+        return Load(kind, place, (curvature, 0.01 * curvature * draw(signs)), scale=scale)
     if kind == "gravity":
         return Load(kind, place, _away(angle, size), scale=scale)
     return Load(kind, place, _away(angle, size), follower=followers and draw(st.booleans()), scale=scale)

@@ -300,3 +300,15 @@ def test_columns_that_buckle_together_have_a_mode_each():
     assert modes @ modes.T == pytest.approx(np.diag(np.diag(modes @ modes.T)), abs=1e-6 * (modes @ modes.T).max())
     branch = trace_equilibrium(model, points=4, start=path.bifurcations[1])
     assert np.abs([branch.displacement(c.end)[-1, 0] for c in columns]).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "amplitude", [lambda at: at**2, lambda at: 1.0 + at**2, lambda at: at**3, lambda at: np.sin(at)]
+)
+def test_a_path_may_begin_where_its_loads_do_not_grow_yet(amplitude):
+    """The load factor was measured by what a millionth of it does, a million times too large."""
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([own], [bf.Clamp(own.start)], [bf.PointMoment(own.end, 150.0, amplitude=amplitude)])
+    path = bf.trace_equilibrium(model, until=1.0)
+    assert path.rotation(own.end)[-1] == pytest.approx(bf.solve_static(model).rotation(own.end)[-1], rel=1e-9)
+    assert np.all(np.diff(path.load_factor) > 0.0)

@@ -7,8 +7,9 @@ from integrated import Cantilever
 from scipy.integrate import quad
 
 import beamfem as bf
+from beamfem.assembly.columns import coordinate_columns
 from beamfem.assembly.equations import residual
-from beamfem.assembly.system import System, coordinate_columns
+from beamfem.assembly.system import System
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SOFT = bf.Material(2e5, 0.3, 1000.0)

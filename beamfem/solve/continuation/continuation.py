@@ -1,5 +1,6 @@
 """Points of an equilibrium path, corrected and linearised with the load factor among the unknowns."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,7 +11,7 @@ from beamfem.assembly.equations import STATICS, linearise, load_slope, predicted
 from beamfem.assembly.imposed_forces import imposed_forces
 from beamfem.assembly.round_off import loses_digits
 from beamfem.assembly.system import System
-from beamfem.errors import ConvergenceError
+from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
@@ -19,6 +20,7 @@ from beamfem.solve.newton.loop import iterate
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
+_STEEPER = 2.0  # times what loads do per load factor where a path begins, further on
 _GROWS_WELL = 0.3  # share of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
 _STILL = 1e-7  # of a mode: what an iteration may still turn it by
@@ -260,8 +262,12 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     factors = tangent.factorised(system.rotated)
     mode = plain.softest(factors)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
-    # an amplitude may start with slope zero: then what it does up to load factor 1 tells
-    per_load = _reach(plain, p, load_factor, stiffness, 1e-6) or _reach(plain, p, load_factor, stiffness, 1.0)
+    per_load = _reach(plain, p, load_factor, stiffness, 1e-6)
+    if system.varying or any(callable(item.value) for item in system.held) or per_load == 0.0:
+        # an amplitude may start with slope zero, or nearly so: then what it does up to load factor 1 tells
+        with suppress(InputError):  # of a function that ends before
+            further = _reach(plain, p, load_factor, stiffness, 1.0)
+            per_load = further if further > _STEEPER * per_load else per_load
     soft = 1.0 / per_load if per_load > 0.0 else 1.0
     if not np.finfo(float).tiny <= soft * soft < np.inf:
         raise ConvergenceError(

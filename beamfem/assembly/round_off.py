@@ -121,16 +121,16 @@ def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients:
 
 
 def load_size(system: System, loads: LoadsAt) -> float:
-    """Return the largest of forces and moments at points and of those that impose strains [N m].
+    """Return the largest of forces, times the size of the model, and moments at points [N m].
 
-    Forces are taken times the size of the model.
+    Where nothing but imposed strains acts, that of the forces which would hinder them: they may cause none.
     """
     largest = 0.0
     for own in loads.points:
         if own.size:
             x, y, moment = np.abs(own.reshape(-1, 3)).max(axis=0).tolist()
             largest = max(largest, system.extent * max(x, y), moment)
-    if loads.imposing.any():
+    if largest == 0.0 and loads.imposing.any() and not loads.body.any():
         largest = max(largest, float(np.max(np.abs(imposed_forces(system, loads)) * system.scale)))
     return largest
 

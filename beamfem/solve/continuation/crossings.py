@@ -1,11 +1,13 @@
 """Bifurcations that lie close together, interpolated between samples around them and proved by counts of pivots."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.solve.continuation.condensed import Condensed
@@ -149,15 +151,19 @@ def turning(segment: Segment, x: float) -> Crossing:
 
     There the path goes along the mode. Raises SegmentLostError.
     """
-    fractions = segment.beside(x, x, _BESIDE, 0.0, 1.0)
+    line, fractions = segment.line, segment.beside(x, x, _BESIDE, 0.0, 1.0)
     weights = interpolation_weights(fractions, x)
     points = [segment.at(at) for at in fractions.tolist()]
     tangent = weights @ [point.tangent for point in points]
-    tangent /= segment.line.length(tangent)
+    tangent /= line.length(tangent)
     mode = np.append(tangent[:-1], 0.0)
-    largest = mode[np.argmax(np.abs(mode) / segment.line.scale)]
-    mode /= np.copysign(segment.line.length(mode), largest)
-    return Crossing(x, segment.balanced(weights @ [point.y for point in points], [mode]), tangent, mode)
+    largest = mode[np.argmax(np.abs(mode) / line.scale)]
+    mode /= np.copysign(line.length(mode), largest)
+    y = segment.balanced(weights @ [point.y for point in points], [mode])
+    # a limit point beside a bifurcation: a second mode is as soft, and says as little
+    with suppress(LinAlgError):
+        y = segment.balanced(y, list(line.softest_modes(line.solve(y, None)[2], 2)))
+    return Crossing(x, y, tangent, mode)
 
 
 def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:

@@ -16,6 +16,7 @@ __all__ = [
     "At",
     "BSpline",
     "Beam",
+    "BeamStress",
     "BeamfemError",
     "Bifurcation",
     "BilinearANCF",

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from beamfem.errors import InputError
-from beamfem.validation import convert, finite, positive
+from beamfem.validation import convert, finite, optional, positive
 
 
 @dataclass(frozen=True)
@@ -13,7 +13,7 @@ class Material:
     youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]; retardation_time t [s]: in motions every
     stress resultant is C (eps + t eps'), so that a small vibration of angular frequency w has the damping ratio t w / 2
     and a rigid motion is not damped, but every change of strain is, a free expansion too; thermal_expansion alpha
-    [1/K], of a length, for `Temperature`. Raises InputError.
+    [1/K], of a length, for `Temperature`; strength [Pa] that von Mises' stress is compared with. Raises InputError.
     """
 
     youngs_modulus: float
@@ -21,10 +21,12 @@ class Material:
     density: float
     retardation_time: float = 0.0
     thermal_expansion: float = 0.0
+    strength: float | None = None
 
     def __post_init__(self) -> None:
         convert(self, positive, "youngs_modulus", "density")
         convert(self, finite, "poisson_ratio", "retardation_time", "thermal_expansion")
+        convert(self, optional(positive), "strength")
         if not -1.0 < self.poisson_ratio < 0.5:
             raise InputError(
                 f"poisson_ratio of Material must lie between -1 and 0.5 (both excluded), got {self.poisson_ratio}"

@@ -48,6 +48,7 @@ from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMomen
 from beamfem.model.model import Model
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise
+from beamfem.results.beam_stress import BeamStress
 from beamfem.results.on_basis import FieldOnBasis, field_on_basis
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.postprocess import Fields, SectionForces

@@ -27,6 +27,8 @@ def test_a_few_random_models_end_right_or_in_a_named_error():
         (4269, "an iteration that crept along a path of prescribed motions, taken for round-off"),
         (4380, "the lowest mode of a loaded wire of L/h = 1e5, 10 % off"),
         (8365, "the same as 4269 on a curved wire"),
+        (10340, "a limit point beside a bifurcation, out of balance"),
+        (10892, "squares of small imposed strains, which differences gave no digits, times squares of a large factor"),
     ],
 )
 def test_random_models_that_once_were_wrong(seed, was):

@@ -1,6 +1,6 @@
 """Elastic forces of the whole body."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,6 +15,7 @@ from beamfem.physics.measures import evaluate, green_lagrange
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import flag
 
+_STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
 # a law maps a material to the stiffness (3, 3) of (exx, eyy, 2 exy) in the volume
 Law = Callable[[Material], np.ndarray]
 
@@ -48,17 +49,25 @@ class _Body:
         """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
-    def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
-        """Return the change of the measures (n, 6) by free strains (n, 4), in the order of `Structural.imposed`.
+    def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
+        """Return the change of the measures by free strains (m, n, 4), as `Structural.imposed`.
 
-        The free body has r0' + stretch n + shear t, d (1 + thickness) and d' (1 + thickness) - curvature n.
+        The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
+        are quadratic in these vectors, so that complex steps give both parts without a difference.
         """
         along, across = section_frame(reference.d)
-        stretch, shear, curvature, thickness = free.T[:, :, None]
-        r_s = reference.r_s + stretch * along + shear * across
-        d_s = reference.d_s * (1.0 + thickness) - curvature * along
-        free_axis = (r_s, reference.d * (1.0 + thickness), d_s)
-        return evaluate(green_lagrange, *free_axis) - self.strains(reference)
+        stretch, shear, curvature, thickness = np.moveaxis(free, -1, 0)[..., None]
+        change = (
+            stretch * along + shear * across,
+            thickness * reference.d,
+            thickness * reference.d_s - curvature * along,
+        )
+        count, start = len(free), (reference.r_s, reference.d, reference.d_s)
+        first = np.array([_slope(start, [own[i] for own in change]) for i in range(count)])
+        second = [
+            [_slope([own[i] for own in change], [own[j] for own in change]) for j in range(count)] for i in range(count)
+        ]
+        return first, 0.5 * np.array(second)
 
     def points(self, degree: int, director_degree: int) -> int:
         """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
@@ -186,3 +195,9 @@ def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
         np.stack([zero, 2.0 * k21 * k22, k11 * k22], axis=-1),
     )
     return np.stack(rows, axis=-2), j11 * j22
+
+
+def _slope(at: Sequence[np.ndarray], change: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the derivative (n, 6) of the measures of r0', d and d' (n, 2) along a change of them."""
+    moved = [one + 1j * _STEP * own for one, own in zip(at, change, strict=True)]
+    return evaluate(green_lagrange, *moved).imag / _STEP

@@ -42,10 +42,11 @@ class ElasticLine:
         matrix[0, 1] = matrix[1, 0] = rigidity.coupling
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
-    def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
-        """Return the measures (n, 4) of free strains (n, 4), in the order of `Structural.imposed`."""
-        stretch, shear, curvature, thickness = free.T
-        return np.column_stack([stretch, curvature, shear, thickness * (1.0 + 0.5 * thickness)])
+    def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
+        """Return the measures of free strains (m, n, 4), as `Structural.imposed`; of the thickness t + t^2 / 2."""
+        products = np.zeros((len(free), *free.shape))
+        products[..., 3] = 0.5 * free[:, None, :, 3] * free[None, :, :, 3]
+        return free[:, :, [0, 2, 1, 3]], products
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
         """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""

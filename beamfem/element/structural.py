@@ -46,9 +46,12 @@ class Structural:
             matrix[3, 3] = 0.0
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
-    def imposed(self, free: np.ndarray, reference: Axis) -> np.ndarray:
-        """Return the measures (n, 4) of free strains (n, 4): stretch, shear, curvature and thickness stretch."""
-        return free
+    def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
+        """Return the measures of free strains (m, n, 4): stretch, shear, curvature and thickness stretch.
+
+        Parts (m, n, ns) that are linear in them, and (m, m, n, ns) that are products of two.
+        """
+        return free, np.zeros((len(free), *free.shape))
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
         """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""

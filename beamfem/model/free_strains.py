@@ -25,15 +25,6 @@ def free_strains(grid: Grid, loads: Sequence[Imposing]) -> tuple[np.ndarray, np.
     if not isinstance(own.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
 
-    def measures(strains: np.ndarray) -> np.ndarray:
-        found = own.forces.imposed(strains, reference)
-        return found.reshape(grid.elements, -1, found.shape[1])
-
-    ahead, behind = (np.array([measures(side * part) for part in free]) for side in (1.0, -1.0))
-    first = 0.5 * (ahead - behind)
-    second = np.zeros((len(free), *first.shape))
-    for i, one in enumerate(free):
-        second[i, i] = 0.5 * (ahead[i] + behind[i])
-        for j in range(i):
-            second[i, j] = second[j, i] = 0.5 * (measures(one + free[j]) - ahead[i] - ahead[j])
-    return first, second
+    first, second = own.forces.imposed(free, reference)
+    shape = grid.elements, -1, first.shape[-1]
+    return first.reshape(len(free), *shape), second.reshape(len(free), len(free), *shape)

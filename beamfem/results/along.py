@@ -11,6 +11,7 @@ from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
 from beamfem.results import postprocess
+from beamfem.results.beam_stress import stress_at
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.section_forces import at_points
 from beamfem.results.turns import turned_of
@@ -98,11 +99,15 @@ def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray)
 
 @dataclass(frozen=True)
 class Quantity:
-    """A field along the axis: its name for people, its unit, and values(points, solution, rows) -> (rows, points)."""
+    """A field along the axis: its name for people, its unit, and values(points, solution, rows) -> (rows, points).
+
+    unknown: what is missing where a beam has no values, which are nan then.
+    """
 
     label: str
     unit: str
     values: Callable[[AxisPoints, "Solution", np.ndarray], np.ndarray]
+    unknown: str = ""
 
 
 def _section_force(name: str) -> Callable[..., np.ndarray]:
@@ -128,10 +133,29 @@ def _speed(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.nda
     return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
 
 
+def _stress(name: str) -> Callable[..., np.ndarray]:
+    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+        return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
+
+    return values
+
+
 QUANTITIES = {
     "moment": Quantity("bending moment", "N m", _section_force("moment")),
     "normal": Quantity("normal force", "N", _section_force("normal")),
     "shear": Quantity("shear force", "N", _section_force("shear")),
+    "stress": Quantity(
+        "von Mises stress",
+        "Pa",
+        _stress("von_mises"),
+        "sections tell a stress where they have a material and a height",
+    ),
+    "utilisation": Quantity(
+        "utilisation of the strength",
+        "-",
+        _stress("utilisation"),
+        "give a material its strength, Material(..., strength=)",
+    ),
     "rotation": Quantity("rotation", "rad", rotation),
     "displacement": Quantity("displacement", "m", _displacement),
     "speed": Quantity("speed", "m/s", _speed),

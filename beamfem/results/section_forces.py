@@ -21,7 +21,7 @@ _VALUES = 2_000_000  # in one array
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     """Return the section forces of a beam at both ends of every element, and inside; see `SectionForces`."""
     mesh = solution.model.mesh_of(beam.start)
-    cuts = _stations(mesh)
+    cuts = stations(mesh)
     found = at_points(solution, mesh, cuts)
     arc = mesh.arc_length(cuts.element, cuts.xi)
     arc = np.where(cuts.xi == 0.0, mesh.vertices[cuts.element], arc)
@@ -47,7 +47,7 @@ def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, cuts: Cuts, p: np
     return cut_free(rows, mesh, elements, p).at(cuts)
 
 
-def _stations(mesh: BeamMesh) -> Cuts:
-    """Return the ends and Gauss points of every element."""
+def stations(mesh: BeamMesh) -> Cuts:
+    """Return the ends and Gauss points of every element of a beam."""
     own = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
     return Cuts(np.repeat(np.arange(mesh.elements), len(own)), np.tile(own, mesh.elements))

@@ -18,6 +18,7 @@ from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.registry import offered
 from beamfem.results import postprocess
+from beamfem.results.beam_stress import BeamStress, beam_stress
 from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
@@ -227,6 +228,11 @@ class Solution:
         """Return normal and shear force and moment at both ends of every element of a beam, and inside."""
         self.model.number_of(beam)  # refuses what is no beam of this model
         return section_forces(self, beam)
+
+    def stresses(self, beam: Beam) -> BeamStress:
+        """Return the extreme stresses of the sections of a beam at the stations of its section forces."""
+        self.model.number_of(beam)
+        return beam_stress(self, beam)
 
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:

@@ -34,8 +34,9 @@ def plot_shapes(
 
     path: where to write it (PNG, SVG, PDF; folders are made); colour: None for the time or load factor, or a field
     along the beams: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s],
-    "axial_strain" [-], "shear_angle" [rad]; shapes: how many steps; undeformed: dashed axes of the reference; supports
-    and loads: as engineers draw them, each load on the shape where it is largest.
+    "axial_strain" [-], "shear_angle" [rad], "stress" [Pa] (von Mises', the largest of a section), "utilisation" [-] of
+    the strength; shapes: how many steps; undeformed: dashed axes of the reference; supports and loads: as engineers
+    draw them, each load on the shape where it is largest.
     Raises InputError; BeamfemError without matplotlib.
     """
     if len(solution) == 0:

@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.results.along import AxisPoints, Quantity, quantity
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
 FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print
 _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
+_UNKNOWN = 0.8  # grey of what has no value
 _SLABS = 40_000  # of bodies in a picture; above, axes alone are drawn
 
 
@@ -71,7 +73,10 @@ class Shapes:
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""
         assert self.quantity is not None
-        return [self.quantity.values(points, self.solution, self.rows) for points in self.points]
+        found = [self.quantity.values(points, self.solution, self.rows) for points in self.points]
+        if not any(np.isfinite(values).any() for values in found):
+            raise InputError(f"no beam has a {self.quantity.label} to draw: {self.quantity.unknown}")
+        return found
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -131,7 +136,8 @@ class Shapes:
             slabs.append(slab.reshape(-1, 4, 2))
             means.append(0.5 * (value[:, :-1] + value[:, 1:]).ravel())
         low, high = self.limits
-        colours = colormaps[FIELD_COLOURS]((np.concatenate(means) - low) / (high - low))[:, :3]
+        fractions = (np.concatenate(means) - low) / (high - low)
+        colours = np.where(np.isfinite(fractions)[:, None], colormaps[FIELD_COLOURS](fractions)[:, :3], _UNKNOWN)
         # paler by white, not by transparency, which would show where slabs overlap
         strength = 0.35 + 0.65 * fraction
         colours = 1.0 - strength * (1.0 - colours)
@@ -152,7 +158,8 @@ class Shapes:
 
 def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
     """Return the smallest and the largest value, further apart where the values are constant up to round-off."""
-    low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+    known = [v[np.isfinite(v)] for v in values]
+    low, high = min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
     size = max(abs(low), abs(high))
     return (low, high) if high - low > 1e-9 * size else (low - (size or 1.0), high + (size or 1.0))
 

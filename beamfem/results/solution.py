@@ -297,6 +297,10 @@ class Solution:
         """Draw a quantity of points over the steps, or "energy"; return the figure."""
         return offered(Solution.plot_history)(self, point, quantity, path)
 
+    def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None) -> Any:
+        """Draw one quantity over another, such as ("fx", beam.start) over ("ux", beam.end); return the figure."""
+        return offered(Solution.plot_curve)(self, x, y, path)
+
     def plot_load_displacement(
         self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
     ) -> Any:

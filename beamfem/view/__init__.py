@@ -7,6 +7,7 @@ from beamfem.solve.modes.modes import Modes
 from beamfem.solve.stability.buckling import Buckling
 
 offer(Solution.plot, "beamfem.view.drawing:plot_shapes")
+offer(Solution.plot_curve, "beamfem.view.curve:plot_curve")
 offer(Solution.plot_history, "beamfem.view.history:plot_history")
 offer(Solution.plot_load_displacement, "beamfem.view.history:plot_load_displacement")
 offer(Solution.animate, "beamfem.view.animation:animate")

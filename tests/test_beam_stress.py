@@ -1,0 +1,122 @@
+"""Extreme stresses along beams against closed forms, as numbers and as colours."""
+
+import numpy as np
+import pytest
+from section_laws import LinearLaw
+
+import beamfem as bf
+from beamfem.io.samples import body
+
+STEEL = bf.Material(2e11, 0.3, 7800.0, strength=250e6)
+FORCE = 30.0
+
+
+def cantilever(section, material=STEEL, element=None, force=(0.0, -FORCE)):
+    own = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 4, element or bf.CRBF(3), section, material)
+    return own, bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, force)]))
+
+
+@pytest.mark.parametrize(
+    "element", [bf.CRBF(3), bf.ANCF(forces=bf.Structural()), bf.BilinearCRBF()], ids=lambda own: own.name
+)
+def test_stresses_of_a_rectangle_are_those_of_the_textbook(element):
+    width, height = 0.02, 0.04
+    own, solution = cantilever(bf.Rectangle(width, height), element=element)
+    found, forces = solution.stresses(own), solution.section_forces(own)
+    assert found.arc_length == pytest.approx(forces.arc_length)
+    bending = forces.moment * 0.5 * height / (width * height**3 / 12.0)
+    mean = forces.normal / (width * height)
+    assert found.upper == pytest.approx(mean - bending, abs=1e-6)
+    assert found.lower == pytest.approx(mean + bending, abs=1e-6)
+    assert found.tension == pytest.approx(np.maximum(found.upper, found.lower), abs=1e-6)
+    assert found.compression == pytest.approx(np.minimum(found.upper, found.lower), abs=1e-6)
+    assert found.shear == pytest.approx(1.5 * np.abs(forces.shear) / (width * height), rel=1e-9, abs=1e-6)
+    # at the free end the shear stress in the middle counts
+    faces = np.maximum(np.abs(found.upper), np.abs(found.lower))
+    assert found.von_mises == pytest.approx(np.maximum(faces, np.sqrt(3.0) * found.shear), rel=0.02)
+    assert found.von_mises[-1, 0] == pytest.approx(faces[-1, 0], rel=1e-9)
+    assert found.utilisation == pytest.approx(found.von_mises / 250e6)
+
+
+def test_the_peak_says_where_and_when():
+    own, solution = cantilever(bf.Rectangle(0.02, 0.04))
+    peak = solution.stresses(own).peak()
+    assert (peak.arc_length, peak.row) == (0.0, len(solution) - 1)
+    assert peak.value == pytest.approx(FORCE * 0.02 / (0.02 * 0.04**3 / 12.0), rel=1e-4)
+    assert solution.stresses(own).peak("compression").value == pytest.approx(-peak.value, rel=1e-4)
+    assert solution.stresses(own).peak("utilisation").value == pytest.approx(peak.value / 250e6)
+    with pytest.raises(bf.InputError, match="there is no stress 'mises'"):
+        solution.stresses(own).peak("mises")
+    with pytest.raises(bf.UnknownPointError):
+        solution.stresses(bf.Beam(own.curve, 4, bf.CRBF(3), own.section, STEEL))
+
+
+def test_layers_have_strengths_of_their_own():
+    """The stiff layer carries more stress, the weak one is used up first."""
+    weak = bf.Material(2e10, 0.3, 1000.0, strength=1e6)
+    strip = bf.Layered([bf.Layer(STEEL, 0.01), bf.Layer(weak, 0.02), bf.Layer(STEEL, 0.01)], 0.02)
+    own, solution = cantilever(strip, material=None)
+    found = solution.stresses(own)
+    stations = body(solution.model.meshes[0])
+    layers = [layer.arrays(solution, slice(-1, None)) for layer in stations]
+    assert found.tension[-1].max() == pytest.approx(max(part["stress_xx"].max() for part in layers), rel=1e-9)
+    used = [
+        part["von_mises_stress"].max() / own.strength for part, own in zip(layers, (STEEL, weak, STEEL), strict=True)
+    ]
+    assert np.argmax(used) == 1
+    assert found.utilisation[-1].max() == pytest.approx(max(used), rel=1e-9)
+
+
+def test_heat_that_only_strains_layers_against_each_other_is_seen():
+    warm = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1.2e-5)
+    warmer = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=2.4e-5)
+    strip = bf.Layered([bf.Layer(warm, 0.001), bf.Layer(warmer, 0.002), bf.Layer(warm, 0.001)], 0.01)
+    own = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 4, bf.CRBF(3), strip)
+    solution = bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [bf.Temperature(own, 100.0)]))
+    found = solution.stresses(own)
+    # half of the section expands by the mean, 0.6e-3 less or more than by itself
+    assert found.tension[-1] == pytest.approx(0.6e-3 * 2e11, rel=1e-9)
+    assert found.compression[-1] == pytest.approx(-0.6e-3 * 2e11, rel=1e-9)
+    assert found.lower[-1] == pytest.approx(0.6e-3 * 2e11, rel=1e-9)
+
+
+def test_what_is_not_known_is_no_number():
+    shapeless, _ = bf.Section(area=8e-4, second_moment=1e-7), None
+    for section, material in (
+        (shapeless, STEEL),
+        (LinearLaw(1e7, 1e6, 1e3, 1.0, 1e-4), None),
+        (bf.Section.from_stiffness(1e7, 1e6, 1e3, 1.0, 1e-4), STEEL),
+    ):
+        own, solution = cantilever(section, material)
+        found = solution.stresses(own)
+        assert np.isnan(found.von_mises).all()
+        assert np.isnan(found.peak().value)
+        with pytest.raises(bf.InputError, match="no beam has a von Mises stress to draw: sections tell a stress where"):
+            solution.plot(colour="stress")
+    own, solution = cantilever(bf.Rectangle(0.02, 0.04), bf.Material(2e11, 0.3, 7800.0))
+    assert np.isnan(solution.stresses(own).utilisation).all()
+    with pytest.raises(bf.InputError, match="strength"):
+        solution.plot(colour="utilisation")
+
+
+def test_a_beam_without_stress_does_not_take_it_from_others():
+    own = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 4, bf.CRBF(3), bf.Rectangle(0.02, 0.04), STEEL)
+    other = bf.Beam(bf.Line((1.0, 0.0), (2.0, 0.0)), 4, bf.CRBF(3), bf.Section(8e-4, 1e-7), STEEL)
+    loads, joints = [bf.PointForce(other.end, (0.0, -FORCE))], [bf.Rigid(own.end, other.start)]
+    solution = bf.solve_static(bf.Model([own, other], [bf.Clamp(own.start)], loads, joints))
+    figure = solution.plot(colour="stress")
+    assert figure.axes[1].get_ylabel() == "von Mises stress [Pa]"
+    peak = solution.stresses(own).peak().value
+    assert figure.axes[1].get_ylim()[1] == pytest.approx(peak, rel=0.05)
+
+
+def test_many_rows_are_worked_on_in_parts(monkeypatch):
+    own, solution = cantilever(bf.Rectangle(0.02, 0.04))
+    whole = solution.stresses(own)
+    monkeypatch.setattr("beamfem.results.beam_stress._VALUES", 10)
+    assert solution.stresses(own).von_mises == pytest.approx(whole.von_mises, rel=1e-12)
+
+
+def test_a_strength_is_a_positive_number():
+    with pytest.raises(bf.InputError, match="strength of Material"):
+        bf.Material(2e11, 0.3, 7800.0, strength=-1.0)

@@ -3,6 +3,7 @@
 import csv
 import sys
 from collections.abc import Sequence
+from html import escape
 from io import StringIO
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -58,6 +59,15 @@ def as_markdown(header: Sequence[str], rows: Rows) -> str:
     out = StringIO()
     Console(file=out, force_terminal=False, width=100_000).print(_table(escaped[0], escaped[1:], box.MARKDOWN))
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines() if line.strip())
+
+
+def as_html(header: Sequence[str], rows: Rows) -> str:
+    """Return a table for a notebook; no header where it is empty."""
+    style = "text-align: left; vertical-align: top"
+    head = "".join(f"<th style='{style}'>{escape(name)}</th>" for name in header)
+    lines = ("".join(f"<td style='{style}'>{escape(text)}</td>" for text in line) for line in cells(rows))
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<table>{f'<tr>{head}</tr>' if head else ''}{body}</table>"
 
 
 def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> None:

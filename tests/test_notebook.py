@@ -86,3 +86,45 @@ def test_several_beams_need_a_name(monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", sys)
     with pytest.raises(bf.InputError, match="3 beams"):
         frame().to_xarray()
+
+
+def test_a_figure_shows_itself():
+    """As PNG, which is what is asked of the last value of a cell, whatever backend is active."""
+    figure = cantilever().plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+def test_what_is_written_shows_itself(tmp_path):
+    solution = cantilever()
+    page = solution.to_html(tmp_path / "page.html")
+    assert page == tmp_path / "page.html"
+    assert page._repr_html_().startswith('<iframe srcdoc="&lt;!doctype html')
+    film = solution.animate(tmp_path / "film.gif")
+    assert film._repr_html_().startswith('<img src="data:image/gif;base64,')
+    film.unlink()
+    assert film._repr_html_() is None
+    assert (page.parent / "other.txt")._repr_html_() is None
+
+
+def test_modes_and_critical_loads_are_tables():
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    free = bf.solve_modes(bf.Model([beam]), count=4)
+    table = free._repr_html_()
+    assert table.count("<tr>") == 5
+    assert table.count("rigid: ") == 3
+    assert f"{free.frequencies[3]:.6g}" in table
+    column = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)], [bf.PointForce(beam.end, (-1.0, 0.0))])
+    buckling = bf.solve_buckling(column, count=2)
+    for load in buckling.load_factors:
+        assert f"{load:.6g}" in buckling._repr_html_()
+    assert "ended because 2 are asked for" in buckling._repr_html_()
+
+
+def test_sweeps_studies_and_stresses_are_tables():
+    found = bf.sweep(lambda load: {"sag": 2.0 * load}, load=[1.0, 2.0])
+    assert "<td style='text-align: left; vertical-align: top'>4</td>" in found._repr_html_()
+    study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[1, 2, 4, 8])
+    assert "Convergence of" in study._repr_html_()
+    solution = cantilever()
+    peaks = solution.stresses(solution.model.beams[0])._repr_html_()
+    assert f"{solution.stresses(solution.model.beams[0]).peak().value:.6g}" in peaks

@@ -2,6 +2,7 @@
 
 import textwrap
 from dataclasses import dataclass, field
+from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,10 @@ class Convergence:
         points = tabulate.as_text(*self.points(rounded=True), title=self.title)
         curves = tabulate.as_text(*self.summary())
         return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])
+
+    def _repr_html_(self) -> str:
+        points, curves = (tabulate.as_html(*table) for table in (self.points(rounded=True), self.summary()))
+        return f"<b>{escape(self.title)}</b>{points}{curves}"
 
     @property
     def title(self) -> str:

@@ -14,6 +14,7 @@ from beamfem.results.section_forces import at_points, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
+from beamfem.tabulate import as_html
 from beamfem.validation import require_known, shown
 
 if TYPE_CHECKING:
@@ -53,6 +54,11 @@ class BeamStress:
     utilisation: np.ndarray
 
     __repr__ = brief
+
+    def _repr_html_(self) -> str:
+        names = [name for name in self.__dataclass_fields__ if name != "arc_length"]
+        rows = [(name, *self.peak(name)) for name in names]  # type: ignore[arg-type]
+        return f"<b>Stress, peaks</b>{as_html(('', '[Pa], utilisation [-]', 'at arc length [m]', 'row'), rows)}"
 
     def peak(self, part: Part = "von_mises") -> Peak:
         """Return the largest value of one of these by its size, nan where none is known. Raises InputError."""

@@ -89,10 +89,12 @@ class Sweep:
     def __str__(self) -> str:
         header, rows = self._rows()
         note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
-        if len(rows) > _ROWS_PRINTED:
-            half = _ROWS_PRINTED // 2
-            rows = [*rows[:half], ["..."] * len(header), *rows[-half:]]
-        return "\n".join([tabulate.as_text(header, rows), note, *map(str, self.failures)])
+        return "\n".join([tabulate.as_text(header, _shortened(rows)), note, *map(str, self.failures)])
+
+    def _repr_html_(self) -> str:
+        header, rows = self._rows()
+        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
+        return f"<b>Sweep</b>{tabulate.as_html(header, _shortened(rows))}{note}"
 
     def to_markdown(self) -> str:
         """Return the table of all points as Markdown."""
@@ -101,6 +103,14 @@ class Sweep:
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table of all points with every digit."""
         tabulate.write_csv(path, *self._rows())
+
+
+def _shortened(rows: list[list[Any]]) -> list[list[Any]]:
+    """Return the first and the last of many rows."""
+    if len(rows) <= _ROWS_PRINTED:
+        return rows
+    half = _ROWS_PRINTED // 2
+    return [*rows[:half], ["..."] * len(rows[0]), *rows[-half:]]
 
 
 def sweep(

@@ -16,6 +16,7 @@ from beamfem.view.drawing import bar, equal_axes
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.held import PRESCRIBED, draw_joints, draw_supports
 from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+from beamfem.view.written import WrittenFile
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more
 _FINEST = 1000  # pixels an inch: pictures of some inches have a hundred million
@@ -59,7 +60,7 @@ def animate(
     frames = _frames(shapes, undeformed, supports, loads, dpi)
     with whole(target) as partial:
         write(partial, frames, duration)
-    return target
+    return WrittenFile(target)
 
 
 def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: int) -> Iterator[np.ndarray]:

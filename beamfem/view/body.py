@@ -19,6 +19,7 @@ from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
 from beamfem.view.rendering import ADVICE, can_render, has_display
 from beamfem.view.shapes import FIELD_COLOURS, Shapes
+from beamfem.view.written import WrittenFile
 
 _POINTS = 6000  # of all beams
 _ROWS = 400  # that the slider knows
@@ -48,14 +49,14 @@ def picture(
     if not can_render():
         warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=3)
         plot_shapes(one_row(solution, number), target, colour)
-        return target
+        return WrittenFile(target)
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
     scene.show_row(0)
     scene.look()
     with whole(target) as partial:
         scene.plotter.screenshot(str(partial))
     scene.plotter.close()
-    return target
+    return WrittenFile(target)
 
 
 def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:

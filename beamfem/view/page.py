@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from beamfem.files import path_of, whole
+from beamfem.view.written import WrittenFile
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem }
@@ -60,7 +61,7 @@ def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> 
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
     with whole(target) as partial:
         partial.write_text(f"{page}<body><h1>{escape(title)}</h1>{body}</body></html>\n", encoding="utf-8")
-    return target
+    return WrittenFile(target)
 
 
 def _part(part: Part) -> str:

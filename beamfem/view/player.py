@@ -19,6 +19,7 @@ from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.held import joints_of, supports_of
 from beamfem.view.shapes import Shapes, limits
 from beamfem.view.summary import model_rows, solution_rows
+from beamfem.view.written import WrittenFile
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third
 _FORCES = ("moment", "normal", "shear")
@@ -47,7 +48,7 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
     page = template.replace("@TITLE@", escape(heading)).replace("@TABLE@", table).replace("@DATA@", data)
     with whole(target) as partial:
         partial.write_text(page, encoding="utf-8")
-    return target
+    return WrittenFile(target)
 
 
 def _data(solution: Solution, frames: int) -> dict[str, Any]:

@@ -15,10 +15,11 @@ def empty_figure(width: float, height: float, layout: Any = "constrained") -> An
     """Return a figure [inch], by default one that lays itself out. Raises BeamfemError without matplotlib."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
+
+        from beamfem.view.figure import ShownFigure
     except ImportError:
         raise BeamfemError("pictures need matplotlib: pip install beamfem[plot]") from None
-    figure = Figure(figsize=(width, height), layout=layout, dpi=100)
+    figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure
 

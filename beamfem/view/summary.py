@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.model import Model
+from beamfem.tabulate import as_html
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
+    from beamfem.solve.modes.modes import Modes
+    from beamfem.solve.stability.buckling import Buckling
 
 _BEAMS = 12  # listed each
 
@@ -65,13 +68,30 @@ def largest_displacement(solution: "Solution") -> tuple[str, str]:
 
 def model_table(model: Model) -> str:
     """Return a model as an HTML table."""
-    return f"<b>Model</b>{_table(model_rows(model))}{_beams(model)}"
+    return f"<b>Model</b>{as_html((), model_rows(model))}{_beams(model)}"
 
 
 def solution_table(solution: "Solution") -> str:
     """Return a solution and its model as an HTML table."""
     kind = type(solution).__name__ + (" of statics" if solution.static else " of a motion")
-    return f"<b>{kind}</b>{_table(solution_rows(solution) + model_rows(solution.model))}"
+    return f"<b>{kind}</b>{as_html((), solution_rows(solution) + model_rows(solution.model))}"
+
+
+def modes_table(modes: "Modes") -> str:
+    """Return the frequencies of modes as an HTML table."""
+    rows = []
+    for number, (frequency, growth) in enumerate(zip(modes.frequencies.tolist(), modes.growth.tolist(), strict=True)):
+        what = f"rigid: {modes.rigid[number]}" if number < len(modes.rigid) else "grows" if growth > 0.0 else ""
+        rows.append((number, frequency, growth, what))
+    return f"<b>Modes</b>{as_html(('mode', 'frequency [Hz]', 'growth [1/s]', ''), rows)}"
+
+
+def buckling_table(buckling: "Buckling") -> str:
+    """Return critical load factors as an HTML table."""
+    parts = (buckling.load_factors.tolist(), buckling.kinds, buckling.uncertainty.tolist())
+    rows = [(number, *row) for number, row in enumerate(zip(*parts, strict=True))]
+    table = as_html(("mode", "load factor", "kind", "uncertainty"), rows)
+    return f"<b>Buckling</b>{table}{escape(f'ended because {buckling.ended}')}"
 
 
 def _beams(model: Model) -> str:
@@ -84,16 +104,7 @@ def _beams(model: Model) -> str:
         ends = [_place(x, y) for x, y in (mesh.position[0], mesh.position[-1])]
         kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
         lines.append((str(number), *ends, f"{beam.curve.length:.4g}", *kind))
-    return _table(lines, head)
-
-
-def _table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
-    style = "text-align: left; vertical-align: top"
-    top = "<tr>" + "".join(f"<th style='{style}'>{escape(name)}</th>" for name in head) + "</tr>" if head else ""
-    body = "".join(
-        "<tr>" + "".join(f"<td style='{style}'>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table>{top}{body}</table>"
+    return as_html(head, lines)
 
 
 def _place(x: float, y: float) -> str:

@@ -52,6 +52,9 @@ class Modes:
         listed = ", ".join(f"{value:.6g}" for value in self.frequencies[:12])
         return f"Modes({listed}{' ...' if len(self) > 12 else ''} Hz)"
 
+    def _repr_html_(self) -> str:
+        return offered(Modes._repr_html_)(self)
+
     def __len__(self) -> int:
         return len(self.frequencies)
 

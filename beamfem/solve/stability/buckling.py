@@ -63,6 +63,9 @@ class Buckling:
         listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points)
         return f"Buckling({listed or 'no critical point'}; ended because {self.ended})"
 
+    def _repr_html_(self) -> str:
+        return offered(Buckling._repr_html_)(self)
+
     def __len__(self) -> int:
         return len(self.load_factors)
 

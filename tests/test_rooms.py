@@ -48,6 +48,7 @@ ROOMS = (
     "progress",
     "memory",
     "registry",
+    "units",
     "validation",
     "errors",
 )

@@ -1,12 +1,14 @@
 """What varies along a beam over the steps, as labelled arrays."""
 
 from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
 from beamfem.model.beam import Beam
+from beamfem.model.model import Model
 from beamfem.results.along import QUANTITIES, AxisPoints
 
 if TYPE_CHECKING:
@@ -24,7 +26,7 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
     Coordinates: time [s] or load_factor (row,), arc_length [m], x0, y0 [m] of the reference (station,). Elements that
     meet both have a station at their common end, where section forces may jump.
     """
-    mesh = solution.model.meshes[solution.model.number_of(beam)]
+    mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(_about, solution.model)
     points = AxisPoints(mesh, _PIECES)
     rows = np.arange(len(solution))
     along = ("row", "station")
@@ -32,24 +34,24 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
     moved = r - points.reference
     data: dict[str, Variable] = {}
     for axis, name in enumerate("xy"):
-        data[name] = along, r[..., axis], _about(f"position {name}", "m")
-        data[f"u{name}"] = along, moved[..., axis], _about(f"displacement {name}", "m")
+        data[name] = along, r[..., axis], about(f"position {name}", "m")
+        data[f"u{name}"] = along, moved[..., axis], about(f"displacement {name}", "m")
         if not solution.static:
             rate = points.velocities(solution.p, solution.v)[..., axis]
-            data[f"v{name}"] = along, rate, _about(f"velocity {name}", "m/s")
+            data[f"v{name}"] = along, rate, about(f"velocity {name}", "m/s")
     for name in ("rotation", "normal", "shear", "moment", "axial_strain", "shear_angle"):
         quantity = QUANTITIES[name]
         values = quantity.values(points, solution, rows)
-        data[name] = along, values, _about(quantity.label, quantity.unit)
+        data[name] = along, values, about(quantity.label, quantity.unit)
     energy = solution.energy()
     for name in ("kinetic", "strain", "potential"):
-        data[f"{name}_energy"] = ("row",), getattr(energy, name), _about(f"{name} energy of the model", "J")
+        data[f"{name}_energy"] = ("row",), getattr(energy, name), about(f"{name} energy of the model", "J")
     at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
     coordinates: dict[str, Variable] = {
-        at[0]: (("row",), solution.at, _about(at[1], at[2])),
-        "arc_length": (("station",), points.arc_length, _about("arc length in the reference", "m")),
-        "x0": (("station",), points.reference[:, 0], _about("reference x", "m")),
-        "y0": (("station",), points.reference[:, 1], _about("reference y", "m")),
+        at[0]: (("row",), solution.at, about(at[1], at[2])),
+        "arc_length": (("station",), points.arc_length, about("arc length in the reference", "m")),
+        "x0": (("station",), points.reference[:, 0], about("reference x", "m")),
+        "y0": (("station",), points.reference[:, 1], about("reference y", "m")),
     }
     return data, coordinates
 
@@ -72,5 +74,5 @@ def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
     return xarray.Dataset(data, coordinates, asdict(solution.statistics))
 
 
-def _about(name: str, unit: str) -> dict[str, str]:
-    return {"long_name": name, "units": "1" if unit == "-" else unit}
+def _about(model: Model, name: str, unit: str) -> dict[str, str]:
+    return {"long_name": name, "units": "1" if unit in ("-", "1") else model.unit(unit)}

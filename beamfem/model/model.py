@@ -26,8 +26,10 @@ from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
 from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
 from beamfem.registry import offered
+from beamfem.units import Units, units_of
 from beamfem.validation import convert, items, shown
 
+_LISTS = ("beams", "supports", "loads", "joints", "connectors")
 _AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
 _ON_BEAM = DistributedLoad | Pressure | ImposedStrain | Foundation
 
@@ -38,7 +40,8 @@ class Model:
 
     Supports, joints, point loads and kinks of loads along beams put a mesh node at their point. Points that are joined
     may be apart by 1e-5 of the longer beam: the second is moved to the first, free of stress. connectors: what adds
-    forces by a rule of its own, see `Contribution`.
+    forces by a rule of its own, see `Contribution`. units: of the numbers, such as "N, mm", any consistent ones, for
+    labels of pictures and tables.
     Raises InputError, UnknownPointError.
     """
 
@@ -47,19 +50,21 @@ class Model:
     loads: Sequence[Load] = ()
     joints: Sequence[Joint] = ()
     connectors: Sequence[Contribution] = ()
+    units: str = "N, m, s"
 
     def __getstate__(self) -> dict[str, object]:
         """Copies and other processes make their meshes anew: what is kept here knows beams by identity."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
-        parts = [(name[:-1], getattr(self, name)) for name in self.__dataclass_fields__]
+        parts = [(name[:-1], getattr(self, name)) for name in _LISTS]
         counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
         kinds_of: tuple[Any, ...] = (Beam, Support, Load, Joint, Contribution)
-        for name, kinds in zip(self.__dataclass_fields__, kinds_of, strict=True):
+        _ = self._units
+        for name, kinds in zip(_LISTS, kinds_of, strict=True):
             convert(self, items, name)
             object.__setattr__(self, name, tuple(getattr(self, name)))
             for item in getattr(self, name):
@@ -107,6 +112,14 @@ class Model:
                 f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide, "
                 f"to {GAP:g} of the longer beam"
             )
+
+    @cached_property
+    def _units(self) -> Units:
+        return units_of(self.units)
+
+    def unit(self, unit: str) -> str:
+        """Return the name of the model's unit in the place of one of SI, such as "N m"."""
+        return self._units.of(unit)
 
     @cached_property
     def _numbers(self) -> dict[int, int]:

@@ -69,7 +69,7 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     What stands still is drawn once.
     """
     solution = shapes.solution
-    figure, axes = equal_axes(shapes.box, shapes.quantity is not None)
+    figure, axes = equal_axes(shapes.box, shapes.quantity is not None, shapes.solution.model.unit("m"))
     figure.set_dpi(dpi)
     size = np.ceil(figure.get_size_inches() * dpi / 2.0) * 2.0
     figure.set_size_inches(size / dpi)

@@ -118,7 +118,7 @@ class _Scene:
             options = {"scalars": "layer", "rgb": True}
         if shapes.quantity is not None:
             self.surface["field"] = self._values(0)
-            title = f"{shapes.quantity.label} [{shapes.quantity.unit}]"
+            title = shapes.label
             bar = {"title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.25,
                    "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.3g", "title_font_size": 18,
                    "label_font_size": 16}  # fmt: skip

@@ -60,7 +60,7 @@ def _taken(solution: Solution, which: str, given: Quantity) -> tuple[str, np.nda
         require_known(f"{which} of a curve is no {shown(given[0])} of a point", given[0], _OF_POINT)
         label, unit, value = _OF_POINT[given[0]]
         at = given[1].reference
-        return f"{label} at ({at[0]:.4g}, {at[1]:.4g}) [{unit}]", value(solution, given[1])
+        return f"{label} at ({at[0]:.4g}, {at[1]:.4g}) [{solution.model.unit(unit)}]", value(solution, given[1])
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:
         values = np.asarray(numbers, dtype=float)

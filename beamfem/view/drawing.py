@@ -47,7 +47,7 @@ def plot_shapes(
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
-    figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED)
+    figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED, solution.model.unit("m"))
     if undeformed:
         draw_undeformed(axes, drawn.points)
     for order in range(len(rows)):
@@ -70,15 +70,15 @@ def plot_shapes(
     return figure
 
 
-def equal_axes(box: np.ndarray, with_bar: bool) -> tuple[Any, Any]:
-    """Return a figure and axes [m] of equal scale around a box (2, 2) [m], with room for symbols around it."""
+def equal_axes(box: np.ndarray, with_bar: bool, unit: str) -> tuple[Any, Any]:
+    """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it."""
     scale = _LONGER_SIDE / _extent(box)
     inches = np.maximum((box[1] - box[0]) * scale + 2.0 * _ROOM, _LEAST)
     right = _BAR if with_bar else _RIGHT
     figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP, layout=None)
     width, height = figure.get_size_inches()
     axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
-    frame(axes, box.mean(axis=0), inches / scale, inches)
+    frame(axes, box.mean(axis=0), inches / scale, inches, unit)
     return figure, axes
 
 
@@ -87,16 +87,16 @@ def _extent(box: np.ndarray) -> float:
     return float(np.max(box[1] - box[0])) or 1.0
 
 
-def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray) -> None:
-    """Set limits of equal scale around a middle (2,) [m] and label the axes; size (2,) [m] takes inches (2,)."""
+def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray, unit: str) -> None:
+    """Set limits of equal scale around a middle (2,) [unit] and label the axes; size (2,) [unit] takes inches (2,)."""
     quiet(axes)
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(middle[0] - 0.5 * size[0], middle[0] + 0.5 * size[0])
     axes.set_ylim(middle[1] - 0.5 * size[1], middle[1] + 0.5 * size[1])
     for name, length, apart in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
         axes.locator_params(axis=name, nbins=int(np.clip(length / apart, 2, 9)))
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
+    axes.set_xlabel(f"x [{unit}]")
+    axes.set_ylabel(f"y [{unit}]")
 
 
 def bar(figure: Any, axes: Any, shapes: Shapes) -> None:
@@ -106,8 +106,7 @@ def bar(figure: Any, axes: Any, shapes: Shapes) -> None:
 
     assert shapes.quantity is not None
     colours = ScalarMappable(Normalize(*shapes.limits), FIELD_COLOURS)
-    label = f"{shapes.quantity.label} [{shapes.quantity.unit}]"
-    _add_bar(figure, axes, colours, label)
+    _add_bar(figure, axes, colours, shapes.label)
 
 
 def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -> None:

@@ -35,7 +35,7 @@ def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
 
 def axis_of_rows(solution: Solution) -> tuple[str, str]:
     """Return name and unit of what runs from row to row."""
-    return ("load factor", "-") if solution.static else ("time", "s")
+    return ("load factor", "-") if solution.static else ("time", solution.model.unit("s"))
 
 
 def moment_of(solution: Solution, row: int) -> str:
@@ -43,4 +43,4 @@ def moment_of(solution: Solution, row: int) -> str:
     value = float(solution.at[row])
     if isinstance(solution, Path):
         return f"load factor {value:.4g}, row {row}"
-    return f"load factor {value:.3g}" if solution.static else f"t = {value:.3g} s"
+    return f"load factor {value:.3g}" if solution.static else f"t = {value:.3g} {solution.model.unit('s')}"

@@ -71,7 +71,7 @@ def plot_history(
             axes.plot(solution.at, curve, style, color=colour, marker=marker, markersize=4, linewidth=1.5, label=name)
     name, axis_unit = axis_of_rows(solution)
     axes.set_xlabel(f"{name} [{axis_unit}]")
-    axes.set_ylabel(f"{label} [{unit}]")
+    axes.set_ylabel(f"{label} [{solution.model.unit(unit)}]")
     axes.margins(x=0.02)
     if several:
         figure.legend(loc="outside upper center", ncols=4 if len(parts) == 1 else 2, frameon=False)
@@ -112,7 +112,7 @@ def plot_load_displacement(
                 )
         if solution.limit_points or solution.bifurcations:
             figure.legend(loc="outside upper center", ncols=2, frameon=False)
-    axes.set_xlabel(f"{label} at ({point.reference[0]:.4g}, {point.reference[1]:.4g}) [{unit}]")
+    axes.set_xlabel(f"{label} at ({point.reference[0]:.4g}, {point.reference[1]:.4g}) [{solution.model.unit(unit)}]")
     axes.set_ylabel("load factor [-]")
     axes.margins(0.06)
     if path is not None:

@@ -1,5 +1,6 @@
 """Actuation and heat in a drawing: named beside the middle of their beams."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +28,7 @@ def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[ImposedStrai
             outward = -outward
         lines = beside[id(load.beam)] = beside.get(id(load.beam), 0) + 1
         yield axes.annotate(
-            _words(load, weight),
+            _words(load, weight, solution.model.unit),
             at,
             lines * _APART * outward,
             textcoords="offset points",
@@ -39,12 +40,12 @@ def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[ImposedStrai
         )
 
 
-def _words(load: ImposedStrain, weight: float) -> str:
+def _words(load: ImposedStrain, weight: float, named: Callable[[str], str]) -> str:
     parts = []
     for name, unit in zip(load.along, load.units, strict=True):
         value = getattr(load, name)
         if callable(value):
             parts.append(f"{name} varies")
         elif value:
-            parts.append(f"{name} {weight * value:.4g} {unit}".rstrip())
+            parts.append(f"{name} {weight * value:.4g} {named(unit)}".rstrip())
     return f"{type(load).__name__.lower()}: {', '.join(parts)}"

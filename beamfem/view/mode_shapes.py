@@ -71,7 +71,7 @@ def _plot(
     solutions = [modes.solution(mode) for mode in range(number)]
     shapes = [Shapes(own, rows(mode, own), total=1000) for mode, own in enumerate(solutions)]
     box = np.stack([np.min([own.box[0] for own in shapes], axis=0), np.max([own.box[1] for own in shapes], axis=0)])
-    size = box[1] - box[0]
+    size, unit = box[1] - box[0], modes.model.unit("m")
     columns = min(number, 2 if size[0] > 1.5 * size[1] else 3)
     lines = -(-number // columns)
     height = np.clip(_WIDTH * size[1] / size[0] if size[0] > 0.0 else np.inf, _LEAST_HEIGHT, 1.4 * _WIDTH) + 0.7
@@ -84,7 +84,7 @@ def _plot(
             own.draw(axes, order, (order + 1) / len(own.rows))
         draw_supports(axes, own.solution, int(own.rows[-1]), own.centre)
         draw_joints(axes, own.solution, int(own.rows[-1]))
-        frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]))
+        frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]), unit)
         axes.set_title(title(mode), fontsize=10)
         axes.label_outer()
     for axes in grid.flat[number:]:

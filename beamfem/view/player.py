@@ -75,6 +75,7 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "labels": [moment_of(solution, row) for row in rows],
         "at": [float(f"{solution.at[row]:.7g}") for row in rows],
         "axis": f"{name} [{unit}]",
+        "length": solution.model.unit("m"),
         "moved": [float(f"{value:.5g}") for value in np.concatenate(moved, axis=1).max(axis=1)],
         "points": _text(numbers),
         "reference": _text(
@@ -113,7 +114,7 @@ def _fields(shapes: Shapes) -> list[dict[str, Any]]:
             parts = [quantity.values(points, solution, rows) for points in shapes.points]
         low, high = limits(parts)
         levels = np.round((np.concatenate(parts, axis=1) - low) / (high - low) * 255.0).astype(np.uint8)
-        label = f"{quantity.label} [{quantity.unit}]"
+        label = f"{quantity.label} [{solution.model.unit(quantity.unit)}]"
         found.append({"name": name, "label": label, "low": low, "high": high, "values": _text(levels)})
     return found
 

@@ -69,6 +69,12 @@ class Shapes:
     def quantity(self) -> Quantity | None:
         return None if self.colour is None else quantity(self.colour)
 
+    @property
+    def label(self) -> str:
+        """Name and unit of the field."""
+        assert self.quantity is not None
+        return f"{self.quantity.label} [{self.solution.model.unit(self.quantity.unit)}]"
+
     @cached_property
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""

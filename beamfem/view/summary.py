@@ -20,10 +20,10 @@ _BEAMS = 12  # listed each
 
 def model_rows(model: Model) -> list[tuple[str, str]]:
     """Return what a model consists of, as name and text."""
-    elements = sum(mesh.elements for mesh in model.meshes)
+    elements, length = sum(mesh.elements for mesh in model.meshes), sum(beam.curve.length for beam in model.beams)
     names = ", ".join(dict.fromkeys(mesh.beam.element.name for mesh in model.meshes))
     rows = [
-        ("beams", f"{len(model.beams)}, {sum(beam.curve.length for beam in model.beams):.4g} m long in all"),
+        ("beams", f"{len(model.beams)}, {length:.4g} {model.unit('m')} long in all"),
         ("elements", f"{elements} ({names})"),
         ("coordinates", str(model.size)),
         ("supports", _kinds(model.supports)),
@@ -36,7 +36,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
 def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     """Return how a solution was found and where it ends, as name and text."""
     statistics = solution.statistics
-    name, unit = ("load factor", "") if solution.static else ("time", " s")
+    name, unit = ("load factor", "") if solution.static else ("time", f" {solution.model.unit('s')}")
     rows = [("rows", str(len(solution)))]
     if len(solution):
         rows.append((name, f"{solution.at[0]:.6g} to {solution.at[-1]:.6g}{unit}"))
@@ -63,7 +63,9 @@ def largest_displacement(solution: "Solution") -> tuple[str, str]:
         best = int(np.linalg.norm(moved, axis=1).argmax())
         found.append((float(np.linalg.norm(moved[best])), moved[best], points.reference[best]))
     size, (ux, uy), (x, y) = max(found, key=lambda item: item[0])
-    return "largest displacement", f"{size:.4g} m: ({ux:.4g}, {uy:.4g}) m at {_place(x, y)}, in the last row"
+    length = solution.model.unit("m")
+    moved = f"{size:.4g} {length}: ({ux:.4g}, {uy:.4g}) {length}"
+    return "largest displacement", f"{moved} at {_place(x, y)}, in the last row"
 
 
 def model_table(model: Model) -> str:
@@ -95,7 +97,8 @@ def buckling_table(buckling: "Buckling") -> str:
 
 
 def _beams(model: Model) -> str:
-    head = ("beam", "from [m]", "to [m]", "length [m]", "element", "elements", "forces")
+    unit = model.unit("m")
+    head = ("beam", f"from [{unit}]", f"to [{unit}]", f"length [{unit}]", "element", "elements", "forces")
     lines = []
     for number, (beam, mesh) in enumerate(zip(model.beams, model.meshes, strict=True)):
         if number == _BEAMS:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from beamfem.assembly.system import System
@@ -131,6 +132,11 @@ def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
     loads = items("loads", LOADS, lambda item: Model(all_beams, loads=[item]))
     joints = items("joints", JOINTS, lambda item: Model(all_beams, joints=[item]))
     whole = Model(all_beams, supports, loads, joints)
+    if "units" in root.values:
+        try:
+            whole = replace(whole, units=root.text("units"))
+        except InputError as error:
+            raise root.error(str(error), "units") from None
     _require_compatible(root, whole, not moving)
     return whole
 

@@ -18,6 +18,7 @@ from beamfem.model.model import Model
 
 _KEYS = (
     "title",
+    "units",
     "materials",
     "sections",
     "elements",

@@ -1,0 +1,52 @@
+"""Units that a model is written in, for labels of pictures and tables; nothing is ever converted."""
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from beamfem.errors import InputError
+from beamfem.validation import nearest, text
+
+FORCES = ("N", "mN", "uN", "nN", "daN", "kN", "MN", "lbf", "kip", "kgf")
+LENGTHS = ("m", "mm", "um", "nm", "cm", "dm", "km", "in", "ft")
+TIMES = ("s", "ms", "us", "ns", "min")
+_STRESS = {("N", "m"): "Pa", ("N", "mm"): "MPa", ("kN", "m"): "kPa", ("MN", "m"): "MPa", ("kN", "mm"): "GPa"}
+_STRESS |= {("lbf", "in"): "psi", ("kip", "in"): "ksi", ("uN", "um"): "MPa", ("mN", "mm"): "kPa"}
+
+
+@dataclass(frozen=True)
+class Units:
+    """Names of the units of force, length and time."""
+
+    force: str = "N"
+    length: str = "m"
+    time: str = "s"
+
+    def of(self, unit: str) -> str:
+        """Return what takes the place of an SI unit such as "N m", "m/s", "Pa" or "J"; others stay as they are."""
+        parts = {
+            "N": self.force,
+            "m": self.length,
+            "s": self.time,
+            "J": "J" if (self.force, self.length) == ("N", "m") else f"{self.force} {self.length}",
+            "Pa": _STRESS.get((self.force, self.length), f"{self.force}/{self.length}^2"),
+            "Hz": "Hz" if self.time == "s" else f"1/{self.time}",
+        }
+        return re.sub(r"[A-Za-z]+", lambda found: parts.get(found[0], found[0]), unit)
+
+
+def units_of(given: Any) -> Units:
+    """Return the units of a text such as "N, mm" or "kN, m, s", in any order. Raises InputError."""
+    found: dict[str, str] = {}
+    kinds = {"force": FORCES, "length": LENGTHS, "time": TIMES}
+    for name in (part.strip() for part in text("units", given).split(",")):
+        kind = next((kind for kind, names in kinds.items() if name in names), None)
+        if kind is None:
+            known = [*FORCES, *LENGTHS, *TIMES]
+            raise InputError(
+                f'units are a force, a length and a time, such as "N, mm, s": {name!r} is none; {nearest(name, known)}'
+            )
+        if kind in found:
+            raise InputError(f'units are one force, one length and one time, such as "N, mm, s", got {given!r}')
+        found[kind] = name
+    return Units(**found)

@@ -249,6 +249,10 @@ class Model:
     def foundations(self) -> tuple[Foundation, ...]:
         return tuple(support for support in self.supports if isinstance(support, Foundation))
 
+    def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
+        """Return the model with its axes displaced by a mode, up to `size` [m], and free of stress there."""
+        return offered(Model.with_imperfection)(self, modes, size, mode)
+
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw the model before any solve, with its supports and loads; return the figure."""
         return offered(Model.plot)(self, path)

@@ -1,0 +1,158 @@
+"""Models that are crooked by a share of a mode from the start, and free of stress so."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, is_dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from beamfem.assembly.system import system_of
+from beamfem.curves import Chain, Curve, spline_through_hermite
+from beamfem.errors import InputError
+from beamfem.model.beam import Beam, Point
+from beamfem.model.load import functions_along
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.results.postprocess import axis, nodal_velocities
+from beamfem.section.protocol import CrossSection
+from beamfem.validation import finite, number_below, shown, squared
+
+_PIECES = 4  # cubics of the crooked axis in an element
+
+
+@dataclass(frozen=True)
+class _Crooked:
+    """A beam in the place of another: old and new arc lengths (k,) [m] of the same points."""
+
+    beam: Beam
+    old: np.ndarray
+    new: np.ndarray
+
+    def fraction(self, fraction: float) -> float:
+        at = np.interp(fraction * self.old[-1], self.old, self.new) / self.new[-1]
+        return fraction if fraction in (0.0, 1.0) else float(at)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A function of the arc length of a straighter beam, at that of the same points of a crooked one."""
+
+    function: Callable[[float], Any]
+    old: tuple[float, ...]
+    new: tuple[float, ...]
+
+    def __call__(self, arc_length: float) -> Any:
+        """Return the value at an arc length [m]."""
+        return self.function(float(np.interp(arc_length, self.new, self.old)))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Arc lengths [m] of the kinks that the function declares. Raises AttributeError where it declares none."""
+        kinks: tuple[float, ...] = self.function.kinks  # type: ignore[attr-defined]
+        return tuple(float(np.interp(kink, self.old, self.new)) for kink in kinks)
+
+
+def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> Model:
+    """Return the model with the axes of its beams displaced by a mode, up to `size` [m], free of stress there.
+
+    modes: of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: which of them. Axes become
+    cubic splines, `4` an element; elements, sections, supports, joints and loads stay at their points. Raises
+    InputError for modes of a model of another size, or where nothing moves.
+    """
+    shape, size = _shape(model, modes, mode), squared(finite)("size", size)
+    reference = system_of(model, static=True).reference
+    moved = [_rates(mesh, reference, shape) for mesh in model.meshes]
+    largest = max(float(np.linalg.norm(position, axis=-1).max()) for position, _ in moved)
+    if largest == 0.0:
+        raise InputError("this mode moves no point of an axis, so it makes no imperfection")
+    crooked = {
+        id(mesh.beam): _crooked(mesh, *(size / largest * own for own in rates))
+        for mesh, rates in zip(model.meshes, moved, strict=True)
+    }
+    beams = [crooked[id(beam)].beam for beam in model.beams]
+    parts = (model.supports, model.loads, model.joints, model.connectors)
+    supports, loads, joints, connectors = ([_placed(item, crooked) for item in part] for part in parts)
+    return Model(beams, supports, loads, joints, connectors, model.units)
+
+
+def _shape(model: Model, modes: Any, mode: int) -> np.ndarray:
+    found = getattr(modes, "modes", modes)
+    if found is not modes:
+        found = found[number_below("mode", mode, len(found))]
+    try:
+        shape = np.asarray(found, dtype=complex)
+    except (TypeError, ValueError):
+        shape = np.empty(0)
+    if shape.shape != (model.size,) or not np.isfinite(shape).all():
+        raise InputError(
+            f"an imperfection needs the modes of this model, with {model.size} coordinates, as solve_buckling returns "
+            f"them, got {shown(modes)}"
+        )
+    return shape.real
+
+
+def _places(mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Element and xi (ne * 5,) of the ends of the cubics."""
+    return np.repeat(np.arange(mesh.elements), _PIECES + 1), np.tile(np.linspace(0.0, 1.0, _PIECES + 1), mesh.elements)
+
+
+def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacements and their derivatives by the arc length (ne * 5, 2) of a mode (n,)."""
+    element, xi = _places(mesh)
+    found = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
+    return found.r[0], found.r_s[0]
+
+
+def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
+    beam, curve = mesh.beam, mesh.beam.curve
+    element, xi = _places(mesh)
+    inside = mesh.arc_length_inside(element, xi, curve.corners)
+    at = mesh.arc_length(element, xi)
+    position, rate = curve.position(at) + moved, curve.tangent(inside) + slope
+    # ends of elements: one point, with the mean of the slopes on both sides, but at corners
+    first = np.arange(_PIECES + 1, len(at), _PIECES + 1)
+    corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)
+    rate[first - 1], rate[first] = (
+        np.where(corner[:, None], rate[first - 1], 0.5 * (rate[first - 1] + rate[first])),
+        np.where(corner[:, None], rate[first], 0.5 * (rate[first - 1] + rate[first])),
+    )
+    stops = [0, *first[corner].tolist(), len(at)]
+    pieces, old, new = list[Curve](), [np.zeros(1)], [np.zeros(1)]
+    for begin, end in pairwise(stops):
+        kept = np.setdiff1d(np.arange(begin, end), first[~corner])
+        spline = spline_through_hermite(at[kept], position[kept], rate[kept])
+        old.append(at[kept][1:])
+        new.append(new[-1][-1] + spline.arc_length(at[kept])[1:])
+        pieces.append(spline)
+    before, after = np.concatenate(old), np.concatenate(new)
+    line = pieces[0] if len(pieces) == 1 else Chain(tuple(pieces))
+    ends = np.interp(mesh.vertices, before, after) / after[-1]
+    ends[0], ends[-1] = 0.0, 1.0
+    section = beam.section
+    if not isinstance(section, CrossSection):
+        section = _along(section, before, after)
+    straight = replace(beam, curve=line, elements=tuple(ends.tolist()), section=section)
+    return _Crooked(straight, before, after)
+
+
+def _along(function: Any, old: np.ndarray, new: np.ndarray) -> Moved:
+    return Moved(function, tuple(old.tolist()), tuple(new.tolist()))
+
+
+def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
+    """Return a support, load, joint or connector at the same points of the crooked beams."""
+    if isinstance(item, Beam):
+        return crooked[id(item)].beam
+    if isinstance(item, Point):
+        own = crooked[id(item.beam)]
+        return Point(own.beam, own.fraction(item.fraction))
+    if isinstance(item, tuple | list):
+        return type(item)(_placed(part, crooked) for part in item)
+    if not is_dataclass(item) or isinstance(item, type):
+        return item
+    changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
+    if hasattr(item, "along"):
+        own = crooked[id(item.beam)]  # type: ignore[attr-defined]
+        changes |= {name: _along(function, own.old, own.new) for name, function in functions_along(item).items()}  # type: ignore[arg-type]
+    return replace(item, **changes)

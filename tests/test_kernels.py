@@ -65,7 +65,7 @@ def test_predicted_stresses_of_no_step_are_the_true_ones(element, rng):
     system = System(bf.Model([beam(element)]), static=True)
     p = system.reference + 0.1 * rng.standard_normal(system.model.size)
     rest = np.zeros_like(p)
-    stresses = predicted_stresses(system, p, rest)
+    stresses = predicted_stresses(system, p, rest, 0.0)
     plain = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0))[1].rows
     mixed = linearise(system, p, rest, rest, 0.0, (1.0, 0.0, 0.0), stresses)[1].rows
     assert np.abs(plain - mixed).max() <= 1e-13 * np.abs(plain).max()

@@ -5,8 +5,13 @@ upper room says in its `__init__` with `offer` which function that is, which is 
 """
 
 from collections.abc import Callable
+from functools import wraps
 from importlib import import_module
+from inspect import signature
 from typing import Any
+
+from beamfem.errors import InputError
+from beamfem.validation import nearest
 
 _FUNCTIONS: dict[Callable[..., Any], str] = {}
 
@@ -22,11 +27,23 @@ def offer(method: Callable[..., Any], function: str) -> None:
 
 
 def offered(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function that does what a method declares. Raises NotImplementedError where no room offers one."""
+    """Return the function that does what a method declares. Raises NotImplementedError where no room offers one.
+
+    What is returned raises InputError for an option that the function has not, with what it may have meant.
+    """
     if method not in _FUNCTIONS:
         import_module("beamfem.public")  # an object may come from another process before anything else is imported
     if method not in _FUNCTIONS:
         raise NotImplementedError(f"no room above offers {method.__qualname__}")
     module, name = _FUNCTIONS[method].split(":")
     function: Callable[..., Any] = getattr(import_module(module), name)
-    return function
+    known = list(signature(function).parameters)[1:]
+
+    @wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        for option in options:
+            if option not in known:
+                raise InputError(f"{method.__name__} has no option {option!r}; {nearest(option, known)}")
+        return function(*arguments, **options)
+
+    return call

@@ -166,7 +166,7 @@ class Cells:
                 "sections are given by a stiffness, a law of their own, or moments without a height; "
                 "Section(..., height=) gives it",
                 UnknownStressWarning,
-                stacklevel=4,
+                stacklevel=5,
             )
 
     def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:

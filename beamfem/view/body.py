@@ -47,7 +47,7 @@ def picture(
     number = number_below("row", row, len(solution), -len(solution)) % len(solution)
     _require_size(size)
     if not can_render():
-        warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=3)
+        warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=4)
         plot_shapes(one_row(solution, number), target, colour)
         return WrittenFile(target)
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
@@ -71,7 +71,7 @@ def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = 
     reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
     if reason:
         message = f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider"
-        warnings.warn(message, stacklevel=3)
+        warnings.warn(message, stacklevel=4)
         return plot_shapes(solution, colour=colour)
     plotter = slider_scene(solution, colour, size, off_screen=False)
     plotter.show()

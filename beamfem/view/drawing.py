@@ -70,7 +70,7 @@ def plot_shapes(
     return figure
 
 
-def equal_axes(box: np.ndarray, with_bar: bool, unit: str) -> tuple[Any, Any]:
+def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m") -> tuple[Any, Any]:
     """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it."""
     scale = _LONGER_SIDE / _extent(box)
     inches = np.maximum((box[1] - box[0]) * scale + 2.0 * _ROOM, _LEAST)

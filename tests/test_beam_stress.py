@@ -80,8 +80,39 @@ def test_heat_that_only_strains_layers_against_each_other_is_seen():
     assert found.lower[-1] == pytest.approx(0.6e-3 * 2e11, rel=1e-9)
 
 
+def test_faces_count_where_the_width_inside_is_not_known():
+    """A rolled section by its height: no shear stress inside, but the faces have none."""
+    tee = bf.Section(area=8e-4, second_moment=1e-7, height=0.04, centroid=0.015)
+    own, solution = cantilever(tee)
+    found = solution.stresses(own)
+    forces = solution.section_forces(own)
+    assert found.upper == pytest.approx(forces.normal / 8e-4 - forces.moment * 0.025 / 1e-7, rel=1e-9, abs=1e-6)
+    assert found.lower == pytest.approx(forces.normal / 8e-4 + forces.moment * 0.015 / 1e-7, rel=1e-9, abs=1e-6)
+    assert found.von_mises == pytest.approx(np.maximum(np.abs(found.lower), np.abs(found.upper)))
+    assert np.isnan(found.shear).all()
+    assert found.peak("utilisation").value == pytest.approx(found.von_mises.max() / 250e6)
+    half = lambda s: bf.Rectangle(0.02, 0.04) if s < 0.5 else tee  # noqa: E731
+    own, solution = cantilever(half)
+    assert np.isfinite(solution.stresses(own).von_mises).all()
+    assert solution.plot(colour="stress").axes[1].get_ylabel() == "von Mises stress [Pa]"
+
+
+def test_the_peak_of_tension_is_no_compression():
+    concrete = bf.Material(3e10, 0.2, 2400.0)
+    own = bf.Beam(bf.Line((0, 0), (0, 4)), 8, bf.CRBF(3), bf.Rectangle(0.3, 0.3), concrete)
+    loads = [bf.PointForce(own.end, (0, -9e5)), bf.PointForce(own.at(0.5), (6e4, 0))]
+    solution = bf.solve_static(bf.Model([own], [bf.Pin(own.start), bf.Roller(own.end, (1, 0))], loads))
+    found = solution.stresses(own)
+    # M = P L / 4 and the thrust times the deflection P L^3 / 48 EI, which it enlarges, over b h^2 / 6, less the thrust
+    second = 0.3**4 / 12
+    sag = 6e4 * 4**3 / (48 * 3e10 * second) / (1.0 - 9e5 / (np.pi**2 * 3e10 * second / 4**2))
+    assert found.peak("tension").value == pytest.approx((6e4 + 9e5 * sag) / (0.3**3 / 6) - 9e5 / 0.09, rel=0.01)
+    assert found.peak("tension").arc_length == pytest.approx(2.0)
+    assert found.peak("compression").value < -2e7
+
+
 def test_what_is_not_known_is_no_number():
-    shapeless, _ = bf.Section(area=8e-4, second_moment=1e-7), None
+    shapeless = bf.Section(area=8e-4, second_moment=1e-7)
     for section, material in (
         (shapeless, STEEL),
         (LinearLaw(1e7, 1e6, 1e3, 1.0, 1e-4), None),

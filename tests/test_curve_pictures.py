@@ -42,6 +42,7 @@ def test_load_factors_times_and_numbers_of_ones_own_too(tmp_path):
         ("time", "x of a curve is no 'time'"),
         (np.zeros(3), "numbers, one a row"),
         (OWN.end, "numbers, one a row"),
+        (("both", np.zeros(2, dtype=complex)), "numbers, one a row"),
         (("ux", 3), "numbers, one a row"),
     ],
 )

@@ -1,5 +1,8 @@
 """Models that are crooked by a mode: growth of imperfections, and what stays where it was."""
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from connectors import SpringDamper
@@ -71,6 +74,86 @@ def test_everything_stays_at_its_point():
     assert np.array(places[1]) == pytest.approx(np.array(places[0]), abs=2e-7)
     assert tiny.beams[0].curve.corners[0] == pytest.approx(0.5, abs=1e-6)
     assert tiny.units == "N, m"
+
+
+@pytest.mark.parametrize("elements", [4, 16])
+def test_modes_about_a_bent_state_are_as_smooth_as_it_is(elements):
+    """Slopes of nodes without shear are products with the state's own directions."""
+    turns = []
+    for element in (bf.CRBF(4), bf.ShearRigid()):
+        own = bf.Beam(bf.Line((0, 0), (1, 0)), elements, element, bf.Rectangle(0.02, 0.01), STEEL)
+        force = 3 * 2e11 * 0.02 * 0.01**3 / 12
+        model = bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, (0.0, force))])
+        crooked = model.with_imperfection(bf.solve_modes(model, 2, about=bf.solve_static(model)), 0.05).beams[0].curve
+        tangent = crooked.tangent(np.linspace(0.0, 1.0, 801) * crooked.length)
+        turns.append(np.abs(np.diff(np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0])))).sum())
+    assert turns[1] == pytest.approx(turns[0], rel=0.05)
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(1), bf.BilinearCRBF(), bf.BilinearANCF()], ids=lambda own: own.name)
+def test_linear_fields_make_smooth_curves_too(element):
+    """Their slopes jump at nodes, where sections turn as the axis does."""
+    curvatures = []
+    for kind in (bf.CRBF(3), element):
+        own = bf.Beam(bf.Line((0, 0), (1, 0)), 16, kind, bf.Rectangle(0.02, 0.01), STEEL)
+        force = bf.PointForce(own.end, (-1.0, 0.0))
+        model = bf.Model([own], [bf.Pin(own.start), bf.Roller(own.end)], [force])
+        crooked = model.with_imperfection(bf.solve_buckling(model), 0.05).beams[0].curve
+        tangent = crooked.tangent(np.linspace(0.01, 0.99, 400) * crooked.length)
+        curvatures.append(np.abs(np.diff(np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0])))).max())
+    assert curvatures[1] == pytest.approx(curvatures[0], rel=0.1)
+
+
+def test_nothing_moves_without_size_however_high_the_order():
+    own = bf.Beam(bf.Arc((0, 0), 1.0, np.pi, 0.0), 2, bf.CRBF(8), bf.Rectangle(0.05, 0.05), STEEL)
+    held = [bf.Clamp(own.start), bf.Clamp(own.end)]
+    model = bf.Model([own], held, [bf.PointForce(own.at(0.5), (1e4, -1e5))])
+    same = model.with_imperfection(bf.solve_modes(model, 3), 0.0)
+    tips = [bf.solve_static(each).displacement(each.beams[0].at(0.5))[-1] for each in (model, same)]
+    assert tips[1] == pytest.approx(tips[0], rel=2e-6)
+
+
+class Places(NamedTuple):
+    first: bf.Point
+    second: bf.Point
+
+
+@dataclass(frozen=True)
+class Between(SpringDamper):
+    """A spring that keeps its points in a tuple with names."""
+
+    a: Places
+    b: float = 0.0
+
+    @property
+    def points(self):
+        return tuple(self.a)
+
+
+class Plain:
+    """A spring that is no dataclass."""
+
+    unknowns, conservative = 0, False
+
+    def __init__(self, point):
+        self.points = (point,)
+
+    def force(self, at):
+        return 1e3 * (at.q[0] - at.reference[0])
+
+    def energy(self, at):
+        return 0.0, 0.0
+
+
+def test_connectors_keep_their_points_or_are_named():
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SQUARE, STEEL)
+    places = Places(own.at(0.25), own.at(0.75))
+    model = bf.Model([own], [bf.Clamp(own.start)], connectors=[Between(places, 0.0, 100.0)])
+    crooked = model.with_imperfection(np.arange(model.size) * 1.0, 1e-3)
+    assert crooked.connectors[0].points[1].beam is crooked.beams[0]
+    free = bf.Model([own], [bf.Clamp(own.start)], connectors=[Plain(own.at(0.5))])
+    with pytest.raises(bf.InputError, match="Plain keeps its points where"):
+        free.with_imperfection(np.arange(free.size) * 1.0, 1e-3)
 
 
 def test_a_crooked_model_is_saved_and_loaded(tmp_path):

@@ -44,6 +44,12 @@ def test_pictures_pages_and_tables_name_them(tmp_path):
     page = solution.to_html(tmp_path / "strip.html").read_text()
     assert '"length":"mm"' in page
     assert "bending moment [N mm]" in page
+    assert "[Pa]" not in solution.stresses(beam)._repr_html_()
+    fast = bf.Model(model.beams, model.supports, units="N, mm, ms")
+    modes = bf.solve_modes(fast, count=1)
+    assert "frequency [1/ms]" in modes._repr_html_()
+    assert repr(modes).endswith("1/ms)")
+    assert modes.plot().axes[0].get_title().endswith("1/ms")
     motion = bf.simulate(model, duration=1e-3, step=1e-4)
     assert motion.plot_curve("time", ("vy", beam.end)).axes[0].get_ylabel() == "velocity vy at (500, 0) [mm/s]"
 

@@ -94,7 +94,7 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
         "file": str(path),
         "written_by": f"beamfem {version}",
         **summary(solution),
-        "units": "those of the numbers given; SI where they were SI",
+        "units": model.units,
         "model": {
             "beams": beams,
             "supports": [_acting(item, solution) for item in model.supports],

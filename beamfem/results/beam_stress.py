@@ -26,7 +26,7 @@ _VALUES = 4_000_000  # in one array
 
 
 class Peak(NamedTuple):
-    """The largest value of a stress: where it is along the beam [m], and in which row."""
+    """The extreme of a stress: its value, where it is along the beam [m], and in which row."""
 
     value: float
     arc_length: float
@@ -39,9 +39,9 @@ class BeamStress:
 
     lower, upper: along the beam at the two faces; tension, compression: the largest and the smallest along the beam
     over the height, at the faces of layers too; shear: the largest size over the height; von_mises: the largest
-    sqrt(sigma^2 + 3 tau^2) over the height; utilisation [-]: the largest share of the strength of the material there,
-    nan where none is given (`Material`). Cauchy's stress, as in `Fields`; nan where a section tells none. Between the
-    two faces of a layer seven more heights are looked at.
+    sqrt(sigma^2 + 3 tau^2) over the height, of the faces alone where the shear stress inside is not known; utilisation
+    [-]: the largest share of the strength of the material there, nan where none is given (`Material`). Cauchy's stress,
+    as in `Fields`; nan where a section tells none. Between the two faces of a layer seven more heights are looked at.
     """
 
     arc_length: np.ndarray
@@ -58,16 +58,20 @@ class BeamStress:
     def _repr_html_(self) -> str:
         names = [name for name in self.__dataclass_fields__ if name != "arc_length"]
         rows = [(name, *self.peak(name)) for name in names]  # type: ignore[arg-type]
-        return f"<b>Stress, peaks</b>{as_html(('', '[Pa], utilisation [-]', 'at arc length [m]', 'row'), rows)}"
+        return f"<b>Stress, peaks</b>{as_html(('', 'extreme', 'at arc length', 'row'), rows)}"
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the largest value of one of these by its size, nan where none is known. Raises InputError."""
+        """Return the extreme of one of these, nan where none is known. Raises InputError.
+
+        The smallest of `compression`, the largest by its size of `lower` and `upper`, else the largest.
+        """
         known = [name for name in self.__dataclass_fields__ if name != "arc_length"]
         require_known(f"there is no stress {shown(part)}", part, known)
         values = getattr(self, part)
         if not np.isfinite(values).any():
             return Peak(np.nan, np.nan, -1)
-        row, station = np.unravel_index(np.nanargmax(np.abs(values)), values.shape)
+        measured = -values if part == "compression" else np.abs(values) if part in ("lower", "upper") else values
+        row, station = np.unravel_index(np.nanargmax(measured), values.shape)
         return Peak(float(values[row, station]), float(self.arc_length[station]), int(row))
 
 
@@ -113,8 +117,9 @@ def _of_rows(
             "tension": along.max(axis=-1),
             "compression": along.min(axis=-1),
             "shear": np.abs(sheared).max(axis=-1),
-            "von_mises": equivalent.max(axis=-1),
-            "utilisation": share.max(axis=-1),
+            # where the width inside is not known, nor is the shear stress there: the faces, without any, still count
+            "von_mises": np.fmax.reduce(equivalent, axis=-1),
+            "utilisation": np.fmax.reduce(share, axis=-1),
         }
         # a layer that a section has not is its upper face
         extremes = {name: _joined(name, extremes[name], found[name]) for name in found} if extremes else found

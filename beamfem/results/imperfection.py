@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from beamfem.assembly.system import system_of
+from beamfem.brief import brief
 from beamfem.curves import Chain, Curve, spline_through_hermite
+from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.load import functions_along
@@ -18,7 +20,7 @@ from beamfem.results.postprocess import axis, nodal_velocities
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, shown, squared
 
-_PIECES = 4  # cubics of the crooked axis in an element
+_PIECES = 4  # cubics of the crooked axis in an element, at least; of a linear field there is one
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,8 @@ class Moved:
     old: tuple[float, ...]
     new: tuple[float, ...]
 
+    __repr__ = brief
+
     def __call__(self, arc_length: float) -> Any:
         """Return the value at an arc length [m]."""
         return self.function(float(np.interp(arc_length, self.new, self.old)))
@@ -57,12 +61,13 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     """Return the model with the axes of its beams displaced by a mode, up to `size` [m], free of stress there.
 
     modes: of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: which of them. Axes become
-    cubic splines, `4` an element; elements, sections, supports, joints and loads stay at their points. Raises
-    InputError for modes of a model of another size, or where nothing moves.
+    cubic splines; elements, sections, supports, joints, loads and connectors stay at their points (what a connector
+    keeps besides, such as a length at rest, stays as it is). Knot spans as elements become elements by arc length.
+    Raises InputError for modes of a model of another size, where nothing moves, or for a connector whose points are not
+    fields of a dataclass.
     """
-    shape, size = _shape(model, modes, mode), squared(finite)("size", size)
-    reference = system_of(model, static=True).reference
-    moved = [_rates(mesh, reference, shape) for mesh in model.meshes]
+    (p, shape), size = _shape(model, modes, mode), squared(finite)("size", size)
+    moved = [_rates(mesh, p, shape) for mesh in model.meshes]
     largest = max(float(np.linalg.norm(position, axis=-1).max()) for position, _ in moved)
     if largest == 0.0:
         raise InputError("this mode moves no point of an axis, so it makes no imperfection")
@@ -73,35 +78,57 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     beams = [crooked[id(beam)].beam for beam in model.beams]
     parts = (model.supports, model.loads, model.joints, model.connectors)
     supports, loads, joints, connectors = ([_placed(item, crooked) for item in part] for part in parts)
+    for connector in connectors:
+        if any(id(point.beam) in crooked for point in connector.points):
+            raise InputError(
+                f"{type(connector).__name__} keeps its points where a crooked model cannot exchange them: make it a "
+                "dataclass with points, or tuples of points, as its fields"
+            )
     return Model(beams, supports, loads, joints, connectors, model.units)
 
 
-def _shape(model: Model, modes: Any, mode: int) -> np.ndarray:
-    found = getattr(modes, "modes", modes)
+def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the state p (n,) that a mode (n,) is a change of, and the mode."""
+    found, p = getattr(modes, "modes", modes), system_of(model, static=True).reference
     if found is not modes:
-        found = found[number_below("mode", mode, len(found))]
+        if not len(found):
+            raise InputError(
+                f"there is no mode to take an imperfection from: {getattr(modes, 'ended', 'none was found')}"
+            )
+        number = number_below("mode", mode, len(found))
+        found, p = found[number], modes.states[number] if hasattr(modes, "states") else modes.state.p
     try:
         shape = np.asarray(found, dtype=complex)
     except (TypeError, ValueError):
         shape = np.empty(0)
-    if shape.shape != (model.size,) or not np.isfinite(shape).all():
+    if shape.shape != (model.size,) or p.shape != shape.shape or not np.isfinite(shape).all():
         raise InputError(
             f"an imperfection needs the modes of this model, with {model.size} coordinates, as solve_buckling returns "
             f"them, got {shown(modes)}"
         )
-    return shape.real
+    return p, shape.real
+
+
+def _pieces(mesh: BeamMesh) -> int:
+    degree = mesh.beam.element.field.degree
+    return 1 if degree == 1 else max(_PIECES, 2 * degree)
 
 
 def _places(mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Element and xi (ne * 5,) of the ends of the cubics."""
-    return np.repeat(np.arange(mesh.elements), _PIECES + 1), np.tile(np.linspace(0.0, 1.0, _PIECES + 1), mesh.elements)
+    """Element and xi (ne * (pieces + 1),) of the ends of the cubics."""
+    ends = np.linspace(0.0, 1.0, _pieces(mesh) + 1)
+    return np.repeat(np.arange(mesh.elements), len(ends)), np.tile(ends, mesh.elements)
 
 
 def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements and their derivatives by the arc length (ne * 5, 2) of a mode (n,)."""
+    """Return displacements and their derivatives by the arc length (ne * (pieces + 1), 2) of a mode (n,) about p (n,).
+
+    A linear field has no slope at its nodes: there the axis turns with the section.
+    """
     element, xi = _places(mesh)
     found = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
-    return found.r[0], found.r_s[0]
+    slope = -across(found.d[0]) if mesh.beam.element.field.degree == 1 else found.r_s[0]
+    return found.r[0], slope
 
 
 def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
@@ -111,7 +138,7 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     at = mesh.arc_length(element, xi)
     position, rate = curve.position(at) + moved, curve.tangent(inside) + slope
     # ends of elements: one point, with the mean of the slopes on both sides, but at corners
-    first = np.arange(_PIECES + 1, len(at), _PIECES + 1)
+    first = np.arange(_pieces(mesh) + 1, len(at), _pieces(mesh) + 1)
     corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)
     rate[first - 1], rate[first] = (
         np.where(corner[:, None], rate[first - 1], 0.5 * (rate[first - 1] + rate[first])),
@@ -148,7 +175,8 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
         own = crooked[id(item.beam)]
         return Point(own.beam, own.fraction(item.fraction))
     if isinstance(item, tuple | list):
-        return type(item)(_placed(part, crooked) for part in item)
+        parts = [_placed(part, crooked) for part in item]
+        return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
     if not is_dataclass(item) or isinstance(item, type):
         return item
     changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}

@@ -63,7 +63,8 @@ def _taken(solution: Solution, which: str, given: Quantity) -> tuple[str, np.nda
         return f"{label} at ({at[0]:.4g}, {at[1]:.4g}) [{solution.model.unit(unit)}]", value(solution, given[1])
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:
-        values = np.asarray(numbers, dtype=float)
+        values = np.asarray(numbers)
+        values = values.astype(float) if values.dtype.kind in "fiub" else np.empty(0)
     except (TypeError, ValueError):
         values = np.empty(0)
     if values.shape != (len(solution),) or not isinstance(label, str):

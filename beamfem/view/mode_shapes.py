@@ -33,7 +33,8 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
         if mode < len(modes.rigid):
             return f"{mode + 1}: {modes.rigid[mode]}"
         growth = modes.growth[mode]
-        return f"{mode + 1}: {modes.frequencies[mode]:.4g} Hz" + (f", grows {growth:.3g}/s" if growth > 0.0 else "")
+        grows = f", grows {growth:.3g}/{modes.model.unit('s')}" if growth > 0.0 else ""
+        return f"{mode + 1}: {modes.frequencies[mode]:.4g} {modes.model.unit('Hz')}{grows}"
 
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([len(solution) - 1] if mode < len(modes.rigid) else [len(solution) // 2, 0])

@@ -81,11 +81,12 @@ def solution_table(solution: "Solution") -> str:
 
 def modes_table(modes: "Modes") -> str:
     """Return the frequencies of modes as an HTML table."""
-    rows = []
+    rows, unit = [], modes.model.unit
     for number, (frequency, growth) in enumerate(zip(modes.frequencies.tolist(), modes.growth.tolist(), strict=True)):
         what = f"rigid: {modes.rigid[number]}" if number < len(modes.rigid) else "grows" if growth > 0.0 else ""
         rows.append((number, frequency, growth, what))
-    return f"<b>Modes</b>{as_html(('mode', 'frequency [Hz]', 'growth [1/s]', ''), rows)}"
+    head = ("mode", f"frequency [{unit('Hz')}]", f"growth [{unit('1/s')}]", "")
+    return f"<b>Modes</b>{as_html(head, rows)}"
 
 
 def buckling_table(buckling: "Buckling") -> str:

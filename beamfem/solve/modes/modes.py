@@ -50,7 +50,7 @@ class Modes:
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{value:.6g}" for value in self.frequencies[:12])
-        return f"Modes({listed}{' ...' if len(self) > 12 else ''} Hz)"
+        return f"Modes({listed}{' ...' if len(self) > 12 else ''} {self.model.unit('Hz')})"
 
     def _repr_html_(self) -> str:
         return offered(Modes._repr_html_)(self)

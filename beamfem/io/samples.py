@@ -20,25 +20,28 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _LINES_PER_ELEMENT = 12
+_ACROSS = 2  # intervals of a layer, whose stress is a parabola at most
 _NAMED = 10  # beams that a warning names
 
 
 class Samples:
     """Points (xi, y) of elements of a beam, in the order that VTK wants them in a cell.
 
-    degree: intervals along an element; layer: the layer of the body whose faces and middle they are on, or None for the
+    layer: the layer of the body from whose lower face to the upper one there are `across` intervals, or None for the
     axis; order: places in the table (degree + 1, heights), flattened. element: elements that have this layer (ne,).
     """
 
-    def __init__(self, points: AxisPoints, layer: int | None, order: np.ndarray) -> None:
+    def __init__(self, points: AxisPoints, layer: int | None, order: np.ndarray, across: int = 0) -> None:
         self.points, self.layer, self.order, self.mesh = points, layer, order, points.mesh
+        self.across = across
         self.distributions = points.distributions
         if layer is None:
             self.y = np.zeros((len(self.points.xi), 1))
             self.element = np.arange(self.mesh.elements)
         else:
             low, high = np.moveaxis(self.distributions.layers[:, layer], -1, 0)
-            self.y = np.stack([low, 0.5 * (low + high), high], axis=-1)
+            self.y = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, across + 1)
+            self.y[:, -1] = high
             there = (self.distributions.number > layer).reshape(self.mesh.elements, -1)
             self.element = np.flatnonzero(there.any(axis=1))
         self.axis = reference_axis(self.mesh, self.points.element, self.points.xi)
@@ -107,18 +110,20 @@ class Samples:
         return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail == (2,) else cells
 
 
-def body(mesh: BeamMesh) -> list[Samples]:
-    """Return the points of each layer as Lagrange quadrilaterals of degree (n, 2).
+def body(mesh: BeamMesh, alike: bool = False) -> list[Samples]:
+    """Return the points of each layer as Lagrange quadrilaterals of degree (n, 2), or (n, n) where `alike`.
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
     n = max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
-    bottom = 3 * np.arange(n + 1)
-    inner = bottom[1:-1]
+    m = n if alike else _ACROSS
+    number = np.arange((n + 1) * (m + 1)).reshape(n + 1, m + 1)
     # VTK: corners counter-clockwise, then inner points of the edges: bottom, right, top, left; then those of the cell
-    order = np.concatenate([[0, 3 * n, 3 * n + 2, 2], inner, [3 * n + 1], inner + 2, [1], inner + 1])
+    corners = number[[0, n, n, 0], [0, 0, m, m]]
+    edges = [number[1:n, 0], number[n, 1:m], number[1:n, m], number[0, 1:m]]
+    order = np.concatenate([corners, *edges, number[1:n, 1:m].T.ravel()])
     points = AxisPoints(mesh, n)
-    return [Samples(points, layer, order) for layer in range(points.distributions.layers.shape[1])]
+    return [Samples(points, layer, order, m) for layer in range(points.distributions.layers.shape[1])]
 
 
 def centreline(mesh: BeamMesh) -> list[Samples]:
@@ -127,17 +132,20 @@ def centreline(mesh: BeamMesh) -> list[Samples]:
 
 
 class Cells:
-    """The cells of all beams of one kind, one an element and layer, which shares no points with others."""
+    """The cells of all beams of one kind, one an element and layer, which shares no points with others.
 
-    def __init__(self, model: Model, whole: bool) -> None:
+    alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others.
+    """
+
+    def __init__(self, model: Model, whole: bool, alike: bool = False) -> None:
         self.whole, self.meshes = whole, model.meshes
-        by_beam = [body(mesh) if whole else centreline(mesh) for mesh in model.meshes]
+        by_beam = [body(mesh, alike) if whole else centreline(mesh) for mesh in model.meshes]
         self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
         numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
         cells = [len(part.element) for part in self.samples]
         self.beam = np.repeat(numbers, cells)
         self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
-        self.degree = np.repeat([part.points.pieces for part in self.samples], cells)
+        self.degree = np.repeat([(part.points.pieces, part.across) for part in self.samples], cells, axis=0)
         self.offsets = np.append(0, np.cumsum(np.repeat([len(part.order) for part in self.samples], cells)))
 
     @property
@@ -147,7 +155,7 @@ class Cells:
     @property
     def degrees(self) -> np.ndarray:
         """Degrees of the Lagrange cells (cells, 3)."""
-        return np.stack([self.degree, np.full_like(self.degree, 2), np.ones_like(self.degree)], axis=1).astype(float)
+        return np.column_stack([self.degree, np.ones(len(self.degree))]).astype(float)
 
     @property
     def numbers(self) -> dict[str, np.ndarray]:

@@ -38,7 +38,7 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to write")
-    bodies = Cells(solution.model, True)
+    bodies = Cells(solution.model, True, alike=suffix == ".vtkhdf")
     bodies.warn_of_unknown_stress()
     for target, cells in (
         (path, bodies),

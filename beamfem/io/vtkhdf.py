@@ -43,9 +43,6 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int, require_wr
     cell_data = root.create_group("CellData")
     for numbers, values in cells.numbers.items():
         cell_data[numbers] = values.astype(np.int32)
-    if cells.whole:
-        cell_data["HigherOrderDegrees"] = cells.degrees
-        cell_data["HigherOrderDegrees"].attrs.create("Attribute", np.bytes_("HigherOrderDegrees"))
     name = "load_factor" if solution.static else "time"
     root.create_group("FieldData")[name] = solution.at
     point_data = root.create_group("PointData")

@@ -23,6 +23,8 @@ _SAME = 1e-9
 _SHORT = 1e-2  # of the shortest line: nodes further apart than this are two
 _GAPS = 30.0  # times the distance that is closed: wider gaps are meant
 
+_NODES = {"vertex": 1, "line": 2, "line3": 3}
+
 
 @dataclass(frozen=True, eq=False)
 class LineMesh:
@@ -100,6 +102,11 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     vertices: dict[int, int] = {}
     counted = 0
     for kind, table in content.blocks:
+        if table.ndim != 2 or table.shape[1] != _NODES[kind]:
+            raise InputError(
+                f"a {kind} has {_NODES[kind]} nodes, here {table.shape[1:]}: damaged, or an ASCII file: save it as "
+                "a binary one"
+            )
         if kind == "vertex":
             vertices.update(zip(range(counted, counted + len(table)), table[:, 0].tolist(), strict=True))
         else:

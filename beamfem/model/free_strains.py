@@ -24,7 +24,6 @@ def free_strains(grid: Grid, loads: Sequence[Imposing]) -> tuple[np.ndarray, np.
     free = np.array([load.free_strain(grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
     if not isinstance(own.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
-
     first, second = own.forces.imposed(free, reference)
     shape = grid.elements, -1, first.shape[-1]
     return first.reshape(len(free), *shape), second.reshape(len(free), len(free), *shape)

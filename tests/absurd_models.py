@@ -4,15 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from absurd_strains import EXPANSION, Wave, imposed
 
 import beamfem as bf
-from beamfem.element.coordinates import ShearFree
 
 ANALYSES = ("static", "path", "modes", "buckling", "motion")
 SHARES = (0.36, 0.16, 0.16, 0.14, 0.18)
 CORNER = 0.25  # share of the size of the model within which the corners of frames are not drawn
 STRAINED = 10_000  # seeds from here on have loads that impose strains besides
-EXPANSION = 1.2e-5
 Random = np.random.Generator
 
 
@@ -35,7 +34,7 @@ def draw(seed: int, elements: Sequence[bf.Element]) -> Case:
     supports = _supports(rng, beams)
     loads = _loads(rng, beams, analysis)
     if seed >= STRAINED:
-        loads += _imposed(np.random.default_rng([seed, 1]), beams, analysis)
+        loads += imposed(np.random.default_rng([seed, 1]), beams, analysis)
     if analysis == "motion":
         supports = [_led(rng, support) for support in supports]
     model = bf.Model(beams, supports, loads, joints)
@@ -256,7 +255,7 @@ def _loads(rng: Random, beams, analysis: str) -> list[object]:
         follower = analysis != "buckling" and bool(rng.random() < 0.25)
         how: dict[str, object] = {"scale": bool(rng.random() < 0.85 or number == 0)}
         if analysis == "motion" and rng.random() < 0.4:
-            how["amplitude"] = rng.choice([_Wave(float(rng.uniform(0.1, 10.0))), bf.Interpolated([(0, 0), (1, 1)])])
+            how["amplitude"] = rng.choice([Wave(float(rng.uniform(0.1, 10.0))), bf.Interpolated([(0, 0), (1, 1)])])
         point = beam.at(float(rng.choice([1.0, 1.0, 0.5, rng.uniform(0.0, 1.0)])))
         kind = rng.choice(
             ["force", "moment", "line", "along", "pressure", "gravity"], p=[0.4, 0.15, 0.15, 0.1, 0.1, 0.1]
@@ -276,54 +275,6 @@ def _loads(rng: Random, beams, analysis: str) -> list[object]:
             mass = beam.section_at(0.0).inertia(beam.material).mass
             found.append(bf.Gravity(_pair(size / (mass * length) * away), **how))
     return found
-
-
-def _imposed(rng: Random, beams, analysis: str) -> list[object]:
-    """One to three loads that impose strains, of everyday sizes or absurd ones."""
-    found: list[object] = []
-    absurd = rng.random() < 0.25
-    for _ in range(int(rng.choice([1, 1, 2, 3]))):
-        beam = beams[rng.integers(len(beams))]
-        size = float(10.0 ** rng.uniform(-7.0, 2.0) if absurd else 10.0 ** rng.uniform(-1.5, 0.8))
-        length, bounds = beam.curve.length, beam.section_at(0.0).bounds
-        how: dict[str, object] = {"scale": bool(rng.random() < 0.8)}
-        if analysis == "motion" and rng.random() < 0.4:
-            how["amplitude"] = _Wave(float(rng.uniform(0.1, 10.0)))
-        curvature: object = float(rng.choice([-1.0, 1.0])) * size / length
-        if rng.random() < 0.3:
-            curvature = _Curl(float(curvature), length)
-        coordinates = beam.element.coordinates
-        stretches = not isinstance(coordinates, ShearFree) or coordinates.stretchable
-        stretch = float(np.clip(0.02 * size * rng.uniform(-1.0, 1.0), -0.5, 2.0)) if stretches else 0.0
-        shear = (
-            0.0 if isinstance(coordinates, ShearFree) else float(np.clip(0.02 * size * rng.uniform(-1, 1), -0.5, 0.5))
-        )
-        if rng.random() < 0.6:
-            found.append(bf.Actuation(beam, curvature, stretch, shear * (rng.random() < 0.3), **how))
-            continue
-        change = stretch / EXPANSION
-        try:
-            found.append(bf.Temperature(beam, change, 0.2 * stretch / EXPANSION / (bounds[1] - bounds[0]), **how))
-        except bf.InputError:  # of a section without a material, or layers of a continuum
-            found.append(bf.Actuation(beam, curvature, **how))
-    return found
-
-
-@dataclass(frozen=True)
-class _Wave:
-    rate: float
-
-    def __call__(self, time: float) -> float:
-        return float(np.sin(self.rate * time))
-
-
-@dataclass(frozen=True)
-class _Curl:
-    size: float
-    length: float
-
-    def __call__(self, arc_length: float) -> float:
-        return float(self.size * np.cos(3.0 * arc_length / self.length))
 
 
 @dataclass(frozen=True)

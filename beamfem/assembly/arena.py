@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.kernels.pointers import address_of
+
 
 class Arena:
     """New arrays of one type, by name, and their addresses."""
@@ -20,8 +22,3 @@ class Arena:
             self.arrays[name] = memory[first : first + size].reshape(shape)
             self.addresses[name] = address + memory.itemsize * first
             first += size
-
-
-def address_of(values: np.ndarray) -> int:
-    """Return the address of the first number of an array."""
-    return int(values.__array_interface__["data"][0])

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.arena import Arena, address_of
+from beamfem.assembly.arena import Arena
 from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
+from beamfem.kernels.pointers import address_of
 
 Stresses = Sequence[np.ndarray]
 _NONE = np.empty(0)

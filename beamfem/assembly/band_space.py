@@ -1,9 +1,10 @@
 """The arrays that the compiled iteration of a band works on, kept for the next solve of the same model."""
 
-from beamfem.assembly.arena import Arena, address_of
+from beamfem.assembly.arena import Arena
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import System
 from beamfem.kernels import record
+from beamfem.kernels.pointers import address_of
 
 _KEPT = 100_000  # entries of a tangent up to which making arrays takes a part of a solve that anybody would notice
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.arena import address_of
 from beamfem.assembly.routines import Routines, routines
 from beamfem.kernels import record
 from beamfem.kernels.batch import rows_of
@@ -21,6 +20,8 @@ from beamfem.kernels.block import (
     Layout,
     PointLoads,
 )
+from beamfem.kernels.lanes import WIDTH
+from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
 _CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
@@ -111,7 +112,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.BEAM: block.beam,
         record.PLACE: place.T,
         record.DOF: block.dof.T,
-        record.FRAME: block.frame.T,
+        record.FRAME: np.append(block.frame.T, np.zeros(WIDTH)),  # read in vectors, beyond the last node too
         record.RUNS: _runs(block.node_kind),
         record.NUMBER: number.T,
         record.SLOT: layout.slot,
@@ -135,6 +136,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         kept.append(np.ascontiguousarray(values, dtype=kind))
         table[field] = address_of(kept[-1])
     table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
+    table[record.ORDERED] = (np.diff(block.node, axis=0) > 0).all()
     table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
     table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends
     table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, tables.shape[1], coordinates

@@ -5,10 +5,10 @@ from functools import cache
 
 import numpy as np
 
-from beamfem.assembly.arena import address_of
 from beamfem.kernels import march, model_passes, motion_steps, newton, record, rollers
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.compiling import Routine
+from beamfem.kernels.pointers import address_of
 
 
 class SolverTable:

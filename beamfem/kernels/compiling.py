@@ -18,13 +18,13 @@ from numba import config, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.core.ccallback import CFunc
 from numba.misc.appdirs import AppDirs
-from numpy import ndarray
+from numpy import dtype, float64, int32, int64, ndarray
 
-from beamfem.kernels.pointers import KINDS
+from beamfem.kernels.pointers import KINDS, address_of
 
 _HERE = Path(__file__).parent
 # of arrays by kind of argument; a table of whole numbers may stand for its address
-_TYPES = {"r": "float64", "n": "int64", "s": "int32", "i": "int64"}
+_TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
 
 
 class Routine:
@@ -81,7 +81,7 @@ def _address(kind: str, array: ndarray) -> int:
     """Return where an array begins; compiled code reads whatever is there, so that its type is looked at here."""
     if array.dtype != _TYPES[kind] or not array.flags.c_contiguous:
         raise TypeError(f"compiled code takes contiguous {_TYPES[kind]}, got {array.dtype} {array.strides}")
-    return int(array.__array_interface__["data"][0])
+    return address_of(array)
 
 
 def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:

@@ -9,7 +9,7 @@ from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
-_gather, _scatter = caller("iiiinirr"), caller("iiiiniirr")
+_gather, _scatter = caller("iiiiinirr"), caller("iiiiiniirr")
 _fill_tables, _fill_body = caller("iiii"), caller("iinrr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
@@ -35,7 +35,7 @@ def add_elements(group, system):
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
-    beams, place = wholes(b[r.BEAM]), wholes(b[r.PLACE])
+    beams, place, ordered = wholes(b[r.BEAM]), wholes(b[r.PLACE]), b[r.ORDERED]
     e, f, g, t, q, k = (
         at(x, e * ROW),
         at(x, f * ROW),
@@ -50,7 +50,7 @@ def add_elements(group, system):
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         _fill_tables(call[r.FILL_TABLES], group, first, count, table)
-        _gather(call[r.GATHER], nodes, count, first, elements, place, rows, chunks, e)
+        _gather(call[r.GATHER], nodes, count, first, elements, ordered, place, rows, chunks, e)
         if s[r.LOADED] != 0:
             _fill_body(call[r.FILL_BODY], count, 0, at(beams, first), reals(s[r.BODY]), body)
         _add_inertia(
@@ -126,9 +126,21 @@ def add_elements(group, system):
             if stiff:
                 _measure(call[r.HESSIAN], count, q)
                 _copy(call[r.COPY], 21, count, at(q, POINT_HESSIAN * ROW), at(x, (h + 21 * number) * ROW))
-        _scatter(call[r.SCATTER], nodes, count, first, elements, place, size, b[r.FORCE], f, chunks)
+        _scatter(call[r.SCATTER], nodes, count, first, elements, ordered, place, size, b[r.FORCE], f, chunks)
         if predicted != 0:
-            _scatter(call[r.SCATTER], nodes, count, first, elements, place, size, b[r.PREDICTED_FORCE], g, chunks)
+            _scatter(
+                call[r.SCATTER],
+                nodes,
+                count,
+                first,
+                elements,
+                b[r.ORDERED],
+                place,
+                size,
+                b[r.PREDICTED_FORCE],
+                g,
+                chunks,
+            )
         if tangent != 0:
             _form(call[r.FORM_MATRICES], group, system, count, x)
             _add(call[r.ADD_MATRICES], group, system, first, count, k)

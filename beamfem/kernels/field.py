@@ -4,83 +4,66 @@ Tables have a row of lanes each: elements of a batch may all be different.
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, zeros
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iiiiirrrrr", fastmath=FAST)
+@routine("iiiiivvrvv", fastmath=FAST)
 def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e, q):
     """Fill q (6, ROW) from nodal vectors e (nodes, stride, ROW).
 
     slope, second (nodes * vectors, ROW): derivatives of shape functions; director (nodes,): those of d.
     """
     last = vectors - 1
-    for n in range(nodes):
-        own = at(e, n * stride * ROW)
-        x, y = at(own, 2 * last * ROW), at(own, (2 * last + 1) * ROW)
-        factor, table = director[n], at(slope, (n * vectors + last) * ROW)
-        if n == 0:
-            for i in range(count):
-                q[2 * ROW + i] = factor * x[i]
-                q[3 * ROW + i] = factor * y[i]
-            if bends != 0:
-                for i in range(count):
-                    q[4 * ROW + i] = 0.0
-                    q[5 * ROW + i] = 0.0
-            else:
-                for i in range(count):
-                    q[4 * ROW + i] = table[i] * x[i]
-                    q[5 * ROW + i] = table[i] * y[i]
-        else:
-            for i in range(count):
-                q[2 * ROW + i] += factor * x[i]
-                q[3 * ROW + i] += factor * y[i]
+    for i in range(0, count, WIDTH):
+        rx, ry, dx, dy, third_x, third_y = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
+        for n in range(nodes):
+            own, table, curved = (
+                at(e, n * stride * ROW + i),
+                at(slope, n * vectors * ROW + i),
+                at(second, n * vectors * ROW + i),
+            )
+            for s in range(last):
+                x, y, w = own[2 * s * ROW], own[(2 * s + 1) * ROW], table[s * ROW]
+                rx, ry = rx + w * x, ry + w * y
+                if bends != 0:
+                    u = curved[s * ROW]
+                    third_x, third_y = third_x + u * x, third_y + u * y
+            x, y, factor = own[2 * last * ROW], own[(2 * last + 1) * ROW], director[n]
+            dx, dy = dx + factor * x, dy + factor * y
             if bends == 0:
-                for i in range(count):
-                    q[4 * ROW + i] += table[i] * x[i]
-                    q[5 * ROW + i] += table[i] * y[i]
-    for n in range(nodes):
-        for s in range(last):
-            own = at(e, (n * stride + 2 * s) * ROW)
-            table, curved = at(slope, (n * vectors + s) * ROW), at(second, (n * vectors + s) * ROW)
-            if n == 0 and s == 0:
-                for i in range(count):
-                    q[i] = table[i] * own[i]
-                    q[ROW + i] = table[i] * own[ROW + i]
-            else:
-                for i in range(count):
-                    q[i] += table[i] * own[i]
-                    q[ROW + i] += table[i] * own[ROW + i]
-            if bends != 0:
-                for i in range(count):
-                    q[4 * ROW + i] += curved[i] * own[i]
-                    q[5 * ROW + i] += curved[i] * own[ROW + i]
+                w = table[last * ROW]
+                third_x, third_y = third_x + w * x, third_y + w * y
+        q[i], q[ROW + i], q[2 * ROW + i], q[3 * ROW + i] = rx, ry, dx, dy
+        q[4 * ROW + i], q[5 * ROW + i] = third_x, third_y
 
 
-@routine("iiiirrrrr", fastmath=FAST)
+@routine("iiiivvrvv", fastmath=FAST)
 def spread(nodes, vectors, bends, count, slope, second, director, q, f):
     """Add what forces on q (6, ROW) give to those of the nodes f (nodes, 2 vectors, ROW)."""
     last = vectors - 1
-    for n in range(nodes):
-        for s in range(last):
-            own = at(f, 2 * (n * vectors + s) * ROW)
-            table, curved = at(slope, (n * vectors + s) * ROW), at(second, (n * vectors + s) * ROW)
-            for i in range(count):
-                own[i] += table[i] * q[i]
-                own[ROW + i] += table[i] * q[ROW + i]
-            if bends != 0:
-                for i in range(count):
-                    own[i] += curved[i] * q[4 * ROW + i]
-                    own[ROW + i] += curved[i] * q[5 * ROW + i]
-        own = at(f, 2 * (n * vectors + last) * ROW)
-        factor, table = director[n], at(slope, (n * vectors + last) * ROW)
-        if bends != 0:
-            for i in range(count):
-                own[i] += factor * q[2 * ROW + i]
-                own[ROW + i] += factor * q[3 * ROW + i]
-        else:
-            for i in range(count):
-                own[i] += factor * q[2 * ROW + i] + table[i] * q[4 * ROW + i]
-                own[ROW + i] += factor * q[3 * ROW + i] + table[i] * q[5 * ROW + i]
+    for i in range(0, count, WIDTH):
+        rx, ry, dx, dy = q[i], q[ROW + i], q[2 * ROW + i], q[3 * ROW + i]
+        third_x, third_y = q[4 * ROW + i], q[5 * ROW + i]
+        for n in range(nodes):
+            own, table, curved = (
+                at(f, 2 * n * vectors * ROW + i),
+                at(slope, n * vectors * ROW + i),
+                at(second, n * vectors * ROW + i),
+            )
+            for s in range(last):
+                w = table[s * ROW]
+                x, y = own[2 * s * ROW] + w * rx, own[(2 * s + 1) * ROW] + w * ry
+                if bends != 0:
+                    u = curved[s * ROW]
+                    x, y = x + u * third_x, y + u * third_y
+                own[2 * s * ROW], own[(2 * s + 1) * ROW] = x, y
+            factor = director[n]
+            x, y = own[2 * last * ROW] + factor * dx, own[(2 * last + 1) * ROW] + factor * dy
+            if bends == 0:
+                w = table[last * ROW]
+                x, y = x + w * third_x, y + w * third_y
+            own[2 * last * ROW], own[(2 * last + 1) * ROW] = x, y

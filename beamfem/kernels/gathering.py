@@ -2,30 +2,46 @@
 
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, as_rows, first_of
 from beamfem.kernels.pointers import at, reals, wholes
 from beamfem.kernels.record import ROW
 
 
-@routine("iiiinirr")
-def gather(nodes, count, first, stride, place, rows, chunks, e):
-    """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`."""
+@routine("iiiiinirr")
+def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
+    """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`.
+
+    ordered: nodes that are as many places apart as their elements follow one another, as along a chain.
+    """
     for n in range(nodes):
-        own = at(place, n * stride + first)
-        for row in range(rows):
-            to, source = at(e, (n * rows + row) * ROW), at(chunks, row * ROW)
-            for i in range(count):
-                to[i] = source[own[i]]
+        own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
+        if ordered != 0 and own[count - 1] - own[0] == count - 1:
+            source, to = as_rows(at(chunks, own[0])), as_rows(whole)
+            for row in range(rows):
+                for i in range(0, count, WIDTH):
+                    to[row * ROW + i] = source[row * ROW + i]
+        else:
+            for row in range(rows):
+                to, source = at(whole, row * ROW), at(chunks, row * ROW)
+                for i in range(count):
+                    to[i] = source[own[i]]
 
 
-@routine("iiiiniirr")
-def scatter(nodes, count, first, stride, place, size, row, f, chunks):
+@routine("iiiiiniirr")
+def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     """Add forces f (nodes, size, ROW) of a batch to those of its nodes, which begin at a row."""
     for n in range(nodes):
-        own = at(place, n * stride + first)
-        for part in range(size):
-            source, to = at(f, (n * size + part) * ROW), at(chunks, (row + part) * ROW)
-            for i in range(count):
-                to[own[i]] += source[i]
+        own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
+        if ordered != 0 and own[count - 1] - own[0] == count - 1:
+            source, to = as_rows(forces), as_rows(at(sums, own[0]))
+            for part in range(size):
+                for i in range(0, count, WIDTH):
+                    to[part * ROW + i] += first_of(source[part * ROW + i], count - i)
+        else:
+            for part in range(size):
+                source, to = at(forces, part * ROW), at(sums, part * ROW)
+                for i in range(count):
+                    to[own[i]] += source[i]
 
 
 @routine("iiii")
@@ -46,10 +62,10 @@ def fill_tables(group, first, count, part):
     b[r.FILLED_WITH], b[r.FILLED] = filled, count
     if uniform:
         table = at(reals(b[r.TABLES]), own[0] * rows)
+        lanes = as_rows(t)
         for row in range(rows):
-            to, value = at(t, row * ROW), table[row]
-            for i in range(count):
-                to[i] = value
+            for i in range(0, count, WIDTH):
+                lanes[row * ROW + i] = table[row]
         return
     for i in range(count):
         table = at(reals(b[r.TABLES]), own[i] * rows)

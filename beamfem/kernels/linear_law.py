@@ -4,6 +4,7 @@ C comes as the rows of its upper triangle. Laws are passes over rows: strains in
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
@@ -11,11 +12,11 @@ from beamfem.kernels.record import ROW
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iirrrr", fastmath=FAST)
+@routine("iivvvv", fastmath=FAST)
 def four_resultants(count, tangent, weight, c, reference, x):
     """Fill resultants of four measures and, where tangent, their stiffness; x: rows of a point, see `point`."""
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         w = weight[i]
         a0, a1 = eps[i] - reference[i], eps[ROW + i] - reference[ROW + i]
         a2, a3 = eps[2 * ROW + i] - reference[2 * ROW + i], eps[3 * ROW + i] - reference[3 * ROW + i]
@@ -28,15 +29,15 @@ def four_resultants(count, tangent, weight, c, reference, x):
     if tangent != 0:
         for k in range(10):
             to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 to[i] = weight[i] * own[i]
 
 
-@routine("iirrrr", fastmath=FAST)
+@routine("iivvvv", fastmath=FAST)
 def six_resultants(count, tangent, weight, c, reference, x):
     """The same of six measures."""
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         w = weight[i]
         a0, a1 = eps[i] - reference[i], eps[ROW + i] - reference[ROW + i]
         a2, a3 = eps[2 * ROW + i] - reference[2 * ROW + i], eps[3 * ROW + i] - reference[3 * ROW + i]
@@ -55,11 +56,11 @@ def six_resultants(count, tangent, weight, c, reference, x):
     if tangent != 0:
         for k in range(21):
             to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 to[i] = weight[i] * own[i]
 
 
-@routine("iiddrrrr", fastmath=FAST)
+@routine("iiddvvvv", fastmath=FAST)
 def add_viscous(count, measures, ck, cv, weight, c, time, x):
     """Add resultants time C eps' of the rates of strains; weigh the stiffness by ck, and add theirs weighed by cv.
 
@@ -71,12 +72,12 @@ def add_viscous(count, measures, ck, cv, weight, c, time, x):
             own, to = at(c, pair * ROW), at(stiffness, pair * ROW)
             one, other = at(s, row * ROW), at(s, column * ROW)
             its, own_rate = at(rate, column * ROW), at(rate, row * ROW)
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 one[i] += weight[i] * time[i] * own[i] * its[i]
             if column != row:
-                for i in range(count):
+                for i in range(0, count, WIDTH):
                     other[i] += weight[i] * time[i] * own[i] * own_rate[i]
             if ck != 0.0 or cv != 0.0:
-                for i in range(count):
+                for i in range(0, count, WIDTH):
                     to[i] = ck * to[i] + cv * weight[i] * time[i] * own[i]
             pair += 1

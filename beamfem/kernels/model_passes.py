@@ -11,7 +11,7 @@ from beamfem.kernels.record import LANES, ROW
 
 _one, _two, _three = caller("i"), caller("ii"), caller("iii")
 _take, _rotate = caller("iiiinrr"), caller("irrr")
-_gather, _fill_tables = caller("iiiinirr"), caller("iiii")
+_gather, _fill_tables = caller("iiiiinirr"), caller("iiii")
 _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
@@ -138,7 +138,7 @@ def predict_resultants(group, system):
         for i in range(count):
             unit[i] = 1.0
         _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
-        _gather(call[r.GATHER], nodes, count, first, elements, wholes(b[r.PLACE]), 2 * size, chunks, e)
+        _gather(call[r.GATHER], nodes, count, first, elements, b[r.ORDERED], wholes(b[r.PLACE]), 2 * size, chunks, e)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
@@ -204,7 +204,7 @@ def smallest_jacobian(group):
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
-        _gather(call[r.GATHER], nodes, count, first, elements, wholes(b[r.PLACE]), size, chunks, e)
+        _gather(call[r.GATHER], nodes, count, first, elements, b[r.ORDERED], wholes(b[r.PLACE]), size, chunks, e)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)

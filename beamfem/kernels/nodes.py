@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
@@ -32,10 +33,11 @@ def _cosine_sine(angle):
     c = -1.38888888888730564116e-3 + z * c
     c = 4.16666666666665929218e-2 + z * c
     cosine = 1.0 - 0.5 * z + z * z * c
-    place = quarters - 4.0 * np.floor(0.25 * quarters)
-    odd = (place == 1.0) | (place == 3.0)
-    a, b = (sine if odd else cosine), (cosine if odd else sine)
-    return -a if (place == 1.0) | (place == 2.0) else a, -b if place >= 2.0 else b
+    # of the quarter turns: whether they are two or three, and whether one or three
+    half = np.floor(0.5 * quarters) - 2.0 * np.floor(0.25 * quarters)
+    odd = quarters - 2.0 * np.floor(0.5 * quarters)
+    even, minus = 1.0 - odd, 1.0 - 2.0 * half
+    return minus * (even * cosine - odd * sine), minus * (even * sine + odd * cosine)
 
 
 @routine("iiiinrr")
@@ -47,10 +49,10 @@ def take(first, count, coordinates, stride, dof, values, rows):
             to[i] = values[own[i]]
 
 
-@routine("irrrr", fastmath={"contract"})
+@routine("ivvvv", fastmath={"contract"})
 def turn(count, angle, c, s, rows):
     """Fill rows of cosine and sine of angles from a reference whose cosines and sines are c and s."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         cosine, sine = _cosine_sine(angle[i])
         rows[i] = cosine * c[i] - sine * s[i]
         rows[ROW + i] = sine * c[i] + cosine * s[i]

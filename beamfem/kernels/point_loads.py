@@ -10,7 +10,7 @@ from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
-_gather, _scatter, _clear = caller("iiiinirr"), caller("iiiiniirr"), caller("iir")
+_gather, _scatter, _clear = caller("iiiiinirr"), caller("iiiiiniirr"), caller("iir")
 _reduced, _forces = caller("iiiir"), caller("iiidrrrr", types.int64)
 
 
@@ -37,7 +37,7 @@ def add_loads(group, system, values):
     first = 0
     while first < loads:
         count = min(b[r.BATCH], loads - first)
-        _gather(call[r.GATHER], nodes, count, first, loads, place, rows, chunks, e)
+        _gather(call[r.GATHER], nodes, count, first, loads, 0, place, rows, chunks, e)
         if stiff != 0:
             _clear(call[r.CLEAR], nodes * size * nodes * size, count, k)
         coupled = 0
@@ -55,9 +55,9 @@ def add_loads(group, system, values):
                 at(k, lane),
             )
             coupled = max(coupled, done)
-        _scatter(call[r.SCATTER], nodes, count, first, loads, place, size, b[r.FORCE], f, chunks)
+        _scatter(call[r.SCATTER], nodes, count, first, loads, 0, place, size, b[r.FORCE], f, chunks)
         if s[r.PREDICTED] != 0:
-            _scatter(call[r.SCATTER], nodes, count, first, loads, place, size, b[r.PREDICTED_FORCE], f, chunks)
+            _scatter(call[r.SCATTER], nodes, count, first, loads, 0, place, size, b[r.PREDICTED_FORCE], f, chunks)
         if stiff != 0 and coupled != 0:
             _reduced(call[r.REDUCE], group, system, first, count, x)
         first += count

@@ -5,20 +5,25 @@ twice. Addresses stand in tables of whole numbers that Python owns.
 """
 
 from collections.abc import Callable
+from ctypes import addressof, c_char
 from functools import cache
 from inspect import Parameter, Signature
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core.typing import signature
 from numba.extending import intrinsic
 
+from beamfem.kernels.lanes import ROWS
+
 REALS = types.CPointer(types.float64)
 WHOLES = types.CPointer(types.int64)
 SLOTS = types.CPointer(types.int32)
-# one letter an argument: pointers to numbers, whole numbers and 32-bit whole numbers; a whole number, a number
-KINDS = {"r": REALS, "n": WHOLES, "s": SLOTS, "i": types.int64, "d": types.float64}
+# One letter an argument: pointers to numbers, to rows of lanes, whole numbers and 32-bit whole numbers; a whole number,
+# a number.
+KINDS = {"r": REALS, "v": ROWS, "n": WHOLES, "s": SLOTS, "i": types.int64, "d": types.float64}
 
 
 @intrinsic
@@ -49,7 +54,7 @@ slots = _pointer(SLOTS)
 @cache
 def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
     """Return call(address, *arguments) for compiled functions of these kinds of arguments."""
-    wanted = [KINDS[kind] for kind in kinds]
+    wanted = [KINDS["r" if kind == "v" else kind] for kind in kinds]  # drivers have pointers to single numbers
 
     def call(context, address, *arguments):
         def generate(context, builder, outer, given):
@@ -65,3 +70,10 @@ def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
     names = ("context", "address", *(f"argument_{number}" for number in range(len(wanted))))
     vars(call)["__signature__"] = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
     return intrinsic(call)
+
+
+def address_of(values: np.ndarray) -> int:
+    """Return the address of the first number of an array."""
+    if values.size and values.flags.writeable and values.flags.forc:
+        return addressof(c_char.from_buffer(values))
+    return int(values.__array_interface__["data"][0])  # which takes NumPy twice as long

@@ -77,7 +77,8 @@ DAMPING = 59  # rows of a class: (1,) retardation time
 VELOCITY = 60  # rows of a node: e', where resultants depend on it
 APART = 61  # whether no entry of the mass is of d and r0
 NATURAL = 62  # address (elements, points, measures): strains that loads impose; 0 where none do
-BLOCK_FIELDS = 63
+ORDERED = 63  # whether each node of an element has a greater number than that of the element before
+BLOCK_FIELDS = 64
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0

@@ -5,13 +5,14 @@ b), b (turned, turning) a node. What a node has no coordinate for is numbered -1
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iiiiiirrr", fastmath=FAST)
+@routine("iiiiiivvv", fastmath=FAST)
 def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
     """Replace k by k B: columns of each node of `size` components; b (nodes, stride, ROW); space (2, ROW)."""
     rows, linear = nodes * size, size - turned
@@ -24,18 +25,18 @@ def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
                 for part in range(turned):
                     source, factor = at(own, (rows * part + row) * ROW), at(table, (part * turning + column) * ROW)
                     if part == 0:
-                        for i in range(count):
+                        for i in range(0, count, WIDTH):
                             to[i] = source[i] * factor[i]
                     else:
-                        for i in range(count):
+                        for i in range(0, count, WIDTH):
                             to[i] += source[i] * factor[i]
             for column in range(turning):
                 source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
-                for i in range(count):
+                for i in range(0, count, WIDTH):
                     to[i] = source[i]
 
 
-@routine("iiiiiirrr", fastmath=FAST)
+@routine("iiiiiivvv", fastmath=FAST)
 def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
     """Replace k B by B^T k B, in the same way."""
     rows, linear = nodes * size, size - turned
@@ -49,14 +50,14 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
                     for part in range(turned):
                         source, factor = at(own, part * ROW), at(table, (part * turning + row) * ROW)
                         if part == 0:
-                            for i in range(count):
+                            for i in range(0, count, WIDTH):
                                 to[i] = source[i] * factor[i]
                         else:
-                            for i in range(count):
+                            for i in range(0, count, WIDTH):
                                 to[i] += source[i] * factor[i]
                 for row in range(turning):
                     source, to = at(space, row * ROW), at(own, row * ROW)
-                    for i in range(count):
+                    for i in range(0, count, WIDTH):
                         to[i] = source[i]
 
 

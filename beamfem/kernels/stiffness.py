@@ -5,19 +5,20 @@ and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each e
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, zeros
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iiidrrrrr", fastmath=FAST)
+@routine("iiidvvrvv", fastmath=FAST)
 def columns(vectors, bends, count, ck, slope, second, director, h, z):
     """Fill z (2 vectors, 6, ROW): ck h times the tables of the vectors of a node, in rows r, d, t (x and y of each)."""
     last = vectors - 1
     for s in range(last):
         w, u, own = at(slope, s * ROW), at(second, s * ROW), at(z, 12 * s * ROW)
-        for i in range(count):
+        for i in range(0, count, WIDTH):
             a = ck * w[i]
             own[i], own[ROW + i] = a * h[i], a * h[ROW + i]
             own[2 * ROW + i], own[3 * ROW + i] = a * h[3 * ROW + i], a * h[4 * ROW + i]
@@ -26,7 +27,7 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
             own[8 * ROW + i], own[9 * ROW + i] = a * h[5 * ROW + i], a * h[6 * ROW + i]
             own[10 * ROW + i], own[11 * ROW + i] = a * h[9 * ROW + i], a * h[10 * ROW + i]
         if bends != 0:
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 b = ck * u[i]
                 own[i] += b * h[7 * ROW + i]
                 own[ROW + i] += b * h[9 * ROW + i]
@@ -42,7 +43,7 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
                 own[11 * ROW + i] += b * h[20 * ROW + i]
     w, own, b = at(slope, last * ROW), at(z, 12 * last * ROW), ck * director[0]
     if bends != 0:
-        for i in range(count):
+        for i in range(0, count, WIDTH):
             own[i], own[ROW + i] = b * h[3 * ROW + i], b * h[5 * ROW + i]
             own[2 * ROW + i], own[3 * ROW + i] = b * h[11 * ROW + i], b * h[12 * ROW + i]
             own[4 * ROW + i], own[5 * ROW + i] = b * h[14 * ROW + i], b * h[15 * ROW + i]
@@ -50,7 +51,7 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
             own[8 * ROW + i], own[9 * ROW + i] = b * h[12 * ROW + i], b * h[13 * ROW + i]
             own[10 * ROW + i], own[11 * ROW + i] = b * h[16 * ROW + i], b * h[17 * ROW + i]
     else:
-        for i in range(count):
+        for i in range(0, count, WIDTH):
             a = ck * w[i]
             own[i] = b * h[3 * ROW + i] + a * h[7 * ROW + i]
             own[ROW + i] = b * h[5 * ROW + i] + a * h[9 * ROW + i]
@@ -66,7 +67,7 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
             own[11 * ROW + i] = b * h[17 * ROW + i] + a * h[20 * ROW + i]
 
 
-@routine("iiiirrr", fastmath=FAST)
+@routine("iiiivvv", fastmath=FAST)
 def combine(rows, turned, turning, count, b, own, space):
     """Replace vectors own (turned, rows, ROW) by their sums with b (turned, turning, ROW); space (turning, ROW)."""
     for row in range(rows):
@@ -76,18 +77,18 @@ def combine(rows, turned, turning, count, b, own, space):
                 x, y = at(own, (rows * part + row) * ROW), at(own, (rows * (part + 1) + row) * ROW)
                 c, s = at(b, (part * turning + column) * ROW), at(b, ((part + 1) * turning + column) * ROW)
                 if part == 0:
-                    for i in range(count):
+                    for i in range(0, count, WIDTH):
                         to[i] = x[i] * c[i] + y[i] * s[i]
                 else:
-                    for i in range(count):
+                    for i in range(0, count, WIDTH):
                         to[i] += x[i] * c[i] + y[i] * s[i]
         for column in range(turning):
             source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 to[i] = source[i]
 
 
-@routine("iiiiiiirrrrr", fastmath=FAST)
+@routine("iiiiiiivvrvv", fastmath=FAST)
 def products(vectors, bends, count, points, coordinates, slots, z_stride, slope, second, director, z, k):
     """Fill rows of a node in the columns of another: tables times z, summed over points.
 
@@ -97,47 +98,25 @@ def products(vectors, bends, count, points, coordinates, slots, z_stride, slope,
     last, size, nodes = vectors - 1, 2 * vectors, slots // vectors
     for c in range(coordinates):
         for s in range(vectors):
-            x, y = at(k, (c * size + 2 * s) * ROW), at(k, (c * size + 2 * s + 1) * ROW)
-            for point in range(points):
-                own = at(z, (point * z_stride + 6 * c) * ROW)
-                w = at(slope, (point * slots + s) * ROW)
-                if s < last:
-                    if point == 0:
-                        for i in range(count):
-                            x[i] = w[i] * own[i]
-                            y[i] = w[i] * own[ROW + i]
+            for i in range(0, count, WIDTH):
+                x, y = zeros(), zeros()
+                for point in range(points):
+                    own = at(z, (point * z_stride + 6 * c) * ROW + i)
+                    w, u = slope[(point * slots + s) * ROW + i], director[point * nodes]
+                    if s < last:
+                        x, y = x + w * own[0], y + w * own[ROW]
+                        if bends != 0:
+                            curved = second[(point * slots + s) * ROW + i]
+                            x, y = x + curved * own[4 * ROW], y + curved * own[5 * ROW]
                     else:
-                        for i in range(count):
-                            x[i] += w[i] * own[i]
-                            y[i] += w[i] * own[ROW + i]
-                    if bends != 0:
-                        w = at(second, (point * slots + s) * ROW)
-                        for i in range(count):
-                            x[i] += w[i] * own[4 * ROW + i]
-                            y[i] += w[i] * own[5 * ROW + i]
-                elif bends != 0:
-                    b = director[point * nodes]
-                    if point == 0:
-                        for i in range(count):
-                            x[i] = b * own[2 * ROW + i]
-                            y[i] = b * own[3 * ROW + i]
-                    else:
-                        for i in range(count):
-                            x[i] += b * own[2 * ROW + i]
-                            y[i] += b * own[3 * ROW + i]
-                else:
-                    b = director[point * nodes]
-                    if point == 0:
-                        for i in range(count):
-                            x[i] = b * own[2 * ROW + i] + w[i] * own[4 * ROW + i]
-                            y[i] = b * own[3 * ROW + i] + w[i] * own[5 * ROW + i]
-                    else:
-                        for i in range(count):
-                            x[i] += b * own[2 * ROW + i] + w[i] * own[4 * ROW + i]
-                            y[i] += b * own[3 * ROW + i] + w[i] * own[5 * ROW + i]
+                        x, y = x + u * own[2 * ROW], y + u * own[3 * ROW]
+                        if bends == 0:
+                            x, y = x + w * own[4 * ROW], y + w * own[5 * ROW]
+                to = at(k, (c * size + 2 * s) * ROW + i)
+                to[0], to[ROW] = x, y
 
 
-@routine("iiiiiirrr", fastmath=FAST)
+@routine("iiiiiivvv", fastmath=FAST)
 def store(size, turned, turning, coordinates, count, rows, b, own, k):
     """Put rows of a node (coordinates, size, ROW), their last ones summed with its b, into columns and rows of k.
 
@@ -150,7 +129,7 @@ def store(size, turned, turning, coordinates, count, rows, b, own, k):
             source = at(own, (c * size + r) * ROW)
             to = at(k, (c * rows + r) * ROW)
             if r < linear:
-                for i in range(count):
+                for i in range(0, count, WIDTH):
                     to[i] = source[i]
             else:
                 source = at(own, (c * size + linear) * ROW)
@@ -159,18 +138,18 @@ def store(size, turned, turning, coordinates, count, rows, b, own, k):
                     cosine = at(b, (part * turning + r - linear) * ROW)
                     sine = at(b, ((part + 1) * turning + r - linear) * ROW)
                     if part == 0:
-                        for i in range(count):
+                        for i in range(0, count, WIDTH):
                             to[i] = x[i] * cosine[i] + y[i] * sine[i]
                     else:
-                        for i in range(count):
+                        for i in range(0, count, WIDTH):
                             to[i] += x[i] * cosine[i] + y[i] * sine[i]
 
 
-@routine("iir")
+@routine("iiv")
 def mirror(size, count, k):
     """Copy the upper triangle of k (size, size, ROW), columns first, to the lower one."""
     for column in range(size):
         for row in range(column):
             own, to = at(k, (column * size + row) * ROW), at(k, (row * size + column) * ROW)
-            for i in range(count):
+            for i in range(0, count, WIDTH):
                 to[i] = own[i]

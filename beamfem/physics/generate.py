@@ -173,10 +173,10 @@ def _function(
     loads = [(symbol, row) for symbol, row in rows.items() if symbol in {str(each) for each in used}]
     arguments = ", ".join(("count", *scalars, "x"))
     text = [
-        f'@routine("i{"d" * len(scalars)}r", fastmath=FAST)',
+        f'@routine("i{"d" * len(scalars)}v", fastmath=FAST)',
         f"def {name}({arguments}):",
         f'    """Fill {purpose}."""',
-        "    for i in range(count):",
+        "    for i in range(0, count, WIDTH):",
     ]
     text += [f"        {symbol} = x[{row} * ROW + i]" for symbol, row in loads]
     text += [f"        {symbol} = {printer.doprint(value)}" for symbol, value in lines]
@@ -189,7 +189,8 @@ def _module(title: str, functions: Sequence[str]) -> str:
     needs = "import math\n\n" if "math." in body else ""
     return (
         f'"""{title}\n\nWritten by beamfem.physics.generate: do not edit.\n"""\n\n{needs}'
-        "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.record import ROW\n\n"
+        "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.lanes import WIDTH\n"
+        "from beamfem.kernels.record import ROW\n\n"
         f'FAST = {{"contract", "reassoc", "nsz"}}\n\n\n{body}'
     )
 

@@ -4,15 +4,16 @@ Written by beamfem.physics.generate: do not edit.
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def strains(count, x):
     """Fill strains."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -27,10 +28,10 @@ def strains(count, x):
         x[11 * ROW + i] = dx * ex + dy * ey
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def forces(count, x):
     """Fill forces on q of stress resultants."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -51,10 +52,10 @@ def forces(count, x):
         x[44 * ROW + i] = dy * s5 + ey * s2 + ry * s1
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def rates(count, x):
     """Fill the change of strains with a change of q, in its place."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -75,10 +76,10 @@ def rates(count, x):
         x[71 * ROW + i] = dx * ex_ + dx_ * ex + dy * ey_ + dy_ * ey
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]

@@ -6,15 +6,16 @@ Written by beamfem.physics.generate: do not edit.
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def place(count, x):
     """Fill w, w'' and B."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         v_theta = x[1 * ROW + i]
         a_theta = x[2 * ROW + i]
         c = x[3 * ROW + i]
@@ -40,10 +41,10 @@ def place(count, x):
         x[17 * ROW + i] = x2
 
 
-@routine("iddr", fastmath=FAST)
+@routine("iddv", fastmath=FAST)
 def convect(count, ck, cv, x):
     """Fill ck dw''/du + cv dw''/du'."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         v_theta = x[1 * ROW + i]
         a_theta = x[2 * ROW + i]
         c = x[3 * ROW + i]
@@ -59,10 +60,10 @@ def convect(count, ck, cv, x):
         x[9 * ROW + i] = -x2
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def curve(count, x):
     """Fill the derivative of B^T f."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         c = x[3 * ROW + i]
         s = x[4 * ROW + i]
         length = x[5 * ROW + i]

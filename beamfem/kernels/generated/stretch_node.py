@@ -6,15 +6,16 @@ Written by beamfem.physics.generate: do not edit.
 """
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def place(count, x):
     """Fill w, w'' and B."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         u_s = x[0 * ROW + i]
         v_s = x[2 * ROW + i]
         v_theta = x[3 * ROW + i]
@@ -45,10 +46,10 @@ def place(count, x):
         x[24 * ROW + i] = x2
 
 
-@routine("iddr", fastmath=FAST)
+@routine("iddv", fastmath=FAST)
 def convect(count, ck, cv, x):
     """Fill ck dw''/du + cv dw''/du'."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         u_s = x[0 * ROW + i]
         v_s = x[2 * ROW + i]
         v_theta = x[3 * ROW + i]
@@ -79,10 +80,10 @@ def convect(count, ck, cv, x):
         x[16 * ROW + i] = -x12
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def curve(count, x):
     """Fill the derivative of B^T f."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         u_s = x[0 * ROW + i]
         c = x[6 * ROW + i]
         s = x[7 * ROW + i]

@@ -6,15 +6,16 @@ Written by beamfem.physics.generate: do not edit.
 import math
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def strains(count, x):
     """Fill strains."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -30,10 +31,10 @@ def strains(count, x):
         x[9 * ROW + i] = x1 - 1.0
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def forces(count, x):
     """Fill forces on q of stress resultants."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -79,10 +80,10 @@ def forces(count, x):
         x[44 * ROW + i] = dx * x15
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def rates(count, x):
     """Fill the change of strains with a change of q, in its place."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]
@@ -119,10 +120,10 @@ def rates(count, x):
         x[69 * ROW + i] = x3 * (dx * dx_ + dy * dy_)
 
 
-@routine("ir", fastmath=FAST)
+@routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
-    for i in range(count):
+    for i in range(0, count, WIDTH):
         rx = x[0 * ROW + i]
         ry = x[1 * ROW + i]
         dx = x[2 * ROW + i]

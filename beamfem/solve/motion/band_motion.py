@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from beamfem.assembly.arena import Arena, address_of
+from beamfem.assembly.arena import Arena
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march
+from beamfem.kernels.pointers import address_of
 
 Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 

@@ -175,12 +175,15 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
-    unbalanced = residual(system, p, v, a, time)
     if len(multipliers):
+        unbalanced = residual(system, p, v, a, time)
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, time)
         state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
         return a
-    weights = (0.0, step, 1.0) if step > 0.0 else INERTIA
-    _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, weights)
+    if step > 0.0:
+        unbalanced = residual(system, p, v, a, time)
+        _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, (0.0, step, 1.0))
+    else:
+        unbalanced, mass = linearise(system, p, v, a, time, INERTIA)
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a

@@ -16,7 +16,7 @@ class Arena:
         self.arrays: dict[Any, np.ndarray] = {}
         self.addresses: dict[Any, int] = {}
         sizes = [prod(shape) for shape in shapes.values()]
-        memory: np.ndarray = np.empty(sum(sizes), dtype=dtype)
+        memory: np.ndarray = np.zeros(sum(sizes), dtype=dtype)
         address, first = address_of(memory), 0
         for (name, shape), size in zip(shapes.items(), sizes, strict=True):
             self.arrays[name] = memory[first : first + size].reshape(shape)

@@ -59,6 +59,7 @@ class Assembler:
 
     def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
         self.equations, self.size, sheets = equations, equations.size, equations.sheets
+        self._imposes = any(sheet.imposed is not None for sheet in sheets)
         self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
         count = len(sheets)
         whole = Arena(
@@ -136,6 +137,8 @@ class Assembler:
 
     def impose(self, factors: np.ndarray) -> list[int]:
         """Take factors (..., k) of the loads that impose strains; return the address of those of each group, or 0."""
+        if not self._imposes:
+            return [0] * len(self.works)
         found = [_imposed(work.sheet, factors) for work in self.works]
         self._natural = tuple(own for own in found if own is not None)
         places = [0 if own is None else address_of(own) for own in found]
@@ -210,7 +213,6 @@ class Assembler:
         table[[record.TANGENT, record.PREDICTED, record.LOADED]], table[record.RATED] = 0, 1
         self.require()
         node_passes.place_nodes(work.address, self.address, 1)
-        model_passes.clear_forces(work.address)
         element_passes.add_elements(work.address, self.address)
         self.raise_errors()
         size, force = 2 * int(work.table[record.VECTORS]), int(work.table[record.FORCE])

@@ -37,21 +37,16 @@ _KINDS = rotation_node, stretch_node, shear_rigid_node
 # what a task needs, whatever the strain measure
 _TASKS: dict[str, dict[int, Routine]] = {
     "forces": {
-        record.GATHER: gathering.gather,
+        record.COLLECT: gathering.collect,
         record.SCATTER: gathering.scatter,
-        record.FILL_TABLES: gathering.fill_tables,
-        record.FILL_BODY: gathering.fill_body,
         record.INTERPOLATE: field.interpolate,
         record.SPREAD: field.spread,
         record.ADD_INERTIA: inertia.add_inertia,
-        record.ADD_NODE_FORCES: reduction.add_node_forces,
-        record.TAKE: nodes.take,
         record.COPY: nodes.copy,
         record.CLEAR: nodes.clear,
         record.PLACE_NODES: node_passes.place_nodes,
         record.ADD_ELEMENTS: element_passes.add_elements,
         record.FINISH_NODES: node_passes.finish_nodes,
-        record.CLEAR_FORCES: model_passes.clear_forces,
     },
     "tangent": {
         record.COLUMNS: stiffness.columns,

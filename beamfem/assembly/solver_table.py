@@ -75,13 +75,10 @@ def _of_motions(own: Band) -> dict[int, Routine]:
     return {
         record.SOLVE_LOWER: own.solve_lower,
         record.PREDICT: motion_steps.predict,
-        record.CORRECT: motion_steps.correct,
         record.COMPLETE: motion_steps.complete,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
         record.TURNS_SINCE: motion_steps.turns_since,
         record.TURN_PAIRS: motion_steps.turn_pairs,
         record.COUNT_TURNS: motion_steps.count_turns,
-        record.JUDGE: motion_steps.judge,
         record.TURN_ALL: march.turn_all,
-        record.SOLVE_TURNED: march.solve_turned,
     }

@@ -14,7 +14,7 @@ from pathlib import Path
 from time import process_time
 from typing import Any, ClassVar
 
-from numba import config, types
+from numba import config, njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.core.ccallback import CFunc
 from numba.misc.appdirs import AppDirs
@@ -87,6 +87,11 @@ def _address(kind: str, array: ndarray) -> int:
 def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:
     """Return a decorator that makes a `Routine` of a function; `options` are those of `numba.cfunc`."""
     return lambda function: Routine(function, kinds, returns, {"_nrt": False, **options})
+
+
+def inlined(function: Routine) -> Callable[..., Any]:
+    """Return what other compiled code calls without going through an address, where a routine is a small part of it."""
+    return njit(error_model="numpy", forceinline=True, **function.options)(function.function)
 
 
 @cache

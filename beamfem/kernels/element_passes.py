@@ -9,8 +9,7 @@ from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
-_gather, _scatter = caller("iiiiinirr"), caller("iiiiiniirr")
-_fill_tables, _fill_body = caller("iiii"), caller("iinrr")
+_collect, _scatter = caller("iiiii"), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
@@ -35,7 +34,7 @@ def add_elements(group, system):
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
-    beams, place, ordered = wholes(b[r.BEAM]), wholes(b[r.PLACE]), b[r.ORDERED]
+    place, ordered = wholes(b[r.PLACE]), b[r.ORDERED]
     e, f, g, t, q, k = (
         at(x, e * ROW),
         at(x, f * ROW),
@@ -49,10 +48,7 @@ def add_elements(group, system):
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _fill_tables(call[r.FILL_TABLES], group, first, count, table)
-        _gather(call[r.GATHER], nodes, count, first, elements, ordered, place, rows, chunks, e)
-        if s[r.LOADED] != 0:
-            _fill_body(call[r.FILL_BODY], count, 0, at(beams, first), reals(s[r.BODY]), body)
+        _collect(call[r.COLLECT], group, system, first, count, rows)
         _add_inertia(
             call[r.ADD_INERTIA],
             nodes,

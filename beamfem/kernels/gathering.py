@@ -1,13 +1,16 @@
 """Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
 
+from numba import njit
+
 from beamfem.kernels import record as r
+from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH, as_rows, first_of
+from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
 from beamfem.kernels.pointers import at, reals, wholes
 from beamfem.kernels.record import ROW
 
 
-@routine("iiiiinirr")
+@njit(forceinline=True, _nrt=False)
 def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
     """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`.
 
@@ -27,30 +30,12 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
                     to[i] = source[own[i]]
 
 
-@routine("iiiiiniirr")
-def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
-    """Add forces f (nodes, size, ROW) of a batch to those of its nodes, which begin at a row."""
-    for n in range(nodes):
-        own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
-        if ordered != 0 and own[count - 1] - own[0] == count - 1:
-            source, to = as_rows(forces), as_rows(at(sums, own[0]))
-            for part in range(size):
-                for i in range(0, count, WIDTH):
-                    to[part * ROW + i] += first_of(source[part * ROW + i], count - i)
-        else:
-            for part in range(size):
-                source, to = at(forces, part * ROW), at(sums, part * ROW)
-                for i in range(count):
-                    to[own[i]] += source[i]
-
-
-@routine("iiii")
-def fill_tables(group, first, count, part):
+@njit(forceinline=True, _nrt=False)
+def _fill_tables(b, first, count, part):
     """Copy rows of the tables of each element's class to those of a batch that begin at `part`, if they are not there.
 
     Elements of one class share a table, so that the next batch of this class, or the next evaluation, finds it filled.
     """
-    b = wholes(group)
     rows, own, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
     uniform = True
     for i in range(1, count):
@@ -73,10 +58,46 @@ def fill_tables(group, first, count, part):
             t[row * ROW + i] = table[row]
 
 
-@routine("iinrr")
-def fill_body(count, own, beams, body, rows):
+@njit(forceinline=True, _nrt=False)
+def _fill_body(count, beams, body, rows):
     """Copy acceleration of gravity and load per length (beams, 4) of each element's beam to rows (4, ROW)."""
     for i in range(count):
         beam = 4 * beams[i]
         for part in range(4):
             rows[part * ROW + i] = body[beam + part]
+
+
+@routine("iiiii")
+def collect(group, system, first, count, rows):
+    """Fill the work space of a batch: tables, the first rows of its nodes, and what acts on its beams.
+
+    system: 0 where it does not matter what acts.
+    """
+    b = wholes(group)
+    nodes, x = b[r.NODES_PER_ELEMENT], reals(b[r.SPACE])
+    body, e, _, _, table, _, _, _, _, _, _ = rows_of(nodes, b[r.VECTORS], b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
+    _fill_tables(b, first, count, table)
+    gather(
+        nodes, count, first, b[r.ELEMENTS], b[r.ORDERED], wholes(b[r.PLACE]), rows, reals(b[r.CHUNKS]), at(x, e * ROW)
+    )
+    if system != 0:
+        s = wholes(system)
+        if s[r.LOADED] != 0:
+            _fill_body(count, at(wholes(b[r.BEAM]), first), reals(s[r.BODY]), at(x, body * ROW))
+
+
+@routine("iiiiiniirr")
+def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
+    """Add forces f (nodes, size, ROW) of a batch to those of its nodes, which begin at a row."""
+    for n in range(nodes):
+        own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
+        if ordered != 0 and own[count - 1] - own[0] == count - 1:
+            source, to = as_rows(forces), as_rows(at(sums, own[0]))
+            for part in range(size):
+                for i in range(0, count, WIDTH):
+                    to[part * ROW + i] += merged(source[part * ROW + i], zeros(), count - i)
+        else:
+            for part in range(size):
+                source, to = at(forces, part * ROW), at(sums, part * ROW)
+                for i in range(count):
+                    to[own[i]] += source[i]

@@ -46,7 +46,7 @@ _OPERATORS = {
     "fmul": (operator.mul, operator.imul),
     "fdiv": (operator.truediv,),
 }
-_INTRINSICS = {math.sqrt: "llvm.sqrt", np.floor: "llvm.floor"}
+_INTRINSICS: dict[Callable[..., Any], str] = {math.sqrt: "llvm.sqrt", np.floor: "llvm.floor"}
 
 
 @register_model(Lanes)
@@ -180,15 +180,17 @@ def zeros(context):
 
 
 @intrinsic
-def first_of(context, value, count):
-    """Return the first `count` lanes of a value, and zeros beyond."""
+def merged(context, value, other, count):
+    """Return the first `count` lanes of a value, and those of the other one beyond."""
 
     def generate(context, builder, outer, given):
         places = ir.VectorType(ir.IntType(64), WIDTH)
-        counted = builder.insert_element(ir.Constant(places, ir.Undefined), given[1], ir.Constant(ir.IntType(32), 0))
+        undefined = ir.Constant(places, ir.Undefined)
         zeros = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
-        limit = builder.shuffle_vector(counted, ir.Constant(places, ir.Undefined), zeros)
+        limit = builder.shuffle_vector(
+            builder.insert_element(undefined, given[2], zeros.type.element(0)), undefined, zeros
+        )
         inside = builder.icmp_signed("<", ir.Constant(places, list(range(WIDTH))), limit)
-        return builder.select(inside, given[0], ir.Constant(_VECTOR, None))
+        return builder.select(inside, given[0], given[1])
 
-    return signature(LANES, value, types.intp), generate
+    return signature(LANES, value, other, types.intp), generate

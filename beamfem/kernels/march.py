@@ -1,9 +1,10 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
-from numba import types
+from numba import njit, types
 
+from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.pointers import at, caller, reals, wholes
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
@@ -12,10 +13,10 @@ _MOST, _MANY, _SLOW = 8, 3, 0.05
 
 _balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iiiirrr", types.float64), caller("iiirr")
 _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
-_predict, _correct = caller("iidrrrnrr"), caller("iirrnrr", types.float64)
-_judge, _complete = caller("iiddddr", types.int64), caller("iirrrrnrr", types.float64)
+_predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", types.float64)
 _count, _all = caller("inrrr"), caller("iiii")
-_keep, _solve_turned = caller("iir"), caller("iii")
+_keep = caller("iir")
+_correct, _judge = inlined(motion_steps.correct), inlined(motion_steps.judge)
 
 
 @routine("iiii")
@@ -31,10 +32,9 @@ def turn_all(system, solver, calls, keep):
         first += wholes(groups[group])[r.NODES]
 
 
-@routine("iii")
-def solve_turned(system, solver, calls):
+@njit(forceinline=True, _nrt=False)
+def _solve_turned(s, b, call):
     """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
     unknown, half, rollers, residual, right = (
         b[r.UNKNOWN],
         b[r.HALF],
@@ -137,15 +137,15 @@ def march(system, solver, calls):
                 statistics[5] += 1.0
             if iteration == 0 or renew:
                 _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
-            _solve_turned(call[r.SOLVE_TURNED], system, solver, calls)
-            last, size = size, _correct(call[r.CORRECT], n, unknown, state, right, free, scale, factors)
+            _solve_turned(s, b, call)
+            last, size = size, _correct(n, unknown, state, right, free, scale, factors)
             fresh = False
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[7])
-            done = _judge(call[r.JUDGE], iteration, full, size, last, first_size, limits[0], rate)
+            done = _judge(iteration, full, size, last, first_size, limits[0], rate)
             if done > 0:
                 break
             if full == 0:

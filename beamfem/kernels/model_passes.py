@@ -9,24 +9,9 @@ from beamfem.kernels.point import RATE, RESULTANT, STRAIN
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import LANES, ROW
 
-_one, _two, _three = caller("i"), caller("ii"), caller("iii")
-_take, _rotate = caller("iiiinrr"), caller("irrr")
-_gather, _fill_tables = caller("iiiiinirr"), caller("iiii")
+_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiii")
 _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
-
-
-@routine("i")
-def clear_forces(group):
-    """Set the forces on all nodes of a group to zero."""
-    b = wholes(group)
-    chunks, last = reals(b[r.CHUNKS]), (b[r.NODES] - 1) // LANES
-    for chunk in range(last + 1):
-        count = LANES if chunk < last else b[r.NODES] - last * LANES
-        for row in range(b[r.FORCE], b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS]):
-            own = at(chunks, (chunk * b[r.NODE_ROWS] + row) * ROW)
-            for i in range(count):
-                own[i] = 0.0
 
 
 @routine("i")
@@ -47,7 +32,6 @@ def balance(system):
     for group in range(s[r.GROUPS]):
         b = wholes(groups[group])
         call = wholes(b[r.ROUTINES])
-        _one(call[r.CLEAR_FORCES], groups[group])
         _three(call[r.PLACE_NODES], groups[group], system, s[r.MOVING])
         _two(call[r.ADD_ELEMENTS], groups[group], system)
         if b[r.LOADS] > 0:
@@ -113,12 +97,7 @@ def predict_resultants(group, system):
     The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
     """
     b = wholes(group)
-    call, x, chunks, director = (
-        wholes(b[r.ROUTINES]),
-        reals(b[r.SPACE]),
-        reals(b[r.CHUNKS]),
-        reals(b[r.DIRECTOR]),
-    )
+    call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
     nodes, vectors, bends, elements, measures = (
         b[r.NODES_PER_ELEMENT],
         b[r.VECTORS],
@@ -137,8 +116,7 @@ def predict_resultants(group, system):
         count = min(b[r.BATCH], elements - first)
         for i in range(count):
             unit[i] = 1.0
-        _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
-        _gather(call[r.GATHER], nodes, count, first, elements, b[r.ORDERED], wholes(b[r.PLACE]), 2 * size, chunks, e)
+        _collect(call[r.COLLECT], group, 0, first, count, 2 * size)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
@@ -185,12 +163,7 @@ def predict_resultants(group, system):
 def smallest_jacobian(group):
     """Return the smallest r0' x d of all quadrature points, at the nodal vectors in the chunks; negative inside out."""
     b = wholes(group)
-    call, x, chunks, director = (
-        wholes(b[r.ROUTINES]),
-        reals(b[r.SPACE]),
-        reals(b[r.CHUNKS]),
-        reals(b[r.DIRECTOR]),
-    )
+    call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
     nodes, vectors, bends, elements = (
         b[r.NODES_PER_ELEMENT],
         b[r.VECTORS],
@@ -203,8 +176,7 @@ def smallest_jacobian(group):
     smallest, first = 1.0, 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _fill_tables(call[r.FILL_TABLES], group, first, count, tables)
-        _gather(call[r.GATHER], nodes, count, first, elements, b[r.ORDERED], wholes(b[r.PLACE]), size, chunks, e)
+        _collect(call[r.COLLECT], group, 0, first, count, size)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)

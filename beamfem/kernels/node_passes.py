@@ -1,19 +1,38 @@
 """All nodes of a group: from the coordinates of the model to nodal vectors, and from nodal forces to the residual."""
 
+from numba import njit
+
 from beamfem.kernels import record as r
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, as_rows
+from beamfem.kernels.nodes import put, take
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 from beamfem.kernels.record import LANES, ROW
+from beamfem.kernels.reduction import add_node_forces
 
-_take, _turn, _rotate = caller("iiiinrr"), caller("irrrr"), caller("irrr")
-_copy, _clear, _place, _convect = caller("iirr"), caller("iir"), caller("ir"), caller("iddr")
-_add_forces, _add_curvature = caller("iiiiiiniirr"), caller("iiiiiiiinnnisrrd")
+_turn, _rotate = caller("irrrrr"), caller("irrr")
+_clear, _place, _convect = caller("iir"), caller("ir"), caller("iddr")
+_add_curvature = caller("iiiiiiiinnnisrrd")
+
+
+@njit(forceinline=True, _nrt=False)
+def _clear_forces(b, chunks):
+    last = (b[r.NODES] - 1) // LANES
+    for chunk in range(last + 1):
+        count = LANES if chunk < last else b[r.NODES] - last * LANES
+        for row in range(b[r.FORCE], b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS]):
+            own = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + row) * ROW))
+            for i in range(0, count, WIDTH):
+                own[i] = 0.0
 
 
 @routine("iii")
 def place_nodes(group, system, moving):
-    """Fill the chunks of a group with nodal vectors, and where wanted with accelerations and what tangents need."""
+    """Fill the chunks of a group with nodal vectors, and where wanted with accelerations and what tangents need.
+
+    Forces on nodes are zero then.
+    """
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])
     runs, stride, size = wholes(b[r.RUNS]), b[r.NODES], 2 * b[r.VECTORS]
@@ -25,6 +44,7 @@ def place_nodes(group, system, moving):
     )
     p, v, a = reals(s[r.COORDINATES_P]), reals(s[r.COORDINATES_V]), reals(s[r.COORDINATES_A])
     turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
+    _clear_forces(b, chunks)
     for run in range(b[r.RUN_COUNT]):
         kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
         linear = size
@@ -37,19 +57,19 @@ def place_nodes(group, system, moving):
             lane = first % LANES
             count = min(LANES - lane, end - first)
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
-            _take(call[r.TAKE], first, count, linear, stride, dof, p, chunk)
+            take(first, count, linear, stride, dof, p, chunk)
             if moving != 0:
-                _take(call[r.TAKE], first, count, linear, stride, dof, a, at(chunk, b[r.ACCELERATION] * ROW))
+                take(first, count, linear, stride, dof, a, at(chunk, b[r.ACCELERATION] * ROW))
             if kind == TURNED_GRADIENTS:
                 c, t = at(frame, first), at(frame, stride + first)
                 _rotate(call[r.ROTATE], count, c, t, at(chunk, (size - 2) * ROW))
                 if moving != 0:
                     _rotate(call[r.ROTATE], count, c, t, at(chunk, (b[r.ACCELERATION] + size - 2) * ROW))
             elif kind != GRADIENTS:
-                _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
+                take(first, count, own, stride, at(dof, linear * stride), p, x)
                 if moving != 0:
-                    _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), v, at(x, own * ROW))
-                    _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), a, at(x, 2 * own * ROW))
+                    take(first, count, own, stride, at(dof, linear * stride), v, at(x, own * ROW))
+                    take(first, count, own, stride, at(dof, linear * stride), a, at(x, 2 * own * ROW))
                 else:
                     _clear(call[r.CLEAR], 2 * own, count, at(x, own * ROW))
                 directions = at(x, 3 * own * ROW)
@@ -59,15 +79,14 @@ def place_nodes(group, system, moving):
                     at(x, (own - 1) * ROW),
                     at(frame, first),
                     at(frame, stride + first),
+                    at(frame, 2 * stride + first),
                     directions,
                 )
-                _copy(call[r.COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
                 _place(call[r.PLACE_KIND + 3 * (kind - 1)], count, x)
                 parts, result = size - linear, at(directions, 3 * ROW)
-                _copy(call[r.COPY], parts, count, result, at(chunk, linear * ROW))
+                put(parts, count, result, at(chunk, linear * ROW))
                 if moving != 0:
-                    _copy(
-                        call[r.COPY],
+                    put(
                         parts,
                         count,
                         at(result, parts * ROW),
@@ -77,12 +96,12 @@ def place_nodes(group, system, moving):
                 corner = (turned - parts) * turning + linear - (size - turned)
                 for part in range(parts):
                     to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
-                    _copy(call[r.COPY], own, count, at(result, (2 * parts + part * own) * ROW), to)
+                    put(own, count, at(result, (2 * parts + part * own) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
                     _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
                     for part in range(parts):
                         to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
-                        _copy(call[r.COPY], own, count, at(result, part * own * ROW), to)
+                        put(own, count, at(result, part * own * ROW), to)
             first += count
 
 
@@ -108,8 +127,7 @@ def finish_nodes(group, system):
     first = 0
     while first < stride:
         count, chunk = min(LANES, stride - first), at(chunks, first // LANES * b[r.NODE_ROWS] * ROW)
-        _add_forces(
-            call[r.ADD_NODE_FORCES],
+        add_node_forces(
             first,
             count,
             size,
@@ -136,7 +154,7 @@ def finish_nodes(group, system):
             lane = first % LANES
             count = min(LANES - lane, end - first)
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
-            _take(call[r.TAKE], first, count, own, stride, at(dof, linear * stride), p, x)
+            take(first, count, own, stride, at(dof, linear * stride), p, x)
             directions, parts = at(x, 3 * own * ROW), size - linear
             _turn(
                 call[r.TURN],
@@ -144,13 +162,12 @@ def finish_nodes(group, system):
                 at(x, (own - 1) * ROW),
                 at(frame, first),
                 at(frame, stride + first),
+                at(frame, 2 * stride + first),
                 directions,
             )
-            _copy(call[r.COPY], 1, count, at(frame, 2 * stride + first), at(directions, 2 * ROW))
-            _copy(call[r.COPY], parts, count, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
+            put(parts, count, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
             _place(call[r.PLACE_KIND + 3 * (kind - 1) + 2], count, x)
-            _copy(
-                call[r.COPY],
+            put(
                 own * own,
                 count,
                 at(directions, (3 + parts) * ROW),

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH
+from beamfem.kernels.lanes import WIDTH, as_rows, merged
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
@@ -40,7 +40,7 @@ def _cosine_sine(angle):
     return minus * (even * cosine - odd * sine), minus * (even * sine + odd * cosine)
 
 
-@routine("iiiinrr")
+@njit(forceinline=True, _nrt=False)
 def take(first, count, coordinates, stride, dof, values, rows):
     """Copy values (n,) of some coordinates of nodes to rows (coordinates, ROW); dof (coordinates, stride)."""
     for row in range(coordinates):
@@ -49,13 +49,23 @@ def take(first, count, coordinates, stride, dof, values, rows):
             to[i] = values[own[i]]
 
 
-@routine("ivvvv", fastmath={"contract"})
-def turn(count, angle, c, s, rows):
-    """Fill rows of cosine and sine of angles from a reference whose cosines and sines are c and s."""
+@njit(forceinline=True, _nrt=False)
+def put(rows, count, source, to):
+    """Copy rows to lanes of a chunk whose neighbours are of other nodes."""
+    own, its = as_rows(source), as_rows(to)
+    for row in range(rows):
+        for i in range(row * ROW, row * ROW + count, WIDTH):
+            its[i] = merged(own[i], its[i], row * ROW + count - i)
+
+
+@routine("ivvvvv", fastmath={"contract"})
+def turn(count, angle, c, s, length, rows):
+    """Fill rows: cosine and sine of angles from a reference whose cosines and sines are c and s, and its length."""
     for i in range(0, count, WIDTH):
         cosine, sine = _cosine_sine(angle[i])
         rows[i] = cosine * c[i] - sine * s[i]
         rows[ROW + i] = sine * c[i] + cosine * s[i]
+        rows[2 * ROW + i] = length[i]
 
 
 @routine("irrr", fastmath={"contract"})
@@ -67,19 +77,17 @@ def rotate(count, c, s, vector):
         vector[ROW + i] = s[i] * x + c[i] * y
 
 
-@routine("iirr")
+@routine("iivv")
 def copy(rows, count, source, to):
     """Copy rows."""
     for row in range(rows):
-        own, its = at(source, row * ROW), at(to, row * ROW)
-        for i in range(count):
-            its[i] = own[i]
+        for i in range(row * ROW, row * ROW + count, WIDTH):
+            to[i] = source[i]
 
 
-@routine("iir")
+@routine("iiv")
 def clear(rows, count, to):
     """Set rows to zero."""
     for row in range(rows):
-        own = at(to, row * ROW)
-        for i in range(count):
-            own[i] = 0.0
+        for i in range(row * ROW, row * ROW + count, WIDTH):
+            to[i] = 0.0

@@ -7,10 +7,11 @@ from numba import types
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.gathering import gather
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
-_gather, _scatter, _clear = caller("iiiiinirr"), caller("iiiiiniirr"), caller("iir")
+_scatter, _clear = caller("iiiiiniirr"), caller("iir")
 _reduced, _forces = caller("iiiir"), caller("iiidrrrr", types.int64)
 
 
@@ -37,7 +38,7 @@ def add_loads(group, system, values):
     first = 0
     while first < loads:
         count = min(b[r.BATCH], loads - first)
-        _gather(call[r.GATHER], nodes, count, first, loads, 0, place, rows, chunks, e)
+        gather(nodes, count, first, loads, 0, place, rows, chunks, e)
         if stiff != 0:
             _clear(call[r.CLEAR], nodes * size * nodes * size, count, k)
         coupled = 0

@@ -74,6 +74,6 @@ def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
 
 def address_of(values: np.ndarray) -> int:
     """Return the address of the first number of an array."""
-    if values.size and values.flags.writeable and values.flags.forc:
-        return addressof(c_char.from_buffer(values))
+    if values.size and values.flags.writeable and values.flags.c_contiguous:
+        return addressof(c_char.from_buffer(values.data))
     return int(values.__array_interface__["data"][0])  # which takes NumPy twice as long

@@ -107,10 +107,8 @@ SYSTEM_FIELDS = 22
 
 # ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
 (
-    GATHER,
+    COLLECT,
     SCATTER,
-    FILL_TABLES,
-    FILL_BODY,
     INTERPOLATE,
     SPREAD,
     COLUMNS,
@@ -122,9 +120,7 @@ SYSTEM_FIELDS = 22
     REDUCE_ROWS,
     ADD_TO_BAND,
     ADD_TO_SPARSE,
-    ADD_NODE_FORCES,
     ADD_CURVATURE,
-    TAKE,
     TURN,
     ROTATE,
     COPY,
@@ -140,7 +136,6 @@ SYSTEM_FIELDS = 22
     ADD_LOADS,
     FINISH_NODES,
     REDUCE,
-    CLEAR_FORCES,
     NODE_RATES,
     COMBINE,
     STORE,
@@ -150,9 +145,9 @@ SYSTEM_FIELDS = 22
     RATE_NODES,
     VISCOUS,
     RELEASE,
-) = range(43)
-PLACE_KIND = 43  # place, convect and curve of each kind of node that turns
-ROUTINE_COUNT = 52
+) = range(38)
+PLACE_KIND = 38  # place, convect and curve of each kind of node that turns
+ROUTINE_COUNT = 47
 
 # ------------------------------------------------------------------ the unknown coordinates and how to solve for them
 UNKNOWN = 0
@@ -211,14 +206,11 @@ SOLVER_FIELDS = 42
     ROTATE_BACK,
     TAKE_STEP,
     PREDICT,
-    CORRECT,
     COMPLETE,
     KEEP_DIRECTIONS,
     TURNS_SINCE,
     TURN_PAIRS,
     COUNT_TURNS,
-    JUDGE,
     TURN_ALL,
-    SOLVE_TURNED,
-) = range(20)
-SOLVER_ROUTINES = 20
+) = range(17)
+SOLVER_ROUTINES = 17

@@ -49,13 +49,12 @@ def require_rows(solution: "Solution") -> None:
         _require_array(solution, name, (rows, model.size))
     for name in ("at", "p"):
         _require_finite(f"{name} of {kind}", getattr(solution, name))
-    for name, shape, kinds in (
-        ("stability", (rows,), "b"),
-        ("loaded", (rows,), _REAL),
-        ("turned", (rows, len(uncounted(model))), _REAL),
-    ):
-        if getattr(solution, name) is not None:
-            _require_array(solution, name, shape, kinds)
+    if solution.stability is not None:
+        _require_array(solution, "stability", (rows,), "b")
+    if solution.loaded is not None:
+        _require_array(solution, "loaded", (rows,))
+    if solution.turned is not None:
+        _require_array(solution, "turned", (rows, len(uncounted(model))))
 
 
 def require_finite(name: str, state: "State") -> None:
@@ -73,6 +72,8 @@ def _model_of(item: Any) -> Model:
 def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _REAL) -> None:
     """Make an attribute an array of double precision, or of truth values, of a shape. Raises InputError."""
     given = getattr(item, name)
+    if type(given) is np.ndarray and given.shape == shape and given.dtype == (bool if kinds == "b" else float):
+        return
     try:
         values = np.asarray(given)
     except ValueError:  # rows of different lengths

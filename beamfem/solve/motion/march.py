@@ -1,11 +1,14 @@
 """The way through the time steps of a motion: stretches of equal steps, what is kept of them, and where one fails."""
 
 import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamfem.assembly.equations import INERTIA, linearise, residual
+from beamfem.assembly.motion_space import motion_space
 from beamfem.assembly.system import System
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion
@@ -93,27 +96,27 @@ def march(
                 statistics[[4, 6, 7]] = -1.0, 0.0, 0.0
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
-            motion = _steps(system, integrator, part, statistics)
             loaded = np.append(part.times[1:-1], part.loads_to)
             begun, steps = 0, len(loaded)
-            while begun < steps and failed is None:
-                now = min(size, steps - begun) if part.whole else steps
-                rows = slice(begun, begun + now)
-                which = (done + 1, record.every) if part.whole else (1, steps + 1)
-                saving = (record.states, *which, *counting)
-                started = clock.perf_counter()
-                completed = motion.advance(state, held[row + 1 : row + now + 1], loaded[rows], saving)
-                spent = clock.perf_counter() - started
-                row, begun = row + completed, begun + completed
-                done += completed if part.whole else 0
-                if completed < now:
-                    why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
-                    failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
-                if part.whole and completed:
-                    last.step = done, state[:3].copy(), turned.copy()
-                    report(float(part.times[begun]))
-                if part.whole and spent < _CHUNK_SECONDS and not own:
-                    size *= 4
+            with _steps(system, integrator, part, statistics) as motion:
+                while begun < steps and failed is None:
+                    now = min(size, steps - begun) if part.whole else steps
+                    rows = slice(begun, begun + now)
+                    which = (done + 1, record.every) if part.whole else (1, steps + 1)
+                    saving = (record.states, *which, *counting)
+                    started = clock.perf_counter()
+                    completed = motion.advance(state, held[row + 1 : row + now + 1], loaded[rows], saving)
+                    spent = clock.perf_counter() - started
+                    row, begun = row + completed, begun + completed
+                    done += completed if part.whole else 0
+                    if completed < now:
+                        why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
+                        failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
+                    if part.whole and completed:
+                        last.step = done, state[:3].copy(), turned.copy()
+                        report(float(part.times[begun]))
+                    if part.whole and spent < _CHUNK_SECONDS and not own:
+                        size *= 4
             if failed is not None:
                 break
             if part.ends_whole and not part.whole:
@@ -129,14 +132,20 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
     return record.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
 
 
+@contextmanager
 def _steps(
     system: System, integrator: GeneralizedAlpha | Integrator, part: Stretch, statistics: np.ndarray
-) -> BandMotion | SparseMotion | OwnSteps:
-    """Return what takes the steps of a stretch."""
+) -> Iterator[BandMotion | SparseMotion | OwnSteps]:
+    """Lend what takes the steps of a stretch."""
     if not isinstance(integrator, GeneralizedAlpha):
-        return OwnSteps(system, integrator, part.loads_from, statistics)
-    kind = BandMotion if system.unknowns.pattern is None else SparseMotion
-    return kind(system, integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS]), statistics)
+        yield OwnSteps(system, integrator, part.loads_from, statistics)
+        return
+    rule, limits = integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS])
+    if system.unknowns.pattern is None:
+        with motion_space(system) as space:
+            yield BandMotion(system, space, rule, limits, statistics)
+    else:
+        yield SparseMotion(system, rule, limits, statistics)
 
 
 def _why(statistics: np.ndarray) -> str:

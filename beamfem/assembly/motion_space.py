@@ -1,0 +1,61 @@
+"""The arrays that compiled time steps of a band work on, kept for the next motion of the same model."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from beamfem.assembly.arena import Arena
+from beamfem.assembly.system import System
+from beamfem.kernels import record
+from beamfem.kernels.pointers import address_of
+
+_KEPT = 100_000  # entries of a tangent up to which making arrays takes a part of a motion that anybody would notice
+_FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
+
+
+class MotionSpace:
+    """Space for one motion of a model whose tangent is a band, and the tables that tell compiled code of it.
+
+    arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix.
+    """
+
+    def __init__(self, system: System) -> None:
+        size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
+        nodes = sum(len(block.dof) for block in system.blocks)
+        self.assembler = system.assembler()
+        room = Arena(
+            {
+                "residual": (size,),
+                record.ROWS: (unknown, 2 * half + 1),
+                record.RIGHT: (unknown,),
+                record.STEP: (max(size, unknown) + 1,),
+                record.BEFORE: (4, size),
+                record.DIFFERENCES: (3, size),
+                record.INVERSE_SCALE: (size,),
+                record.KEPT: (nodes, 2),
+                record.TURNS: (nodes, 2),
+                record.RULE: (5,),
+                record.LIMITS: (2,),
+            }
+        )
+        self.arrays, places = room.arrays, room.addresses
+        self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
+        self.residual, self.rows = places.pop("residual"), places[record.ROWS]
+        self.solver = system.solver_table.filled(places)
+        self._turning, self._prescribed = system.turning, system.prescribed_dofs
+        for field, values in ((record.PAIR_TABLE, self._turning), (record.PRESCRIBED_DOFS, self._prescribed)):
+            self.solver[field] = address_of(values)
+        self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(self._turning), len(self._prescribed)
+
+
+@contextmanager
+def motion_space(system: System) -> Iterator[MotionSpace]:
+    """Lend space that no other motion works in, with factors, differences and turns that are zero."""
+    try:
+        space = system.spare.pop()
+    except IndexError:
+        space = MotionSpace(system)
+    for field in _FROM_ZERO:
+        space.arrays[field][:] = 0.0
+    yield space
+    if space.arrays[record.ROWS].size <= _KEPT:
+        system.spare.append(space)

@@ -14,6 +14,7 @@ from beamfem.kernels import compiling
 KERNELS = Path(beamfem.__file__).parent / "kernels"
 PLAIN = {
     "numba",
+    "operator",
     "numpy",
     "math",
     "ctypes",
@@ -49,7 +50,7 @@ def small(tmp_path):
     package = tmp_path / "small"
     package.mkdir()
     (package / "__init__.py").touch()
-    for name in ("compiling.py", "pointers.py"):
+    for name in ("compiling.py", "lanes.py", "pointers.py"):
         (package / name).write_text((KERNELS / name).read_text().replace("beamfem.kernels", "small"))
     (package / "inner.py").write_text(INNER.format(factor=3.0))
     (package / "outer.py").write_text(OUTER)

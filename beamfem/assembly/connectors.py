@@ -50,6 +50,8 @@ class Connectors:
 
     def after_load_step(self, p: np.ndarray, load_factor: float) -> np.ndarray:
         """Return p (n,) with what they remember once an equilibrium is accepted."""
+        if len(self.memory) == 0:
+            return p
         zeros = np.zeros(len(p))
         return self.after_step((p, zeros, zeros), load_factor)
 

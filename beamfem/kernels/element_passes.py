@@ -1,5 +1,7 @@
 """All elements of a group, in batches: elastic, inertia and body forces, and their tangents."""
 
+from numba import types
+
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
@@ -9,7 +11,7 @@ from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
-_collect, _scatter = caller("iiiii"), caller("iiiiiniirr")
+_collect, _scatter = caller("iiiiii", types.int64), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
@@ -35,7 +37,7 @@ def add_elements(group, system):
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
     place, ordered = wholes(b[r.PLACE]), b[r.ORDERED]
-    e, f, g, t, q, k = (
+    own, f, g, t, q, k = (
         at(x, e * ROW),
         at(x, f * ROW),
         at(x, g * ROW),
@@ -48,13 +50,14 @@ def add_elements(group, system):
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _collect(call[r.COLLECT], group, system, first, count, rows)
+        apart = _collect(call[r.COLLECT], group, system, first, count, rows, tangent)
+        e, stride = (own, rows * ROW) if apart == 0 else (at(chunks, place[first]), apart)
         _add_inertia(
             call[r.ADD_INERTIA],
             nodes,
             vectors,
             count,
-            rows,
+            stride,
             s[r.LOADED],
             moving,
             b[r.APART],
@@ -72,7 +75,7 @@ def add_elements(group, system):
             second = at(t, (b[r.SECOND] + number * slots_ * bends) * ROW)
             factor = at(director, number * nodes)
             weight = at(t, (b[r.WEIGHT] + number) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, rows, slope, second, factor, e, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, e, q)
             _measure(call[r.STRAINS], count, q)
             if b[r.NATURAL] != 0:
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
@@ -88,7 +91,7 @@ def add_elements(group, system):
             if damped:
                 rate, velocity = at(q, RATE * ROW), at(e, b[r.VELOCITY] * ROW)
                 _interpolate(
-                    call[r.INTERPOLATE], nodes, vectors, bends, count, rows, slope, second, factor, velocity, rate
+                    call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, velocity, rate
                 )
                 _measure(call[r.RATES], count, q)
                 _viscous(

@@ -13,7 +13,7 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiivvrvv", fastmath=FAST)
 def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e, q):
-    """Fill q (6, ROW) from nodal vectors e (nodes, stride, ROW).
+    """Fill q (6, ROW) from nodal vectors e (2 vectors, ROW), those of the next node `stride` numbers on.
 
     slope, second (nodes * vectors, ROW): derivatives of shape functions; director (nodes,): those of d.
     """
@@ -22,7 +22,7 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
         rx, ry, dx, dy, third_x, third_y = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
         for n in range(nodes):
             own, table, curved = (
-                at(e, n * stride * ROW + i),
+                at(e, n * stride + i),
                 at(slope, n * vectors * ROW + i),
                 at(second, n * vectors * ROW + i),
             )

@@ -1,6 +1,6 @@
 """Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
 
-from numba import njit
+from numba import njit, types
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
@@ -61,29 +61,43 @@ def _fill_tables(b, first, count, part):
 @njit(forceinline=True, _nrt=False)
 def _fill_body(count, beams, body, rows):
     """Copy acceleration of gravity and load per length (beams, 4) of each element's beam to rows (4, ROW)."""
+    if beams[count - 1] == beams[0]:  # elements of a beam follow one another
+        lanes, own = as_rows(rows), at(body, 4 * beams[0])
+        for part in range(4):
+            for i in range(part * ROW, part * ROW + count, WIDTH):
+                lanes[i] = own[part]
+        return
     for i in range(count):
         beam = 4 * beams[i]
         for part in range(4):
             rows[part * ROW + i] = body[beam + part]
 
 
-@routine("iiiii")
-def collect(group, system, first, count, rows):
-    """Fill the work space of a batch: tables, the first rows of its nodes, and what acts on its beams.
+@routine("iiiiii", types.int64)
+def collect(group, system, first, count, rows, copied):
+    """Fill the work space of a batch: tables, what acts on its beams, and the first rows of its nodes.
 
-    system: 0 where it does not matter what acts.
+    system: 0 where it does not matter what acts. Where nodes need not be copied and stand in a chunk as their elements
+    follow one another, they are left there, and how far apart those of an element are is returned; else 0.
     """
     b = wholes(group)
-    nodes, x = b[r.NODES_PER_ELEMENT], reals(b[r.SPACE])
+    nodes, elements, place, x = b[r.NODES_PER_ELEMENT], b[r.ELEMENTS], wholes(b[r.PLACE]), reals(b[r.SPACE])
     body, e, _, _, table, _, _, _, _, _, _ = rows_of(nodes, b[r.VECTORS], b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     _fill_tables(b, first, count, table)
-    gather(
-        nodes, count, first, b[r.ELEMENTS], b[r.ORDERED], wholes(b[r.PLACE]), rows, reals(b[r.CHUNKS]), at(x, e * ROW)
-    )
     if system != 0:
         s = wholes(system)
         if s[r.LOADED] != 0:
             _fill_body(count, at(wholes(b[r.BEAM]), first), reals(s[r.BODY]), at(x, body * ROW))
+    if copied == 0 and b[r.ORDERED] != 0:
+        apart, begin = place[elements + first] - place[first], place[first]
+        for n in range(nodes):
+            own = at(place, n * elements + first)
+            if own[0] - begin != n * apart or own[count - 1] - own[0] != count - 1:
+                apart = 0
+        if apart != 0:
+            return apart
+    gather(nodes, count, first, elements, b[r.ORDERED], place, rows, reals(b[r.CHUNKS]), at(x, e * ROW))
+    return 0
 
 
 @routine("iiiiiniirr")

@@ -10,7 +10,7 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiiiivvvvvv", fastmath=FAST)
 def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, gravity, length, body, e, f):
-    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e (nodes, stride, ROW), e'' behind e.
+    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e'' follows e, those of the next node `stride` on.
 
     apart: the mass of d has no entries with that of r0, as in every section that is as heavy above as below the axis.
     """
@@ -28,7 +28,7 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, grav
                 end = last if apart != 0 and own_vector < last else vectors
                 for n in range(nodes):
                     masses = at(mass, (slot * slots + n * vectors) * ROW + i)
-                    its = at(e, (n * stride + 2 * vectors) * ROW + i)
+                    its = at(e, n * stride + 2 * vectors * ROW + i)
                     for s in range(begin, end):
                         m = masses[s * ROW]
                         x, y = x + m * its[2 * s * ROW], y + m * its[(2 * s + 1) * ROW]

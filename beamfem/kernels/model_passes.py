@@ -9,7 +9,7 @@ from beamfem.kernels.point import RATE, RESULTANT, STRAIN
 from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import LANES, ROW
 
-_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiii")
+_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", types.int64)
 _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
@@ -116,11 +116,11 @@ def predict_resultants(group, system):
         count = min(b[r.BATCH], elements - first)
         for i in range(count):
             unit[i] = 1.0
-        _collect(call[r.COLLECT], group, 0, first, count, 2 * size)
+        _collect(call[r.COLLECT], group, 0, first, count, 2 * size, 1)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, 2 * size, slope, second, factor, e, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, 2 * size * ROW, slope, second, factor, e, q)
             _measure(call[r.STRAINS], count, q)
             rate = at(q, RATE * ROW)
             _interpolate(
@@ -129,7 +129,7 @@ def predict_resultants(group, system):
                 vectors,
                 bends,
                 count,
-                2 * size,
+                2 * size * ROW,
                 slope,
                 second,
                 factor,
@@ -176,11 +176,11 @@ def smallest_jacobian(group):
     smallest, first = 1.0, 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _collect(call[r.COLLECT], group, 0, first, count, size)
+        _collect(call[r.COLLECT], group, 0, first, count, size, 1)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, size, slope, second, factor, e, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, size * ROW, slope, second, factor, e, q)
             for i in range(count):
                 smallest = min(smallest, q[i] * q[3 * ROW + i] - q[ROW + i] * q[2 * ROW + i])
         first += count

@@ -15,6 +15,7 @@ from beamfem.kernels.model_passes import balance
 from studies.benchmarks.roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
 from studies.benchmarks.uncompiled import Memory, uncompiled
 
+_NOTHING = 0  # a whole number, which no sum of floating-point numbers is
 _CHAINS = (5, 9)  # elements; their difference leaves the ends out
 
 
@@ -71,6 +72,8 @@ def _counting(
         return Counted(operation(self.value, plain(other)), self.tally)
 
     def reflected(self: Counted, other: Any) -> Counted:
+        if other is _NOTHING and operation is operator.add:  # the begin of a sum
+            return self
         self.tally.operations += 1
         self.tally.slow += slow
         return Counted(operation(other, self.value), self.tally)

@@ -1,4 +1,7 @@
-"""Kernels run as the Python they are written in, on memory whose floating-point numbers may be replaced by others."""
+"""Kernels run as the Python they are written in, on memory whose floating-point numbers may be replaced by others.
+
+Rows are taken one lane at a time then.
+"""
 
 import importlib
 import math
@@ -14,7 +17,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.extending import _Intrinsic
 
 import beamfem.kernels
-from beamfem.kernels import nodes, pointers
+from beamfem.kernels import lanes, nodes, pointers
 from beamfem.kernels.compiling import Routine
 
 
@@ -61,12 +64,23 @@ def uncompiled(memory: Memory) -> Iterator[None]:
     def at(pointer: Pointer, count: int) -> Pointer:
         return Pointer(pointer.values, pointer.first + int(count))
 
-    plain = {"at": at, "reals": memory.at, "wholes": memory.at, "slots": memory.at}
+    plain = {
+        "at": at,
+        "reals": memory.at,
+        "wholes": memory.at,
+        "slots": memory.at,
+        "as_rows": lambda pointer: pointer,
+        "zeros": lambda: 0,
+        "merged": lambda value, other, count: value,
+    }
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
     try:
         for module in _modules():
             for name, value in list(vars(module).items()):
-                if isinstance(value, _Intrinsic) and module is not pointers:
+                if name == "WIDTH":
+                    replaced.append((module, name, value))
+                    setattr(module, name, 1)
+                elif isinstance(value, _Intrinsic) and module not in (lanes, pointers):
                     replaced.append((module, name, value))
                     setattr(module, name, plain.get(name, call))
                 elif isinstance(value, Dispatcher):

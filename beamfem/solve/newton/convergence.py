@@ -29,7 +29,7 @@ class Correction:
 
     @property
     def diverges(self) -> bool:
-        return not np.isfinite(self.size) or self.size > LARGEST
+        return not self.size <= LARGEST
 
     @property
     def stagnates(self) -> bool:

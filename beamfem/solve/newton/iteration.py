@@ -23,7 +23,7 @@ class Termination(Enum):
 
     @property
     def good(self) -> bool:
-        return self in (Termination.CONVERGED, Termination.ROUND_OFF)
+        return self is Termination.CONVERGED or self is Termination.ROUND_OFF
 
 
 @dataclass(frozen=True)

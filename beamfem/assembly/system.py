@@ -228,10 +228,13 @@ class System:
 
         Gradients elsewhere on the beam cannot tell a full turn from none, so it must be followed in parts.
         """
-        turning = [item for item in self.held if item.turns]
-        return max(
-            (abs(item.change(after, self.static) - item.change(before, self.static)) for item in turning), default=0.0
-        )
+        static = self.static
+        return max((abs(own.change(after, static) - own.change(before, static)) for own in self._turned), default=0.0)
+
+    @cached_property
+    def _turned(self) -> tuple[Held, ...]:
+        """Rotations that supports change."""
+        return tuple(item for item in self.held if item.turns and (callable(item.value) or item.value != 0.0))
 
     @cached_property
     def unknowns(self) -> Unknowns:

@@ -32,8 +32,8 @@ class Actions:
 
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""
-        factors = np.array([*(factor(load, time, static) for load in self.loads), 1.0])
-        return self.unit * factors[self.source][:, None]
+        factors = [factor(load, time, static) for load in self.loads]
+        return self.unit * np.array([*factors, 1.0])[self.source, None]
 
 
 def build_actions(model: Model, block: int) -> Actions:

@@ -41,9 +41,9 @@ def require_rows(solution: "Solution") -> None:
     """
     model, kind = _model_of(solution), type(solution).__name__
     flag(f"static of {kind}", solution.static)
-    rows = np.size(solution.at) if np.ndim(solution.at) == 1 else -1
-    if rows < 0:
+    if np.ndim(solution.at) != 1:
         raise InputError(f"at of {kind} must be a list of load factors or times, got {shown(solution.at)}")
+    rows = len(solution.at)
     _require_array(solution, "at", (rows,))
     for name in ("p", "v", "a"):
         _require_array(solution, name, (rows, model.size))

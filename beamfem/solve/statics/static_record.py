@@ -51,9 +51,10 @@ class StaticRecord:
 
         Warns of few digits and, where the solve is complete, of unstable rows: where it is not, an error is on its way.
         """
-        load_factors, states, counts = map(np.array, zip(*self.rows, strict=True))
+        load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
+        counts = [count for _, _, count in self.rows]
         # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
-        unstable = counts > 0 if self.symmetric else counts % 2 == 1
+        unstable = np.array([count > 0 if self.symmetric else count % 2 == 1 for count in counts])
         status = Status.STOPPED if not complete else Status.COMPLETED
         if complete and self.ended is Termination.ROUND_OFF:
             status = Status.ROUND_OFF

@@ -15,6 +15,7 @@ import sympy
 from sympy.printing.pycode import PythonCodePrinter
 
 from beamfem.kernels import point
+from beamfem.kernels.record import ROW
 from beamfem.physics.kinematics import KINDS, Kinematics
 from beamfem.physics.measures import MEASURES, Measure
 
@@ -178,9 +179,10 @@ def _function(
         f'    """Fill {purpose}."""',
         "    for i in range(0, count, WIDTH):",
     ]
-    text += [f"        {symbol} = x[{row} * ROW + i]" for symbol, row in loads]
+    text += ["        own = at(x, i)"]
+    text += [f"        {symbol} = own[{row * ROW}]" for symbol, row in loads]
     text += [f"        {symbol} = {printer.doprint(value)}" for symbol, value in lines]
-    text += [f"        x[{to + number} * ROW + i] = {printer.doprint(value)}" for number, value in enumerate(results)]
+    text += [f"        own[{(to + number) * ROW}] = {printer.doprint(value)}" for number, value in enumerate(results)]
     return "\n".join(text) + "\n"
 
 
@@ -188,9 +190,9 @@ def _module(title: str, functions: Sequence[str]) -> str:
     body = "\n\n".join(functions)
     needs = "import math\n\n" if "math." in body else ""
     return (
-        f'"""{title}\n\nWritten by beamfem.physics.generate: do not edit.\n"""\n\n{needs}'
+        f'"""{title}\n\nA row has {ROW} numbers. Written by beamfem.physics.generate: do not edit.\n"""\n\n{needs}'
         "from beamfem.kernels.compiling import routine\nfrom beamfem.kernels.lanes import WIDTH\n"
-        "from beamfem.kernels.record import ROW\n\n"
+        "from beamfem.kernels.pointers import at\n\n"
         f'FAST = {{"contract", "reassoc", "nsz"}}\n\n\n{body}'
     )
 

@@ -1,11 +1,11 @@
 """Passes of the strain measure `beamfem.physics.measures.green_lagrange`.
 
-Written by beamfem.physics.generate: do not edit.
+A row has 72 numbers. Written by beamfem.physics.generate: do not edit.
 """
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH
-from beamfem.kernels.record import ROW
+from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
 
@@ -14,105 +14,109 @@ FAST = {"contract", "reassoc", "nsz"}
 def strains(count, x):
     """Fill strains."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        x[6 * ROW + i] = (0.5) * ((rx * rx) + (ry * ry) - 1.0)
-        x[7 * ROW + i] = ex * rx + ey * ry
-        x[8 * ROW + i] = (0.5) * ((ex * ex) + (ey * ey))
-        x[9 * ROW + i] = (0.5) * ((dx * dx) + (dy * dy) - 1.0)
-        x[10 * ROW + i] = dx * rx + dy * ry
-        x[11 * ROW + i] = dx * ex + dy * ey
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        own[432] = (0.5) * ((rx * rx) + (ry * ry) - 1.0)
+        own[504] = ex * rx + ey * ry
+        own[576] = (0.5) * ((ex * ex) + (ey * ey))
+        own[648] = (0.5) * ((dx * dx) + (dy * dy) - 1.0)
+        own[720] = dx * rx + dy * ry
+        own[792] = dx * ex + dy * ey
 
 
 @routine("iv", fastmath=FAST)
 def forces(count, x):
     """Fill forces on q of stress resultants."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        s0 = x[12 * ROW + i]
-        s1 = x[13 * ROW + i]
-        s2 = x[14 * ROW + i]
-        s3 = x[15 * ROW + i]
-        s4 = x[16 * ROW + i]
-        s5 = x[17 * ROW + i]
-        x[39 * ROW + i] = dx * s4 + ex * s1 + rx * s0
-        x[40 * ROW + i] = dy * s4 + ey * s1 + ry * s0
-        x[41 * ROW + i] = dx * s3 + ex * s5 + rx * s4
-        x[42 * ROW + i] = dy * s3 + ey * s5 + ry * s4
-        x[43 * ROW + i] = dx * s5 + ex * s2 + rx * s1
-        x[44 * ROW + i] = dy * s5 + ey * s2 + ry * s1
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        s0 = own[864]
+        s1 = own[936]
+        s2 = own[1008]
+        s3 = own[1080]
+        s4 = own[1152]
+        s5 = own[1224]
+        own[2808] = dx * s4 + ex * s1 + rx * s0
+        own[2880] = dy * s4 + ey * s1 + ry * s0
+        own[2952] = dx * s3 + ex * s5 + rx * s4
+        own[3024] = dy * s3 + ey * s5 + ry * s4
+        own[3096] = dx * s5 + ex * s2 + rx * s1
+        own[3168] = dy * s5 + ey * s2 + ry * s1
 
 
 @routine("iv", fastmath=FAST)
 def rates(count, x):
     """Fill the change of strains with a change of q, in its place."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        rx_ = x[66 * ROW + i]
-        ry_ = x[67 * ROW + i]
-        dx_ = x[68 * ROW + i]
-        dy_ = x[69 * ROW + i]
-        ex_ = x[70 * ROW + i]
-        ey_ = x[71 * ROW + i]
-        x[66 * ROW + i] = rx * rx_ + ry * ry_
-        x[67 * ROW + i] = ex * rx_ + ex_ * rx + ey * ry_ + ey_ * ry
-        x[68 * ROW + i] = ex * ex_ + ey * ey_
-        x[69 * ROW + i] = dx * dx_ + dy * dy_
-        x[70 * ROW + i] = dx * rx_ + dx_ * rx + dy * ry_ + dy_ * ry
-        x[71 * ROW + i] = dx * ex_ + dx_ * ex + dy * ey_ + dy_ * ey
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        rx_ = own[4752]
+        ry_ = own[4824]
+        dx_ = own[4896]
+        dy_ = own[4968]
+        ex_ = own[5040]
+        ey_ = own[5112]
+        own[4752] = rx * rx_ + ry * ry_
+        own[4824] = ex * rx_ + ex_ * rx + ey * ry_ + ey_ * ry
+        own[4896] = ex * ex_ + ey * ey_
+        own[4968] = dx * dx_ + dy * dy_
+        own[5040] = dx * rx_ + dx_ * rx + dy * ry_ + dy_ * ry
+        own[5112] = dx * ex_ + dx_ * ex + dy * ey_ + dy_ * ey
 
 
 @routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        s0 = x[12 * ROW + i]
-        s1 = x[13 * ROW + i]
-        s2 = x[14 * ROW + i]
-        s3 = x[15 * ROW + i]
-        s4 = x[16 * ROW + i]
-        s5 = x[17 * ROW + i]
-        c00 = x[18 * ROW + i]
-        c01 = x[19 * ROW + i]
-        c02 = x[20 * ROW + i]
-        c03 = x[21 * ROW + i]
-        c04 = x[22 * ROW + i]
-        c05 = x[23 * ROW + i]
-        c11 = x[24 * ROW + i]
-        c12 = x[25 * ROW + i]
-        c13 = x[26 * ROW + i]
-        c14 = x[27 * ROW + i]
-        c15 = x[28 * ROW + i]
-        c22 = x[29 * ROW + i]
-        c23 = x[30 * ROW + i]
-        c24 = x[31 * ROW + i]
-        c25 = x[32 * ROW + i]
-        c33 = x[33 * ROW + i]
-        c34 = x[34 * ROW + i]
-        c35 = x[35 * ROW + i]
-        c44 = x[36 * ROW + i]
-        c45 = x[37 * ROW + i]
-        c55 = x[38 * ROW + i]
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        s0 = own[864]
+        s1 = own[936]
+        s2 = own[1008]
+        s3 = own[1080]
+        s4 = own[1152]
+        s5 = own[1224]
+        c00 = own[1296]
+        c01 = own[1368]
+        c02 = own[1440]
+        c03 = own[1512]
+        c04 = own[1584]
+        c05 = own[1656]
+        c11 = own[1728]
+        c12 = own[1800]
+        c13 = own[1872]
+        c14 = own[1944]
+        c15 = own[2016]
+        c22 = own[2088]
+        c23 = own[2160]
+        c24 = own[2232]
+        c25 = own[2304]
+        c33 = own[2376]
+        c34 = own[2448]
+        c35 = own[2520]
+        c44 = own[2592]
+        c45 = own[2664]
+        c55 = own[2736]
         j00 = rx
         j01 = ry
         j10 = ex
@@ -159,24 +163,24 @@ def hessian(count, x):
         u53 = c35 * j33 + c45 * j43 + c55 * j53
         u54 = c15 * j14 + c25 * j24 + c55 * j54
         u55 = c15 * j15 + c25 * j25 + c55 * j55
-        x[45 * ROW + i] = j00 * u00 + j10 * u10 + j40 * u40 + s0
-        x[46 * ROW + i] = j00 * u01 + j10 * u11 + j40 * u41
-        x[47 * ROW + i] = j01 * u01 + j11 * u11 + j41 * u41 + s0
-        x[48 * ROW + i] = j00 * u02 + j10 * u12 + j40 * u42 + s4
-        x[49 * ROW + i] = j00 * u03 + j10 * u13 + j40 * u43
-        x[50 * ROW + i] = j01 * u02 + j11 * u12 + j41 * u42
-        x[51 * ROW + i] = j01 * u03 + j11 * u13 + j41 * u43 + s4
-        x[52 * ROW + i] = j00 * u04 + j10 * u14 + j40 * u44 + s1
-        x[53 * ROW + i] = j00 * u05 + j10 * u15 + j40 * u45
-        x[54 * ROW + i] = j01 * u04 + j11 * u14 + j41 * u44
-        x[55 * ROW + i] = j01 * u05 + j11 * u15 + j41 * u45 + s1
-        x[56 * ROW + i] = j32 * u32 + j42 * u42 + j52 * u52 + s3
-        x[57 * ROW + i] = j32 * u33 + j42 * u43 + j52 * u53
-        x[58 * ROW + i] = j33 * u33 + j43 * u43 + j53 * u53 + s3
-        x[59 * ROW + i] = j32 * u34 + j42 * u44 + j52 * u54 + s5
-        x[60 * ROW + i] = j32 * u35 + j42 * u45 + j52 * u55
-        x[61 * ROW + i] = j33 * u34 + j43 * u44 + j53 * u54
-        x[62 * ROW + i] = j33 * u35 + j43 * u45 + j53 * u55 + s5
-        x[63 * ROW + i] = j14 * u14 + j24 * u24 + j54 * u54 + s2
-        x[64 * ROW + i] = j14 * u15 + j24 * u25 + j54 * u55
-        x[65 * ROW + i] = j15 * u15 + j25 * u25 + j55 * u55 + s2
+        own[3240] = j00 * u00 + j10 * u10 + j40 * u40 + s0
+        own[3312] = j00 * u01 + j10 * u11 + j40 * u41
+        own[3384] = j01 * u01 + j11 * u11 + j41 * u41 + s0
+        own[3456] = j00 * u02 + j10 * u12 + j40 * u42 + s4
+        own[3528] = j00 * u03 + j10 * u13 + j40 * u43
+        own[3600] = j01 * u02 + j11 * u12 + j41 * u42
+        own[3672] = j01 * u03 + j11 * u13 + j41 * u43 + s4
+        own[3744] = j00 * u04 + j10 * u14 + j40 * u44 + s1
+        own[3816] = j00 * u05 + j10 * u15 + j40 * u45
+        own[3888] = j01 * u04 + j11 * u14 + j41 * u44
+        own[3960] = j01 * u05 + j11 * u15 + j41 * u45 + s1
+        own[4032] = j32 * u32 + j42 * u42 + j52 * u52 + s3
+        own[4104] = j32 * u33 + j42 * u43 + j52 * u53
+        own[4176] = j33 * u33 + j43 * u43 + j53 * u53 + s3
+        own[4248] = j32 * u34 + j42 * u44 + j52 * u54 + s5
+        own[4320] = j32 * u35 + j42 * u45 + j52 * u55
+        own[4392] = j33 * u34 + j43 * u44 + j53 * u54
+        own[4464] = j33 * u35 + j43 * u45 + j53 * u55 + s5
+        own[4536] = j14 * u14 + j24 * u24 + j54 * u54 + s2
+        own[4608] = j14 * u15 + j24 * u25 + j54 * u55
+        own[4680] = j15 * u15 + j25 * u25 + j55 * u55 + s2

@@ -1,13 +1,13 @@
 """Passes of the strain measure `beamfem.physics.measures.structural`.
 
-Written by beamfem.physics.generate: do not edit.
+A row has 72 numbers. Written by beamfem.physics.generate: do not edit.
 """
 
 import math
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH
-from beamfem.kernels.record import ROW
+from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
 
@@ -16,35 +16,37 @@ FAST = {"contract", "reassoc", "nsz"}
 def strains(count, x):
     """Fill strains."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
         x0 = (dx * dx) + (dy * dy)
         x1 = math.sqrt(x0)
         x2 = 1.0 / x1
-        x[6 * ROW + i] = -dx * ry * x2 + dy * rx * x2 - 1.0
-        x[7 * ROW + i] = x2 * (dx * rx + dy * ry)
-        x[8 * ROW + i] = (dx * ey - dy * ex) / x0
-        x[9 * ROW + i] = x1 - 1.0
+        own[432] = -dx * ry * x2 + dy * rx * x2 - 1.0
+        own[504] = x2 * (dx * rx + dy * ry)
+        own[576] = (dx * ey - dy * ex) / x0
+        own[648] = x1 - 1.0
 
 
 @routine("iv", fastmath=FAST)
 def forces(count, x):
     """Fill forces on q of stress resultants."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        s0 = x[12 * ROW + i]
-        s1 = x[13 * ROW + i]
-        s2 = x[14 * ROW + i]
-        s3 = x[15 * ROW + i]
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        s0 = own[864]
+        s1 = own[936]
+        s2 = own[1008]
+        s3 = own[1080]
         x0 = dx * dx
         x1 = dy * dy
         x2 = x0 + x1
@@ -62,40 +64,41 @@ def forces(count, x):
         x14 = x4 * (-x12 + x13)
         x15 = s2 * x4
         x16 = x1 * x4
-        x[39 * ROW + i] = x3 * (dx * s1 + dy * s0)
-        x[40 * ROW + i] = x3 * (-dx * s0 + dy * s1)
-        x[41 * ROW + i] = (
+        own[2808] = x3 * (dx * s1 + dy * s0)
+        own[2880] = x3 * (-dx * s0 + dy * s1)
+        own[2952] = (
             dx * s3 * x3
             - x11 * (rx * x8 - rx + x10)
             - x15 * (dx * x14 + ey * x8 - ey - x12 * x5)
             - x9 * (-ry * x8 + ry + x7)
         )
-        x[42 * ROW + i] = (
+        own[3024] = (
             dy * s3 * x3
             - x11 * (ry * x16 - ry + x7)
             - x15 * (dy * x13 * x4 + dy * x14 - ex * x16 + ex)
             + x9 * (-rx * x16 + rx + x10)
         )
-        x[43 * ROW + i] = -dy * x15
-        x[44 * ROW + i] = dx * x15
+        own[3096] = -dy * x15
+        own[3168] = dx * x15
 
 
 @routine("iv", fastmath=FAST)
 def rates(count, x):
     """Fill the change of strains with a change of q, in its place."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        rx_ = x[66 * ROW + i]
-        ry_ = x[67 * ROW + i]
-        dx_ = x[68 * ROW + i]
-        dy_ = x[69 * ROW + i]
-        ex_ = x[70 * ROW + i]
-        ey_ = x[71 * ROW + i]
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        rx_ = own[4752]
+        ry_ = own[4824]
+        dx_ = own[4896]
+        dy_ = own[4968]
+        ex_ = own[5040]
+        ey_ = own[5112]
         x0 = dx * dx
         x1 = dy * dy
         x2 = x0 + x1
@@ -109,41 +112,42 @@ def rates(count, x):
         x10 = dx * ey
         x11 = dy * ex
         x12 = x4 * (x10 - x11)
-        x[66 * ROW + i] = x3 * (-dx * ry_ - dx_ * (ry - x0 * x8 + x7) + dy * rx_ + dy_ * (rx - x1 * x5 + x9))
-        x[67 * ROW + i] = x3 * (dx * rx_ - dx_ * (-rx + x0 * x5 + x9) + dy * ry_ - dy_ * (-ry + x1 * x8 + x7))
-        x[68 * ROW + i] = x4 * (
+        own[4752] = x3 * (-dx * ry_ - dx_ * (ry - x0 * x8 + x7) + dy * rx_ + dy_ * (rx - x1 * x5 + x9))
+        own[4824] = x3 * (dx * rx_ - dx_ * (-rx + x0 * x5 + x9) + dy * ry_ - dy_ * (-ry + x1 * x8 + x7))
+        own[4896] = x4 * (
             dx * ey_
             - dx_ * (-dx * x11 * x4 + dx * x12 + ey * x0 * x4 - ey)
             - dy * ex_
             - dy_ * (dy * x10 * x4 + dy * x12 - ex * x1 * x4 + ex)
         )
-        x[69 * ROW + i] = x3 * (dx * dx_ + dy * dy_)
+        own[4968] = x3 * (dx * dx_ + dy * dy_)
 
 
 @routine("iv", fastmath=FAST)
 def hessian(count, x):
     """Fill the second derivative of the energy by q."""
     for i in range(0, count, WIDTH):
-        rx = x[0 * ROW + i]
-        ry = x[1 * ROW + i]
-        dx = x[2 * ROW + i]
-        dy = x[3 * ROW + i]
-        ex = x[4 * ROW + i]
-        ey = x[5 * ROW + i]
-        s0 = x[12 * ROW + i]
-        s1 = x[13 * ROW + i]
-        s2 = x[14 * ROW + i]
-        s3 = x[15 * ROW + i]
-        c00 = x[18 * ROW + i]
-        c01 = x[19 * ROW + i]
-        c02 = x[20 * ROW + i]
-        c03 = x[21 * ROW + i]
-        c11 = x[22 * ROW + i]
-        c12 = x[23 * ROW + i]
-        c13 = x[24 * ROW + i]
-        c22 = x[25 * ROW + i]
-        c23 = x[26 * ROW + i]
-        c33 = x[27 * ROW + i]
+        own = at(x, i)
+        rx = own[0]
+        ry = own[72]
+        dx = own[144]
+        dy = own[216]
+        ex = own[288]
+        ey = own[360]
+        s0 = own[864]
+        s1 = own[936]
+        s2 = own[1008]
+        s3 = own[1080]
+        c00 = own[1296]
+        c01 = own[1368]
+        c02 = own[1440]
+        c03 = own[1512]
+        c11 = own[1584]
+        c12 = own[1656]
+        c13 = own[1728]
+        c22 = own[1800]
+        c23 = own[1872]
+        c33 = own[1944]
         x0 = dx * dx
         x1 = dy * dy
         x2 = x0 + x1
@@ -227,18 +231,18 @@ def hessian(count, x):
         u33 = c03 * j03 + c13 * j13 + c23 * j23 + c33 * j33
         u34 = c23 * j24
         u35 = c23 * j25
-        x[45 * ROW + i] = j00 * u00 + j10 * u10
-        x[46 * ROW + i] = j00 * u01 + j10 * u11
-        x[47 * ROW + i] = j01 * u01 + j11 * u11
-        x[48 * ROW + i] = j00 * u02 + j10 * u12 - x3 * (s1 * x23 + x22)
-        x[49 * ROW + i] = j00 * u03 + j10 * u13 - x3 * (s0 * x25 + x24)
-        x[50 * ROW + i] = j01 * u02 + j11 * u12 + x3 * (s0 * x23 - x24)
-        x[51 * ROW + i] = j01 * u03 + j11 * u13 + x3 * (-s1 * x25 + x22)
-        x[52 * ROW + i] = j00 * u04 + j10 * u14
-        x[53 * ROW + i] = j00 * u05 + j10 * u15
-        x[54 * ROW + i] = j01 * u04 + j11 * u14
-        x[55 * ROW + i] = j01 * u05 + j11 * u15
-        x[56 * ROW + i] = (
+        own[3240] = j00 * u00 + j10 * u10
+        own[3312] = j00 * u01 + j10 * u11
+        own[3384] = j01 * u01 + j11 * u11
+        own[3456] = j00 * u02 + j10 * u12 - x3 * (s1 * x23 + x22)
+        own[3528] = j00 * u03 + j10 * u13 - x3 * (s0 * x25 + x24)
+        own[3600] = j01 * u02 + j11 * u12 + x3 * (s0 * x23 - x24)
+        own[3672] = j01 * u03 + j11 * u13 + x3 * (-s1 * x25 + x22)
+        own[3744] = j00 * u04 + j10 * u14
+        own[3816] = j00 * u05 + j10 * u15
+        own[3888] = j01 * u04 + j11 * u14
+        own[3960] = j01 * u05 + j11 * u15
+        own[4032] = (
             j02 * u02
             + j12 * u12
             + j22 * u22
@@ -248,7 +252,7 @@ def hessian(count, x):
             - x23 * x26
             - x34 * (ry * x29 - 3.0 * x10 + x27 - x32)
         )
-        x[57 * ROW + i] = (
+        own[4104] = (
             -dx * dy * s3 * x33
             + j02 * u03
             + j12 * u13
@@ -258,7 +262,7 @@ def hessian(count, x):
             + s2 * x38 * (dx * ex + 3.0 * dx * x19 + dx * x20 - dy * ey - dy * x40 - ex * x43 + ey * x31)
             - x34 * (x37 - x44 + x8)
         )
-        x[58 * ROW + i] = (
+        own[4176] = (
             j03 * u03
             + j13 * u13
             + j23 * u23
@@ -268,10 +272,10 @@ def hessian(count, x):
             - x25 * x26
             - x34 * (-rx * x46 + 3.0 * x27 + x45)
         )
-        x[59 * ROW + i] = j02 * u04 + j12 * u14 + j22 * u24 + j32 * u34 + x47
-        x[60 * ROW + i] = j02 * u05 + j12 * u15 + j22 * u25 + j32 * u35 - x48 * (2.0 * x13 - 1.0)
-        x[61 * ROW + i] = j03 * u04 + j13 * u14 + j23 * u24 + j33 * u34 + x48 * (2.0 * x12 - 1.0)
-        x[62 * ROW + i] = j03 * u05 + j13 * u15 + j23 * u25 + j33 * u35 - x47
-        x[63 * ROW + i] = j24 * u24
-        x[64 * ROW + i] = j24 * u25
-        x[65 * ROW + i] = j25 * u25
+        own[4248] = j02 * u04 + j12 * u14 + j22 * u24 + j32 * u34 + x47
+        own[4320] = j02 * u05 + j12 * u15 + j22 * u25 + j32 * u35 - x48 * (2.0 * x13 - 1.0)
+        own[4392] = j03 * u04 + j13 * u14 + j23 * u24 + j33 * u34 + x48 * (2.0 * x12 - 1.0)
+        own[4464] = j03 * u05 + j13 * u15 + j23 * u25 + j33 * u35 - x47
+        own[4536] = j24 * u24
+        own[4608] = j24 * u25
+        own[4680] = j25 * u25

@@ -1,0 +1,89 @@
+"""Lanes against NumPy: what compiled passes do with several numbers at once, and with those beyond the last."""
+
+import math
+
+import numpy as np
+import pytest
+from numba import njit
+
+from beamfem.kernels import nodes
+from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
+from beamfem.kernels.pointers import address_of
+from beamfem.kernels.record import ROW
+
+COUNTS = (1, 2, WIDTH - 1, WIDTH, WIDTH + 1, 3 * WIDTH, 3 * WIDTH + 5)
+
+
+@routine("ivvv")
+def arithmetic(count, x, y, result):
+    """Fill rows with what operators give."""
+    for i in range(0, count, WIDTH):
+        a, b = x[i], y[i]
+        result[i], result[ROW + i], result[2 * ROW + i], result[3 * ROW + i] = a + b, a - b, a * b, a / b
+        result[4 * ROW + i], result[5 * ROW + i] = -a, math.sqrt(b)
+        result[6 * ROW + i], result[7 * ROW + i] = 2.0 * a, a - 0.5
+        result[8 * ROW + i], result[9 * ROW + i] = 1.0 / b, np.floor(a)
+        total = zeros()
+        total += a
+        total -= b
+        total *= a
+        result[10 * ROW + i], result[11 * ROW + i] = total, 7.0
+
+
+@routine("irr")
+def keep(count, source, to):
+    """Copy the first numbers, and leave what follows them."""
+    own, its = as_rows(source), as_rows(to)
+    for i in range(0, count, WIDTH):
+        its[i] = merged(own[i], its[i], count - i)
+
+
+def rows(count):
+    return np.full((count, ROW), np.nan)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_operators_are_those_of_numpy(count, rng):
+    x, y, result = rows(1), rows(1), rows(12)
+    x[0, :count], y[0, :count] = rng.uniform(-3.0, 3.0, count), rng.uniform(0.1, 3.0, count)
+    arithmetic(count, x, y, result)
+    a, b = x[0, :count], y[0, :count]
+    expected = [a + b, a - b, a * b, a / b, -a, np.sqrt(b), 2.0 * a, a - 0.5, 1.0 / b, np.floor(a), (a - b) * a, 7.0]
+    for found, wanted in zip(result, expected, strict=True):
+        assert np.all(found[:count] == wanted)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_lanes_of_others_stay_as_they_are(count, rng):
+    source, to = rng.standard_normal(ROW), rng.standard_normal(ROW)
+    before = to.copy()
+    keep(count, source, to)
+    assert np.array_equal(to[:count], source[:count])
+    assert np.array_equal(to[count:], before[count:])
+
+
+@pytest.mark.parametrize("largest", [1.0, 10.0, 1e3, 1e6])
+def test_sections_turn_by_any_angle(largest, rng):
+    """Cosine and sine in all quarters, of multiples of a right angle and of angles beside them, to the last digits."""
+    near = 0.5 * np.pi * np.arange(-4, 5)
+    angle, frame, result = rows(1), rows(3), rows(3)
+    given = np.concatenate([near, near + 1e-9, near - 1e-9, rng.uniform(-largest, largest, 29)])
+    angle[0, : given.size], frame[:, : given.size] = given, [[1.0], [0.0], [2.5]]
+    nodes.turn(given.size, angle, frame[0], frame[1], frame[2], result)
+    for found, wanted in zip(result, (np.cos(given), np.sin(given), 2.5), strict=True):
+        assert np.abs(found[: given.size] - wanted).max() <= 3e-16
+
+
+def test_addresses_of_all_arrays():
+    whole = np.arange(12.0).reshape(3, 4)
+    locked = whole.copy()
+    locked.flags.writeable = False
+    for array in (whole, whole[1:], whole.T, whole[:, 1], locked, np.empty(0), np.arange(3)):
+        assert address_of(array) == array.__array_interface__["data"][0]
+
+
+def test_numbers_and_lanes_are_no_lanes_by_accident():
+    """Operators of other types are left alone."""
+    assert njit(lambda a, b: a * b + math.sqrt(a))(2.0, 3.0) == 6.0 + math.sqrt(2.0)
+    assert np.array_equal(njit(lambda a: np.floor(a) - 1.0)(np.array([1.5, 2.5])), [0.0, 1.0])

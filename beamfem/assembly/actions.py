@@ -11,7 +11,7 @@ from beamfem.model.load import factor
 from beamfem.model.loads import LineLoad, PointLoad, Pressure
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.reference import jacobians, length_points, reference_axis, reference_position, scales
+from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ def _part(
         "follows": along if follower else np.zeros((count, 2)),
         "stretches": np.zeros(count, dtype=bool),
         "spring": np.zeros((count, 2)),
-        "anchor": reference_position(mesh, element, xi),
+        "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
         "unit": unit,
         "source": np.full(count, source),
         "xi": xi,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from skfem import MeshLine
@@ -43,7 +44,7 @@ class Grid:
     def elements(self) -> int:
         return len(self.vertices) - 1
 
-    @property
+    @cached_property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
         return self.rate * np.diff(self.parameter)

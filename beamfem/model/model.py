@@ -1,7 +1,7 @@
 """A model: beams, what holds and joins them and what acts on them."""
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from os import PathLike
 from typing import Any, get_args
@@ -139,11 +139,8 @@ class Model:
             own += [jump / beam.curve.length for jump in beam.jumps]
         lines: tuple[AlongBeam, ...] = (*self.distributed, *self.pressures, *(load for _, load in self.imposing))
         for line in lines:
-            own, kinks = (
-                fractions[self._numbers[id(line.beam)]],
-                [kinks_along(line, name) for name in functions_along(line)],
-            )
-            own += [kink / line.beam.curve.length for found in kinks for kink in found]
+            kinks = [kink for name in functions_along(line) for kink in kinks_along(line, name)]
+            fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks]
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
@@ -157,10 +154,11 @@ class Model:
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {kind: number for number, kind in enumerate(self._kinds)}
-        meshes = []
+        meshes, names = [], [each.name for each in fields(Grid)]
         for grid, carried in zip(grids, nodes, strict=True):
             block = block_of[_kind(grid.beam)]
-            meshes.append(BeamMesh(**vars(grid), carried=carried, first_element=filled[block], block=block))
+            parts = {name: getattr(grid, name) for name in names}
+            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
             filled[block] += grid.elements
         return tuple(meshes), size
 

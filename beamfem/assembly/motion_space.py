@@ -51,11 +51,11 @@ class MotionSpace:
 def motion_space(system: System) -> Iterator[MotionSpace]:
     """Lend space that no other motion works in, with factors, differences and turns that are zero."""
     try:
-        space = system.spare.pop()
+        space = system.spare_motions.pop()
     except IndexError:
         space = MotionSpace(system)
     for field in _FROM_ZERO:
         space.arrays[field][:] = 0.0
     yield space
     if space.arrays[record.ROWS].size <= _KEPT:
-        system.spare.append(space)
+        system.spare_motions.append(space)

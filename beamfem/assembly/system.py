@@ -48,14 +48,15 @@ _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATIO
 class System:
     """Everything a solver needs of a model; `system_of` makes it once.
 
-    proven: names of what has been checked of it, once and for all; spare, spare_assemblers: work space of solves and
-    evaluations that have ended.
+    proven: names of what has been checked of it, once and for all; spare, spare_motions, spare_assemblers: work space
+    of solves, motions and evaluations that have ended.
     """
 
     model: Model
     static: bool
     proven: set[str] = field(default_factory=set)
     spare: list[Any] = field(default_factory=list)
+    spare_motions: list[Any] = field(default_factory=list)
     spare_assemblers: list[Assembler] = field(default_factory=list)
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -103,9 +103,9 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     counted = 0
     for kind, table in content.blocks:
         if table.ndim != 2 or table.shape[1] != _NODES[kind]:
+            found = table.shape[1] if table.ndim == 2 else table.shape
             raise InputError(
-                f"a {kind} has {_NODES[kind]} nodes, here {table.shape[1:]}: damaged, or an ASCII file: save it as "
-                "a binary one"
+                f"a {kind} has {_NODES[kind]} nodes, here {found}: damaged, or an ASCII file: save it as a binary one"
             )
         if kind == "vertex":
             vertices.update(zip(range(counted, counted + len(table)), table[:, 0].tolist(), strict=True))

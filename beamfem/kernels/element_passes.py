@@ -133,7 +133,7 @@ def add_elements(group, system):
                 count,
                 first,
                 elements,
-                b[r.ORDERED],
+                ordered,
                 place,
                 size,
                 b[r.PREDICTED_FORCE],

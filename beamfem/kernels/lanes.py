@@ -21,7 +21,6 @@ from numba.extending import intrinsic, lower_builtin, register_model, type_calla
 
 WIDTH = 8  # a cache line of doubles, one or two registers of today's processors
 _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
-_UNDEFINED = ir.Constant(_VECTOR, ir.Undefined)
 
 
 class Lanes(types.Type):
@@ -62,9 +61,10 @@ class _RowPointerModel(PrimitiveModel):
 
 
 def _same(builder: Any, value: ir.Value) -> ir.Value:
-    """Return lanes that all hold one number."""
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
-    return builder.shuffle_vector(builder.insert_element(_UNDEFINED, value, zeros.type.element(0)), _UNDEFINED, zeros)
+    """Return a vector that holds one number everywhere."""
+    undefined = ir.Constant(ir.VectorType(value.type, WIDTH), ir.Undefined)
+    first = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
+    return builder.shuffle_vector(builder.insert_element(undefined, value, first.type.element(0)), undefined, first)
 
 
 def _as_lanes(context: Any, builder: Any, kind: types.Type, value: ir.Value) -> ir.Value:
@@ -184,13 +184,8 @@ def merged(context, value, other, count):
     """Return the first `count` lanes of a value, and those of the other one beyond."""
 
     def generate(context, builder, outer, given):
-        places = ir.VectorType(ir.IntType(64), WIDTH)
-        undefined = ir.Constant(places, ir.Undefined)
-        zeros = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
-        limit = builder.shuffle_vector(
-            builder.insert_element(undefined, given[2], zeros.type.element(0)), undefined, zeros
-        )
-        inside = builder.icmp_signed("<", ir.Constant(places, list(range(WIDTH))), limit)
+        places = ir.Constant(ir.VectorType(ir.IntType(64), WIDTH), list(range(WIDTH)))
+        inside = builder.icmp_signed("<", places, _same(builder, given[2]))
         return builder.select(inside, given[0], given[1])
 
     return signature(LANES, value, other, types.intp), generate

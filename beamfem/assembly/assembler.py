@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
@@ -99,6 +100,7 @@ class Assembler:
         self.numbers = sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self._natural: tuple[np.ndarray, ...] = ()
+        self._taken: LoadsAt | None = None
         self.table[:] = equations.table
         self.table[record.GROUP_RECORDS], self.table[record.VALUES] = (
             whole.addresses["groups"],
@@ -119,6 +121,12 @@ class Assembler:
         acting = (*self._acting, *self._natural)
         return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *acting)
 
+    def take(self, loads: LoadsAt) -> None:
+        """Take what acts, unless it is what was taken last."""
+        if loads is not self._taken:
+            self.load(loads.body, loads.points, loads.imposing)
+            self._taken = loads
+
     def load(self, body: np.ndarray, values: Sequence[np.ndarray], imposing: np.ndarray = _NONE) -> list[int]:
         """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first.
 
@@ -137,6 +145,7 @@ class Assembler:
 
     def impose(self, factors: np.ndarray) -> list[int]:
         """Take factors (..., k) of the loads that impose strains; return the address of those of each group, or 0."""
+        self._taken = None
         if not self._imposes:
             return [0] * len(self.works)
         found = [_imposed(work.sheet, factors) for work in self.works]

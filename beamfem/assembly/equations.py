@@ -21,7 +21,7 @@ _KEPT = 200_000  # numbers of a work space up to which making it takes a part of
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
     """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
     result, assembler = np.empty(len(p)), _borrowed(system)
-    assembler.load(*system.loads_at(time))
+    assembler.take(system.loads_at(time))
     assembler.weigh((1.0, 1.0, 1.0))
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _give_back(system, assembler)
@@ -65,7 +65,7 @@ def linearise(
     matrix, result = _entries(system), np.empty(len(p))
     borrowed = stresses is None and equations is None
     assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
-    assembler.load(*system.loads_at(time))
+    assembler.take(system.loads_at(time))
     assembler.weigh(coefficients)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if borrowed:
@@ -84,7 +84,7 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     if MIXED in system.proven:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
     matrix, assembler = _entries(system), _borrowed(system)
-    assembler.load(*system.loads_at(time))
+    assembler.take(system.loads_at(time))
     assembler.weigh(STATICS)
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)

@@ -1,21 +1,35 @@
 """What acts on a model at a time."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 
-class LoadsAt(NamedTuple):
-    """Loads of a model at a time, in statics at a load factor."""
+@dataclass(frozen=True, eq=False)
+class LoadsAt:
+    """Loads of a model at a time, in statics at a load factor.
 
-    body: np.ndarray  # (beams, 4): acceleration [m/s^2] and load per length [N/m]
-    points: tuple[np.ndarray, ...]  # (nl, 3) of each block: forces and moments at points
-    imposing: np.ndarray  # (k,) factors of the loads that impose strains
+    body (beams, 4): acceleration [m/s^2] and load per length [N/m]; points (nl, 3) of each block: forces [N] and
+    moments [N m] at points; imposing (k,): factors of the loads that impose strains.
+    """
+
+    body: np.ndarray
+    points: tuple[np.ndarray, ...]
+    imposing: np.ndarray
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
         """All of them."""
         return (self.body, *self.points, self.imposing)
+
+    @cached_property
+    def largest(self) -> tuple[float, float]:
+        """Largest component of a force [N] and largest moment [N m] at points."""
+        found = [(0.0, 0.0, 0.0)]
+        found += [np.abs(own.reshape(-1, 3)).max(axis=0).tolist() for own in self.points if own.size]
+        x, y, moment = (max(values) for values in zip(*found, strict=True))
+        return max(x, y), moment
 
     @property
     def any(self) -> bool:

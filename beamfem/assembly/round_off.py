@@ -125,11 +125,8 @@ def load_size(system: System, loads: LoadsAt) -> float:
 
     Where nothing but imposed strains acts, that of the forces which would hinder them: they may cause none.
     """
-    largest = 0.0
-    for own in loads.points:
-        if own.size:
-            x, y, moment = np.abs(own.reshape(-1, 3)).max(axis=0).tolist()
-            largest = max(largest, system.extent * max(x, y), moment)
+    force, moment = loads.largest
+    largest = max(system.extent * force, moment)
     if largest == 0.0 and loads.imposing.any() and not loads.body.any():
         largest = max(largest, float(np.max(np.abs(imposed_forces(system, loads)) * system.scale)))
     return largest

@@ -12,6 +12,7 @@ from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.columns import columns_of
 from beamfem.assembly.connectors import Connectors, connectors_of
+from beamfem.assembly.grounded_springs import grounded_springs
 from beamfem.assembly.held import Held, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt
@@ -35,11 +36,11 @@ from beamfem.kernels.block import (
 )
 from beamfem.model.load import factor
 from beamfem.model.model import Model
-from beamfem.model.supports import Spring
 from beamfem.validation import shown
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+_KEPT_LOADS = 2  # load factors whose loads are kept
 _NO_MOVEMENT = 1e300  # what memories are measured by: whatever they change by, nothing moves
 _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
@@ -49,7 +50,7 @@ class System:
     """Everything a solver needs of a model; `system_of` makes it once.
 
     proven: names of what has been checked of it, once and for all; spare, spare_motions, spare_assemblers: work space
-    of solves, motions and evaluations that have ended.
+    of solves, motions and evaluations that have ended; known_loads: those at the last few load factors.
     """
 
     model: Model
@@ -58,6 +59,7 @@ class System:
     spare: list[Any] = field(default_factory=list)
     spare_motions: list[Any] = field(default_factory=list)
     spare_assemblers: list[Assembler] = field(default_factory=list)
+    known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Travel to other processes as a model only."""
@@ -163,6 +165,17 @@ class System:
 
     def loads_at(self, time: float) -> LoadsAt:
         """Return what acts at a time, in statics at a load factor."""
+        if self.varying:
+            return self._loads_at(time)
+        asked = time if self.static else 0.0
+        found = self.known_loads.get(asked)
+        if found is None:
+            if len(self.known_loads) >= _KEPT_LOADS:
+                self.known_loads.clear()
+            found = self.known_loads[asked] = self._loads_at(asked)
+        return found
+
+    def _loads_at(self, time: float) -> LoadsAt:
         return LoadsAt(self.body(time), self.point_values(time), self.imposing(time))
 
     @cached_property
@@ -173,20 +186,7 @@ class System:
     @cached_property
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""
-        dofs, stiffness = [], []
-        for support in self.model.supports:
-            if isinstance(support, Spring):
-                mesh = self.model.mesh_of(support.point)
-                known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-                for name, value in support.by_coordinate.items():
-                    if value > 0.0:
-                        dofs.append(known[name])
-                        stiffness.append(value)
-        where = np.array(dofs, dtype=np.int64)
-        free = self.unknowns.free[where]
-        place = free.copy()
-        place[free >= 0] = self.unknowns.diagonal(free[free >= 0])
-        return Springs(where, np.array(stiffness, dtype=float), self.reference[where], place)
+        return grounded_springs(self.model, self.unknowns, self.reference)
 
     def body(self, time: float) -> np.ndarray:
         """Acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
@@ -218,11 +218,21 @@ class System:
 
     def prescribed_values(self, time: float) -> np.ndarray:
         """Values of the held coordinates at a time, in statics at a load factor."""
-        return self.reference[self.prescribed_dofs] + self.prescribed_changes(time)
+        start = self._prescribed_reference
+        return start + self.prescribed_changes(time) if self._led else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
         """Changes of the held coordinates from the reference (nh,) at a time, in statics at a load factor."""
         return np.array([item.change(time, self.static) for item in self.held], dtype=float)
+
+    @cached_property
+    def _prescribed_reference(self) -> np.ndarray:
+        return self.reference[self.prescribed_dofs]
+
+    @cached_property
+    def _led(self) -> bool:
+        """Whether a support changes what it holds."""
+        return any(callable(item.value) or item.value != 0.0 for item in self.held)
 
     def largest_turn(self, before: float, after: float) -> float:
         """Return the largest change [rad] of a prescribed rotation between two times.

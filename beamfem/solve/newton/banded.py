@@ -30,7 +30,7 @@ class BandProblem:
         self.system, self.start, self.space = system, start, band_space(system)
         loads, space = system.loads_at(load_factor), self.space
         self.load = load_size(system, loads)
-        space.assembler.load(*loads)
+        space.assembler.take(loads)
         space.p[:], space.step[:], space.found[:] = start, 0.0, 0.0
         space.found[1:3] = np.inf
         space.prescribed_step[:], space.prescribed_force[:] = step.step, step.force

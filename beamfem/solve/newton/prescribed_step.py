@@ -15,10 +15,11 @@ class PrescribedStep:
     def __init__(self, system: System, start: np.ndarray, load_factor: float) -> None:
         self.system, self.start, self.load_factor = system, start, load_factor
         self.step = np.zeros(len(start))
-        change = system.prescribed_values(load_factor) - start[system.prescribed_dofs]
+        dofs = system.prescribed_dofs
+        change = system.prescribed_values(load_factor) - start[dofs]
         self.moves = bool(change.any())
         if self.moves:
-            self.step[system.prescribed_dofs] = change
+            self.step[dofs] = change
 
     @cached_property
     def force(self) -> np.ndarray:

@@ -6,19 +6,27 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
+
+_ITEM = 8  # bytes of a number, real or whole
 
 
 class Arena:
-    """New arrays of one type, by name, and their addresses."""
+    """New arrays of one type, by name, and their addresses.
+
+    Each begins where a line of the cache does, so that lanes do not lie across two lines.
+    """
 
     def __init__(self, shapes: Mapping[Any, Sequence[int]], dtype: type = float) -> None:
         self.arrays: dict[Any, np.ndarray] = {}
         self.addresses: dict[Any, int] = {}
         sizes = [prod(shape) for shape in shapes.values()]
-        memory: np.ndarray = np.zeros(sum(sizes), dtype=dtype)
-        address, first = address_of(memory), 0
-        for (name, shape), size in zip(shapes.items(), sizes, strict=True):
+        lines = [-(-size // WIDTH) for size in sizes]
+        memory: np.ndarray = np.zeros(WIDTH * (sum(lines) + 1), dtype=dtype)
+        address = address_of(memory)
+        first = -address // _ITEM % WIDTH
+        for (name, shape), size, count in zip(shapes.items(), sizes, lines, strict=True):
             self.arrays[name] = memory[first : first + size].reshape(shape)
-            self.addresses[name] = address + memory.itemsize * first
-            first += size
+            self.addresses[name] = address + _ITEM * first
+            first += WIDTH * count

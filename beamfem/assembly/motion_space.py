@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.system import System
 from beamfem.kernels import record
+from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
 _KEPT = 100_000  # entries of a tangent up to which making arrays takes a part of a motion that anybody would notice
@@ -29,8 +30,8 @@ class MotionSpace:
                 record.RIGHT: (unknown,),
                 record.STEP: (max(size, unknown) + 1,),
                 record.BEFORE: (4, size),
-                record.DIFFERENCES: (3, size),
-                record.INVERSE_SCALE: (size,),
+                record.DIFFERENCES: (difference_rows(size),),
+                record.INVERSE_SCALE: (padded.py_func(size),),
                 record.KEPT: (nodes, 2),
                 record.TURNS: (nodes, 2),
                 record.RULE: (5,),

@@ -66,9 +66,9 @@ def march(system, solver, calls):
 
     `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta.
     `LIMITS`: tolerance of the correction relative to the scale, largest number of iterations. `ROWS`: factors of the
-    last tangent. `STATISTICS` (8,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
-    convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation, and
-    what the last change of p'' changed in p.
+    last tangent. `STATISTICS` (9,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
+    convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation,
+    how many differences it has, and what the last change of p'' changed in p.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
@@ -144,7 +144,7 @@ def march(system, solver, calls):
             statistics[0] += 1.0
             statistics[2] = size
             if iteration == 1:
-                first_size = max(size, statistics[7])
+                first_size = max(size, statistics[8])
             done = _judge(iteration, full, size, last, first_size, limits[0], rate)
             if done > 0:
                 break
@@ -157,8 +157,8 @@ def march(system, solver, calls):
             if fails:
                 for i in range(4 * n):
                     state[i] = before[i]
-                order = -1.0 * full
-                _predict(call[r.PREDICT], n, held, order, state, before, differences, prescribed_dofs, prescribed, rule)
+                low = -1.0 * full
+                _predict(call[r.PREDICT], n, held, low, state, before, differences, prescribed_dofs, prescribed, rule)
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
@@ -166,9 +166,9 @@ def march(system, solver, calls):
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, prescribed_dofs, rule, rate)
-        statistics[6] = rate[0]
-        statistics[7] = change / factors[2]
+        order = at(statistics, 6)
+        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, prescribed_dofs, rule, order)
+        statistics[8] = change / factors[2]
         _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
         if (b[r.FIRST_STEP] + step) % every == 0:
             row = (b[r.FIRST_STEP] + step) // every

@@ -2,9 +2,10 @@
 
 import math
 
-from numba import types
+from numba import njit, types
 
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.lanes import WIDTH, as_rows, zeros
 from beamfem.kernels.pointers import at, reals, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
@@ -14,7 +15,22 @@ _REMAINDER = 1e-5
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
 # behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _NEGLECTED = 1e-8
+MOST = 7  # differences of the acceleration that extrapolate it: where a motion is smooth, few corrections are left
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
+
+
+@njit(forceinline=True, _nrt=False)
+def padded(n):
+    """Return the length of a row of n numbers that lanes fill."""
+    return (n + WIDTH - 1) // WIDTH * WIDTH
+
+
+def difference_rows(n: int) -> int:
+    """Return how many numbers the backward differences of n accelerations take.
+
+    Rows (MOST, padded(n)) of them, one for the change that they expect, and their sizes (MOST + 1, WIDTH).
+    """
+    return (MOST + 1) * (-(-n // WIDTH) + 1) * WIDTH
 
 
 @routine("iidrrrnrr")
@@ -22,17 +38,23 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
     """Store the state (4, n) in `before` and start a step from it, prescribed coordinates at `values` (3, prescribed).
 
     The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on;
-    order -1 keeps p instead, which strains nothing where stiff parts ring within a step. differences (3, n): its
-    backward differences. rule: step, alpha_m, alpha_f, gamma, beta.
+    order -1 keeps p instead, which strains nothing where stiff parts ring within a step. differences: see
+    `difference_rows`, of which so many are known as the order. rule: step, alpha_m, alpha_f, gamma, beta.
     """
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
-    first, second, third = min(max(order, 0.0), 1.0), min(max(order - 1.0, 0.0), 1.0), max(order - 2.0, 0.0)
+    length, lanes = padded(n), as_rows(differences)
+    change = at(differences, MOST * length)
+    for i in range(0, n, WIDTH):
+        ahead_of = zeros()
+        for k in range(int(order)):
+            ahead_of += lanes[k * length + i]
+        lanes[MOST * length + i] = ahead_of
     for i in range(4 * n):
         before[i] = state[i]
     for i in range(n):
         p, v, a, mean_a = before[i], before[n + i], before[2 * n + i], before[3 * n + i]
-        ahead = first * differences[i] + second * differences[n + i] + third * differences[2 * n + i]
+        ahead = change[i]
         if order < 0.0:
             stays = -(v / h + (0.5 - beta) * mean_a) / beta
             ahead = (stays - kept * a + mean * mean_a) / fraction
@@ -82,36 +104,43 @@ def judge(iteration, full, size, last, changed, tolerance, rate):
 
 
 @routine("iirrrrnrr", types.float64, fastmath=FAST)
-def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, best):
+def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
     """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
 
-    best (1,): the order of extrapolation that would have been best.
+    inverse_scale (padded(n),): zero beyond n; extrapolation (2,): the order that would have been best, one more than
+    the last one at most, and how many differences are known.
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    e0, e1, e2, e3 = 0.0, 0.0, 0.0, 0.0
+    largest = 0.0
     for i in range(n):
         a, a0 = state[2 * n + i], before[2 * n + i]
         state[3 * n + i] = new * a + old * a0 - mean * before[3 * n + i]
-        d0 = a - a0
-        d1 = d0 - differences[i]
-        d2 = d1 - differences[n + i]
-        d3 = d2 - differences[2 * n + i]
-        differences[i], differences[n + i], differences[2 * n + i] = d0, d1, d2
-        weight = inverse_scale[i]
-        e0, e1 = max(e0, abs(d0) * weight), max(e1, abs(d1) * weight)
-        e2, e3 = max(e2, abs(d2) * weight), max(e3, abs(d3) * weight)
+        largest = max(largest, abs(a - a0) * inverse_scale[i])
     for i in range(prescribed):
         state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
-    order, least = 0.0, e0
-    if e1 < least:
-        order, least = 1.0, e1
-    if e2 < least:
-        order, least = 2.0, e2
-    if e3 < least:
-        order = 3.0
-    best[0] = order
-    return e0
+    top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
+    length = padded(n)
+    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
+    errors = (MOST + 1) * length
+    for k in range(top + 1):
+        lanes[errors + k * WIDTH] = 0.0
+    for i in range(0, n, WIDTH):
+        change, own = now[2 * n + i] - then[2 * n + i], weight[i]
+        for k in range(top + 1):
+            size, kept = change * own, lanes[k * length + i]
+            lanes[errors + k * WIDTH] += size * size
+            lanes[k * length + i] = change
+            change -= kept
+    order, least = 0, math.inf
+    for k in range(top + 1):
+        error = 0.0
+        for i in range(WIDTH):
+            error += differences[errors + k * WIDTH + i]
+        if error < least:
+            order, least = k, error
+    extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
+    return largest
 
 
 @routine("inrrr")

@@ -8,7 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
-from beamfem.kernels.motion_steps import complete, correct, count_turns, judge, predict
+from beamfem.kernels.motion_steps import complete, correct, count_turns, difference_rows, judge, padded, predict
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
 
@@ -21,7 +21,7 @@ class SparseMotion:
     """Marches through time steps; keeps the factors of its tangent from one call to the next.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
-    coordinate, largest number of iterations; statistics (8,): see `kernels.march.march`.
+    coordinate, largest number of iterations; statistics (9,): see `kernels.march.march`.
     """
 
     def __init__(self, system: System, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray) -> None:
@@ -30,9 +30,10 @@ class SparseMotion:
         self.tolerance, self.iterations = float(limits[0]), int(limits[1])
         self.coefficients = 1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
         self._weights = np.array(self.coefficients)
-        self._inverse_scale = np.zeros(system.model.size)
+        size = system.model.size
+        self._inverse_scale = np.zeros(padded.py_func(size))
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
-        self._differences, self._size, self._number = np.zeros((3, system.model.size)), system.model.size, np.zeros(1)
+        self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(1)
         self._multipliers = system.connectors.multipliers
         self._factors: Factorised | None = None
 
@@ -49,9 +50,9 @@ class SparseMotion:
             if not self._solve(state, before, held[step], float(time)):
                 state[:] = before
                 return step
-            differences, scale = self._differences, self._inverse_scale
-            change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, self._number)
-            statistics[6], statistics[7] = self._number[0], change / self.coefficients[2]
+            differences, scale, order = self._differences, self._inverse_scale, statistics[6:8]
+            change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, order)
+            statistics[8] = change / self.coefficients[2]
             state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), float(time))
             count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:
@@ -108,7 +109,7 @@ class SparseMotion:
             statistics[0] += 1
             statistics[2] = size
             if iteration == 1:
-                first_size = max(size, statistics[7])
+                first_size = max(size, statistics[8])
             self._number[0] = rate
             judged = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number)
             done, rate = judged > 0, float(self._number[0])

@@ -1,0 +1,66 @@
+"""The acceleration that a time step begins with, extrapolated through the last steps."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.kernels.motion_steps import MOST, complete, difference_rows, padded, predict
+from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
+
+RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule
+NONE = np.zeros(0, dtype=np.int64)
+
+
+def extrapolated(accelerations, weights):
+    """Go through accelerations (steps, n); return what each step expected (steps - 1, n), and the last order."""
+    n = accelerations.shape[1]
+    state, before, differences = np.zeros((4, n)), np.zeros((4, n)), np.zeros(difference_rows(n))
+    inverse_scale, order, expected = np.zeros(padded.py_func(n)), np.zeros(2), []
+    inverse_scale[:n] = weights
+    state[2] = accelerations[0]
+    for now in accelerations[1:]:
+        predict(n, 0, order[0], state, before, differences, NONE, np.zeros(0), RULE)
+        expected.append(state[2].copy())
+        state[2] = now
+        complete(n, 0, state, before, differences, inverse_scale, NONE, RULE, order)
+    return np.array(expected), order
+
+
+@pytest.mark.parametrize("degree", range(MOST + 1))
+@pytest.mark.parametrize("n", [4, 8, 11, 17])
+def test_a_polynomial_is_extrapolated_exactly(degree, n):
+    coefficients = np.random.default_rng(degree).standard_normal((n, degree + 1))
+    times = np.arange(2 * MOST + 4)
+    accelerations = np.array([np.polynomial.polynomial.polyval(0.1 * t, coefficients.T) for t in times])
+    expected, order = extrapolated(accelerations, 1.0)
+    first = degree + 2  # a step more than the differences that are known by then
+    assert degree <= order[0] <= MOST
+    assert order[1] >= order[0]
+    np.testing.assert_allclose(expected[first:], accelerations[first + 1 :], atol=1e-10 * np.abs(accelerations).max())
+
+
+def test_what_jumps_to_and_fro_is_not_extrapolated():
+    accelerations = (-1.0) ** np.arange(30)[:, None] * np.ones(9)
+    expected, order = extrapolated(accelerations, 1.0)
+    assert order[0] == 0.0
+    np.testing.assert_array_equal(expected, accelerations[:-1])
+
+
+def test_coordinates_without_weight_do_not_choose_the_order():
+    smooth = 0.1 * np.arange(30.0)[:, None] ** 2 * np.ones(3)
+    rough = (-1.0) ** np.arange(30)[:, None]
+    weights = np.array([1.0, 1.0, 1.0, 0.0])
+    expected, order = extrapolated(np.hstack([smooth, rough]), weights)
+    assert order[0] >= 2.0
+    np.testing.assert_allclose(expected[4:, :3], smooth[5:], atol=1e-9)
+
+
+def test_a_smooth_motion_takes_fewer_corrections_than_two_a_step_and_is_the_same():
+    model, rule = pendulum(STRUCTURAL, 6), bf.GeneralizedAlpha(1.0)
+    solution = swing(model, 1000)
+    assert solution.iterations < 1800
+    state = solution[0]
+    for _ in range(200):  # each step on its own knows no acceleration before
+        state = bf.simulate(model, duration=1e-3, step=1e-3, integrator=rule, start=state)[-1]
+    alike = bf.simulate(model, duration=0.2, step=1e-3, integrator=rule)
+    np.testing.assert_allclose(alike.p[-1], state.p, rtol=0.0, atol=1e-9)

@@ -55,6 +55,7 @@ __all__ = [
     "Line",
     "LineMesh",
     "Material",
+    "MissingPackageError",
     "Model",
     "Modes",
     "Newton",

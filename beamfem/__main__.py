@@ -1,6 +1,6 @@
 """`python -m beamfem` is the command `beamfem`."""
 
-from beamfem.cli.app import main
+from beamfem_command import main
 
 if __name__ == "__main__":
     main()

@@ -46,6 +46,10 @@ class MissingFileError(FileError, FileNotFoundError):
     """A file to read that is not there."""
 
 
+class MissingPackageError(BeamfemError, ImportError):
+    """A task needs a package that is not installed; the message names the extra of beamfem that installs it."""
+
+
 class UnstableWarning(UserWarning):
     """Some rows of a static solution are equilibria that the structure would leave."""
 

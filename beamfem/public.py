@@ -27,6 +27,7 @@ from beamfem.errors import (
     FreeMotionError,
     InputError,
     LimitPointError,
+    MissingPackageError,
     NotJoinedWarning,
     NotStoredWarning,
     RoundOffWarning,

@@ -11,6 +11,7 @@ from inspect import signature
 from typing import Any
 
 from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.validation import nearest
 
 _FUNCTIONS: dict[Callable[..., Any], str] = {}
@@ -36,7 +37,8 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
     if method not in _FUNCTIONS:
         raise NotImplementedError(f"no room above offers {method.__qualname__}")
     module, name = _FUNCTIONS[method].split(":")
-    function: Callable[..., Any] = getattr(import_module(module), name)
+    with needed_for(method.__name__):
+        function: Callable[..., Any] = getattr(import_module(module), name)
     known = list(signature(function).parameters)[1:]
 
     @wraps(function)
@@ -44,6 +46,7 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
         for option in options:
             if option not in known:
                 raise InputError(f"{method.__name__} has no option {option!r}; {nearest(option, known)}")
-        return function(*arguments, **options)
+        with needed_for(method.__name__):
+            return function(*arguments, **options)
 
     return call

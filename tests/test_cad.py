@@ -209,9 +209,9 @@ def test_without_ezdxf_the_message_says_what_to_install(monkeypatch, tmp_path):
 
     def without(name, *rest, **options):
         if name.split(".")[0] == "ezdxf":
-            raise ImportError(name)
+            raise ModuleNotFoundError(name=name)
         return original(name, *rest, **options)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(BeamfemError, match=r"pip install beamfem\[cad\]"):
+    with pytest.raises(BeamfemError, match=r'pip install "beamfem\[cad\]"'):
         read_dxf(tmp_path / "none.dxf")

@@ -150,7 +150,7 @@ def test_what_cannot_be_written_is_refused_before_the_solve(option, path, words,
 
 
 def test_a_missing_package_is_named_with_the_pip_command(tmp_path, monkeypatch):
-    monkeypatch.setattr("beamfem.cli.targets.find_spec", lambda name: None)
+    monkeypatch.setattr("beamfem.extras.find_spec", lambda name: None)
     done = invoke("run", CANTILEVER, "--out", tmp_path / "a.h5")
     assert done.exit_code == 2
     assert 'pip install "beamfem[store]"' in done.stderr

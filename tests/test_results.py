@@ -155,7 +155,7 @@ def test_newer_and_damaged_files_are_refused(tmp_path):
 
 def test_missing_h5py_names_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "h5py", None)
-    with pytest.raises(bf.BeamfemError, match=r"pip install beamfem\[store\]"):
+    with pytest.raises(bf.BeamfemError, match=r'pip install "beamfem\[store\]"'):
         load(tmp_path / "a.h5")
 
 

@@ -17,7 +17,7 @@ plotter.add_mesh(pyvista.Sphere())
 picture = plotter.screenshot(None, return_img=True)
 assert picture.min() < picture.max()
 """
-_FOR_DEVELOPERS = ("test", "bench", "docs")
+_NOT_SHOWN = ("all", "test", "bench", "docs")
 
 
 def doctor(as_json: AsJson = False) -> None:
@@ -114,7 +114,7 @@ def extras() -> list[dict[str, Any]]:
     """Return for each optional extra what is missing of it and how to install it."""
     wanted: dict[str, list[str]] = {}
     for name, extra in _requirements():
-        if extra and extra not in _FOR_DEVELOPERS:
+        if extra and extra not in _NOT_SHOWN:
             wanted.setdefault(extra, []).append(name)
     return [
         {

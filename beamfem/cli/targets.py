@@ -1,12 +1,12 @@
 """Files that a command is asked to write, refused before the work rather than after."""
 
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 
 from beamfem.errors import InputError
+from beamfem.extras import require_package
 
-_NEEDED = {"out": ("h5py", "store"), "plot": ("matplotlib", "plot"), "vtk": ("vtkmodules", "")}
+_NEEDED = {"out": "h5py", "plot": "matplotlib", "vtk": "vtkmodules"}
 _SUFFIXES = {"out": (".h5", ".hdf5"), "plot": (".png", ".svg", ".pdf"), "vtk": (".pvd", ".vtkhdf")}
 
 
@@ -25,9 +25,7 @@ def require_target(option: str, path: Path | None) -> None:
         raise InputError(f"{path} is a folder; give the name of a file")
     if not writable(path.parent):
         raise InputError(f"{path} cannot be written: {path.parent} takes no files")
-    package, extra = _NEEDED[option]
-    if find_spec(package) is None:
-        raise InputError(f'writing {path} needs {package}: pip install "beamfem[{extra}]"')
+    require_package(_NEEDED[option], f"writing {path}")
 
 
 def writable(folder: Path) -> bool:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from beamfem.curves import Arc, BSpline, Chain, Curve, Line, Polyline, elliptic_arc
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.files import readable
 from beamfem.validation import nearest, optional, text
 
@@ -28,7 +29,7 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines), all
     exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does.
     Raises FileError, FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the
-    plane z = 0, and where there is no curve; BeamfemError without ezdxf.
+    plane z = 0, and where there is no curve; MissingPackageError without ezdxf.
     """
     ezdxf = _ezdxf()
     source = readable(path)
@@ -47,10 +48,8 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
 
 
 def _ezdxf() -> Any:
-    try:
+    with needed_for("reading drawings"):
         import ezdxf
-    except ImportError:
-        raise BeamfemError("reading drawings needs ezdxf: pip install beamfem[cad]") from None
     return ezdxf
 
 

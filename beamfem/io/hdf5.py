@@ -10,7 +10,8 @@ from zlib import crc32
 
 import numpy as np
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.files import whole
 
 # object headers of this version have checksums; those of later ones mark a file whose writer was killed as unreadable
@@ -22,7 +23,7 @@ _CHECKSUM = "crc32"
 def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], None]]]:
     """Give an open HDF5 file that takes the place of `path` when it is complete, and a check whether all was written.
 
-    Raises FileError where the system refuses to write, BeamfemError without h5py.
+    Raises FileError where the system refuses to write, MissingPackageError without h5py.
     """
     h5py = required_h5py("writing")
     with whole(path) as partial, _Stream(partial) as stream:
@@ -32,11 +33,9 @@ def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], 
 
 
 def required_h5py(purpose: str) -> Any:
-    """Return the module h5py. Raises BeamfemError where it is not installed."""
-    try:
+    """Return the module h5py. Raises MissingPackageError where it is not installed."""
+    with needed_for(f"{purpose} HDF5 files"):
         import h5py
-    except ImportError:
-        raise BeamfemError(f"{purpose} HDF5 files needs h5py: pip install beamfem[store]") from None
     return h5py
 
 

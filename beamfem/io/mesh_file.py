@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.io.ending_file import opened
 
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
@@ -30,7 +31,8 @@ class MeshFile:
 
 def read_through_meshio(path: Path) -> MeshFile:
     """Return what a file holds. Raises InputError where meshio cannot read it."""
-    import meshio  # slow to import, and seldom needed
+    with needed_for("reading mesh files"):
+        import meshio  # slow to import, and seldom needed
 
     known = {
         ending: "gmsh" if ending == ".msh" else kinds[0] for ending, kinds in meshio.extension_to_filetypes.items()

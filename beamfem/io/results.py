@@ -30,7 +30,7 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     """Write model and states into one HDF5 file with checksums; folders in the path are made.
 
     It takes the place of an earlier file when it is complete. Raises InputError for a model with parts that cannot be
-    saved, FileError where the system refuses to write, BeamfemError without h5py.
+    saved, FileError where the system refuses to write, MissingPackageError without h5py.
     """
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
     description = _text(describe(solution.model, at))
@@ -64,7 +64,7 @@ def load(path: str | PathLike[str]) -> Solution:
     """Return the solution in a file; functions of time come back as `Sampled`, their values at the saved rows.
 
     Of a file whose writer was killed the rows that were written. Raises FileError, FileNotFoundError; InputError for
-    a file that is damaged, of a newer format or not of beamfem; BeamfemError without h5py.
+    a file that is damaged, of a newer format or not of beamfem; MissingPackageError without h5py.
     """
     h5py = required_h5py("loading")
     source = readable(path)

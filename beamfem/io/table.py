@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.results.along import QUANTITIES, AxisPoints
@@ -59,12 +60,10 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
 def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
     """Return an xarray.Dataset of `arrays` of a beam, by default the only one; statistics are its attributes.
 
-    Raises InputError where there are several beams and none is named; BeamfemError without xarray.
+    Raises InputError where there are several beams and none is named; MissingPackageError without xarray.
     """
-    try:
+    with needed_for("to_xarray"):
         import xarray
-    except ImportError:
-        raise BeamfemError("to_xarray needs xarray: pip install beamfem[xarray]") from None
     beams = solution.model.beams
     if beam is None:
         if len(beams) > 1:

@@ -23,7 +23,7 @@ _CHUNK_BYTES = 2**16
 def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> None:
     """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
 
-    Cells are stored once, points and point data for every step. Raises BeamfemError without h5py.
+    Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
     """
     with written_hdf5(path) as (file, require_written):
         _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk, require_written)

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.files import path_of, whole
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag, positive
@@ -39,7 +40,7 @@ def animate(
     fps, seconds: about fps * seconds rows are shown, spread evenly over time (in statics over the rows); a solution of
     fewer rows shows each for longer; colour: a field as in `plot`; loads come and go with their amplitude; dpi: pixels
     an inch of a picture 4 to 8 inches wide.
-    Raises InputError for another suffix; BeamfemError without matplotlib, for .mp4 without imageio-ffmpeg.
+    Raises InputError for another suffix; MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
     """
     target = path_of(path)
     if target.suffix not in (".gif", ".mp4"):
@@ -122,12 +123,8 @@ def _palette() -> np.ndarray:
 
 
 def _mp4_writer() -> Any:
-    try:
+    with needed_for("an MP4 file", otherwise="a .gif file needs nothing else"):
         import imageio_ffmpeg
-    except ImportError:
-        raise BeamfemError(
-            "MP4 needs imageio-ffmpeg: pip install beamfem[video]; a .gif file needs nothing else"
-        ) from None
 
     def write(path: Path, frames: Iterator[np.ndarray], duration: float) -> None:
         first = next(frames)

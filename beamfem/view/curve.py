@@ -36,7 +36,7 @@ def plot_curve(solution: Solution, x: Quantity, y: Quantity, path: str | PathLik
 
     x, y: a pair of a name and a point, ("uy", beam.end): "ux", "uy", "x", "y" [m], "rotation" [rad], "vx", "vy" [m/s],
     of a support "fx", "fy" [N] and "m" [N m]; "load_factor" or "time" [s]; a pair of a label and numbers (steps,), or
-    numbers. Raises InputError; BeamfemError without matplotlib.
+    numbers. Raises InputError; MissingPackageError without matplotlib.
     """
     (across, horizontal), (up, vertical) = (_taken(solution, *own) for own in (("x", x), ("y", y)))
     figure, axes = new_figure()

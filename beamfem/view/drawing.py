@@ -37,7 +37,7 @@ def plot_shapes(
     "axial_strain" [-], "shear_angle" [rad], "stress" [Pa] (von Mises', the largest of a section), "utilisation" [-] of
     the strength; shapes: how many steps; undeformed: dashed axes of the reference; supports and loads: as engineers
     draw them, each load on the shape where it is largest.
-    Raises InputError; BeamfemError without matplotlib.
+    Raises InputError; MissingPackageError without matplotlib.
     """
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to draw")

@@ -44,7 +44,7 @@ def plot_history(
 
     quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad], of a support "force" [N]
     and "reaction_moment" [N m]; or, without a point, "energy" [J].
-    Raises InputError; BeamfemError without matplotlib.
+    Raises InputError; MissingPackageError without matplotlib.
     """
     if isinstance(quantity, str) and quantity == "energy":
         found = solution.energy()
@@ -86,7 +86,7 @@ def plot_load_displacement(
     """Draw the load factor over a displacement or rotation of a point; return the figure of matplotlib.
 
     On a `Path` its limit points (circles) and bifurcations (diamonds) are marked, each with its load factor.
-    quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; BeamfemError without matplotlib.
+    quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; MissingPackageError without matplotlib.
     """
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))
     load = solution.load_factor

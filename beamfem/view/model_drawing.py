@@ -17,7 +17,7 @@ def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
     """Draw the bodies of a model as they are without stress, with supports, joints and full loads; return the figure.
 
     path: where to write it (PNG, SVG, PDF; folders are made). Nothing is solved, so that a model may be drawn that
-    moves freely or is loaded beyond its strength. Raises BeamfemError without matplotlib.
+    moves freely or is loaded beyond its strength. Raises MissingPackageError without matplotlib.
     """
     p = system_of(model, static=True).reference[None]
     rates = np.zeros_like(p)

@@ -3,7 +3,8 @@
 from os import PathLike
 from typing import Any
 
-from beamfem.errors import BeamfemError, InputError
+from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.files import path_of, whole
 
 # Paul Tol's bright palette: told apart by the colour-blind and in grey print
@@ -12,13 +13,11 @@ _DOTS_PER_INCH = 160
 
 
 def empty_figure(width: float, height: float, layout: Any = "constrained") -> Any:
-    """Return a figure [inch], by default one that lays itself out. Raises BeamfemError without matplotlib."""
-    try:
+    """Return a figure [inch], by default one that lays itself out. Raises MissingPackageError without matplotlib."""
+    with needed_for("a picture"):
         from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         from beamfem.view.figure import ShownFigure
-    except ImportError:
-        raise BeamfemError("pictures need matplotlib: pip install beamfem[plot]") from None
     figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure

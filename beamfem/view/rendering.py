@@ -5,6 +5,8 @@ import subprocess
 import sys
 from functools import lru_cache
 
+from beamfem.extras import require_package
+
 _SECONDS = 60
 _PROBE = """
 import pyvista
@@ -19,7 +21,11 @@ ADVICE = "on Debian and Ubuntu `apt-get install --no-install-recommends libegl1 
 
 @lru_cache(maxsize=1)
 def can_render() -> bool:
-    """Return whether VTK renders a triangle without a window; asked once a process."""
+    """Return whether VTK renders a triangle without a window; asked once a process.
+
+    Raises MissingPackageError where it is not installed.
+    """
+    require_package("pyvista", "a picture of the body")
     command = [sys.executable, "-c", f"import os{_PROBE}"]
     try:
         done = subprocess.run(command, capture_output=True, timeout=_SECONDS, check=False)

@@ -293,3 +293,38 @@ def test_a_saved_section_is_linear_between_its_values_and_refuses_what_it_cannot
     assert jump.section_at(1.0) == layers(0.04)
     with pytest.raises(bf.InputError, match="different kinds"):
         jump.section_at(0.48)
+
+
+def test_axes_of_beams_can_be_read_without_beamfem(tmp_path):
+    """As netCDF has it: dimension scales, units and names, for `xarray.open_dataset(path, group="beams/1")`."""
+    section, steel = bf.Rectangle(width=10.0, height=10.0), bf.Material(2e5, 0.3, 7.8e-9)
+    common = {"section": section, "material": steel}
+    post = bf.Beam(bf.Line((0, 0), (0, 1000)), elements=3, element=bf.CRBF(3), **common)
+    arch = bf.Beam(bf.Arc((500, 1000), 500.0, np.pi, 0.0), elements=5, element=bf.ANCF(), **common)
+    model = bf.Model(
+        [post, arch],
+        joints=[bf.Rigid(post.end, arch.start)],
+        supports=[bf.Clamp(post.start)],
+        loads=[bf.PointForce(arch.end, (30.0, -20.0))],
+        units="N, mm",
+    )
+    solution = bf.solve_static(model, at=[0.0, 0.5, 1.0])
+    solution.save(tmp_path / "frame.h5")
+    with h5py.File(tmp_path / "frame.h5", "r") as file:
+        assert sorted(file["beams"]) == ["0", "1"]
+        group = file["beams/1"]
+        assert group["x"].shape == group["rotation"].shape == (3, 6)
+        assert [[scale.name.split("/")[-1] for scale in own.values()] for own in group["x"].dims] == [
+            ["load_factor"],
+            ["arc_length"],
+        ]
+        assert group["x"].attrs["units"] == group["arc_length"].attrs["units"] == "mm"
+        assert group["rotation"].attrs["units"] == "rad"
+        np.testing.assert_array_equal(group["load_factor"], [0.0, 0.5, 1.0])
+        for station, fraction in enumerate(np.linspace(0.0, 1.0, 6)):
+            point = arch.at(fraction)
+            np.testing.assert_allclose(group["arc_length"][station], fraction * np.pi * 500.0, atol=1e-8)
+            np.testing.assert_allclose(group["x"][:, station], solution.position(point)[:, 0], atol=1e-9)
+            np.testing.assert_allclose(group["y"][:, station], solution.position(point)[:, 1], atol=1e-9)
+            np.testing.assert_allclose(group["rotation"][:, station], solution.rotation(point), atol=1e-12)
+        assert "PointForce" in file["model"][0].decode()

@@ -53,6 +53,17 @@ def read_checked(group: Any, name: str) -> np.ndarray:
     return values
 
 
+def write_label(group: Any, name: str, label: str) -> None:
+    """Write an attribute of fixed length: in a damaged file HDF5 may look for one of any length without end."""
+    group.attrs[name] = np.bytes_(label)
+
+
+def read_label(group: Any, name: str) -> str:
+    """Return an attribute that is a text, "" where there is none; earlier versions wrote it with any length."""
+    label = group.attrs.get(name, "")
+    return label.decode() if isinstance(label, bytes) else str(label)
+
+
 def checksum(*arrays: np.ndarray) -> int:
     """Return the CRC-32 of arrays, one after the other."""
     result = 0

@@ -10,9 +10,10 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.files import readable
+from beamfem.io.axes_in_hdf5 import save_axes
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
-from beamfem.io.hdf5 import checksum, read_checked, required_h5py, write_checked, written_hdf5
+from beamfem.io.hdf5 import checksum, read_checked, read_label, required_h5py, write_checked, write_label, written_hdf5
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
@@ -36,9 +37,9 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
     description = _text(describe(solution.model, at))
     block = max(min(_BLOCK_BYTES // (8 * solution.p.shape[1]), len(solution)), 1)
     with written_hdf5(path) as (file, require_written):
-        file.attrs["format"] = _FORMAT
+        write_label(file, "format", _FORMAT)
         file.attrs["format_version"] = _FORMAT_VERSION
-        file.attrs["beamfem_version"] = version("beamfem")
+        write_label(file, "beamfem_version", version("beamfem"))
         about = asdict(solution.statistics) | {"status": solution.status.name}
         write_checked(file, "statistics", _text({"static": solution.static, **about}))
         file.attrs["all_rows"] = len(solution)
@@ -58,6 +59,7 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
             require_written()
         if isinstance(solution, EquilibriumPath):
             save_critical(file, solution)
+        save_axes(file, solution, require_written)
 
 
 def load(path: str | PathLike[str]) -> Solution:
@@ -104,11 +106,11 @@ def _append(file: Any, solution: Solution, rows: slice) -> None:
 
 
 def _read(file: Any) -> Solution:
-    if file.attrs.get("format") != _FORMAT:
+    if read_label(file, "format") != _FORMAT:
         raise InputError("it is an HDF5 file, but not one that beamfem saved")
     if file.attrs["format_version"] > _FORMAT_VERSION:
         raise InputError(
-            f"beamfem {file.attrs['beamfem_version']} wrote it in format {file.attrs['format_version']}, this version "
+            f"beamfem {read_label(file, 'beamfem_version')} wrote it in format {file.attrs['format_version']}, this version "
             f"reads formats up to {_FORMAT_VERSION}; a newer beamfem can load it"
         )
     rows, all_rows = int(file.attrs["rows"]), int(file.attrs["all_rows"])

@@ -1,0 +1,66 @@
+"""What others read of a results file without beamfem: axes of beams, with names and units, as netCDF has them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from beamfem.results.along import AxisPoints, rotation
+from beamfem.results.solution import Solution
+
+AXES = "beams"
+_BLOCK_BYTES = 2**20
+
+
+def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
+    """Write groups beams/0, beams/1, ...: where ends of elements are and how far sections there have turned.
+
+    x, y [m] and rotation [rad] (rows, stations), over `time` [s] or `load_factor` (rows,) and `arc_length` [m]
+    (stations,) as dimension scales, with `units`, those of the model, and `long_name` as attributes.
+    """
+    unit = solution.model.unit
+    over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
+    for number, mesh in enumerate(solution.model.meshes):
+        points = AxisPoints(mesh, 1)
+        ends = np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
+        group = file.create_group(f"{AXES}/{number}", track_order=True)
+        group.attrs["curve"] = type(mesh.beam.curve).__name__
+        group.attrs["element"] = mesh.beam.element.name
+        scales = (
+            _scale(group, over, solution.at, over.replace("_", " "), of_rows),
+            _scale(group, "arc_length", points.arc_length[ends], "arc length in the reference", unit("m")),
+        )
+        shape = len(solution), len(ends)
+        x, y, turned = (
+            _variable(group, *about, shape, scales)
+            for about in (
+                ("x", "position x", unit("m")),
+                ("y", "position y", unit("m")),
+                ("rotation", "rotation of the section", "rad"),
+            )
+        )
+        block = max(_BLOCK_BYTES // (16 * len(points.xi)), 1)
+        for first in range(0, len(solution), block):
+            rows = slice(first, min(first + block, len(solution)))
+            r = points.positions(solution.p[rows])[0][:, ends]
+            x[rows], y[rows] = r[..., 0], r[..., 1]
+            turned[rows] = rotation(points, solution, rows)[:, ends]
+            require_written()
+
+
+def _scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
+    scale = _described(group.create_dataset(name, data=values), meaning, unit)
+    scale.make_scale(name)
+    return scale
+
+
+def _variable(group: Any, name: str, meaning: str, unit: str, shape: tuple[int, int], scales: tuple[Any, Any]) -> Any:
+    variable = _described(group.create_dataset(name, shape, np.float64), meaning, unit)
+    for dimension, scale in zip(variable.dims, scales, strict=True):
+        dimension.attach_scale(scale)
+    return variable
+
+
+def _described(dataset: Any, meaning: str, unit: str) -> Any:
+    dataset.attrs["long_name"], dataset.attrs["units"] = meaning, unit
+    return dataset

@@ -110,8 +110,8 @@ def _read(file: Any) -> Solution:
         raise InputError("it is an HDF5 file, but not one that beamfem saved")
     if file.attrs["format_version"] > _FORMAT_VERSION:
         raise InputError(
-            f"beamfem {read_label(file, 'beamfem_version')} wrote it in format {file.attrs['format_version']}, this version "
-            f"reads formats up to {_FORMAT_VERSION}; a newer beamfem can load it"
+            f"beamfem {read_label(file, 'beamfem_version')} wrote it in format {file.attrs['format_version']}, this "
+            f"version reads formats up to {_FORMAT_VERSION}; a newer beamfem can load it"
         )
     rows, all_rows = int(file.attrs["rows"]), int(file.attrs["all_rows"])
     if rows == 0:

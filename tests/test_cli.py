@@ -74,7 +74,7 @@ def studies(tmp_path, monkeypatch):
 def test_run_prints_what_is_asked_for_and_writes_the_files(results):
     path, printed = results
     assert "Cantilever, P L^2 / (E I) = 5" in printed
-    row = printed.split("\ntip\n")[1].splitlines()[1].split()
+    row = printed.split("\ntip\n")[1].splitlines()[2].split()
     assert float(row[2]) == pytest.approx(TIP, abs=5e-7)
     assert f"wrote {path}" in printed
     solution = bf.load(path)

@@ -6,6 +6,7 @@ import typer
 
 from beamfem.cli import files, study
 from beamfem.cli.doctor import doctor
+from beamfem.cli.new import new
 from beamfem.cli.run import run
 
 app = typer.Typer(
@@ -36,6 +37,7 @@ def _root(
     pass
 
 
+app.command()(new)
 app.command()(run)
 app.command(context_settings={"allow_interspersed_args": False, "allow_extra_args": True})(study.study)
 app.command()(files.info)

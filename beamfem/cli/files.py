@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from beamfem.cli.pictures import Colour, draw
 from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 if TYPE_CHECKING:
@@ -55,7 +56,14 @@ def export(
 
 def plot(
     results: Results,
-    target: Annotated[Path, typer.Argument(help="A picture (.png, .svg, .pdf).", show_default=False)],
+    target: Annotated[
+        Path,
+        typer.Argument(
+            help="A picture (.png, .svg, .pdf), a page with a slider (.html) or a film (.gif, .mp4).",
+            show_default=False,
+        ),
+    ],
+    colour: Colour = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -65,7 +73,7 @@ def plot(
         from beamfem.io.results import load
 
         require_target("plot", target)
-        load(results).plot(target)
+        draw(load(results), target, colour)
         _wrote(target, as_json, quiet)
 
 
@@ -80,9 +88,10 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     import h5py
 
     from beamfem.cli.plain import summary
+    from beamfem.io.hdf5 import read_label
 
     with h5py.File(path, "r") as file:
-        version = str(file.attrs["beamfem_version"])
+        version = read_label(file, "beamfem_version")
     model = solution.model
     beams = [
         f"{number}: {type(beam.curve).__name__}, length {beam.curve.length:.6g}, "

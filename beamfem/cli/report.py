@@ -59,12 +59,10 @@ def print_table(title: str, rows: Sequence[Mapping[str, Any]]) -> None:
     lines = [line for row in rows for line in _lines(row)]
     if not lines:
         return
-    texts = [{name: _text(value) for name, value in line.items()} for line in lines]
-    widths = {name: max(len(name), *(len(line[name]) for line in texts)) for name in texts[0]}
+    from beamfem.tabulate import as_text
+
     print(f"\n{title}" if title else "")
-    print("  ".join(name.rjust(width) for name, width in widths.items()))
-    for line in texts:
-        print("  ".join(line[name].rjust(width) for name, width in widths.items()))
+    print(as_text(list(lines[0]), [[_text(value) for value in line.values()] for line in lines]))
 
 
 def _lines(row: Mapping[str, Any]) -> list[dict[str, Any]]:

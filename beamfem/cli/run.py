@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from beamfem.cli.pictures import Colour, draw
 from beamfem.cli.report import AsJson, Quiet, print_json, print_table, reported
 
 if TYPE_CHECKING:
@@ -29,7 +30,13 @@ def run(
     model: Annotated[Path, typer.Argument(help="A model file (.toml), see docs/model_files.md.", show_default=False)],
     out: Annotated[Path | None, typer.Option(help="Save model and states (.h5).", show_default=False)] = None,
     vtk: Annotated[Path | None, typer.Option(help="Write files for ParaView (.pvd).", show_default=False)] = None,
-    plot: Annotated[Path | None, typer.Option(help="Draw (.png, .svg, .pdf).", show_default=False)] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw (.png, .svg, .pdf), or write a page (.html) or a film (.gif, .mp4).", show_default=False
+        ),
+    ] = None,
+    colour: Colour = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -57,7 +64,7 @@ def run(
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun
-        written = _write(found.solution, out, vtk, plot)
+        written = _write(found.solution, out, vtk, plot, colour)
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)
@@ -65,13 +72,15 @@ def run(
             _print(result)
 
 
-def _write(solution: "Solution", out: Path | None, vtk: Path | None, plot: Path | None) -> list[str]:
+def _write(
+    solution: "Solution", out: Path | None, vtk: Path | None, plot: Path | None, colour: str | None
+) -> list[str]:
     if out is not None:
         solution.save(out)
     if vtk is not None:
         solution.to_vtk(vtk)
     if plot is not None:
-        solution.plot(plot)
+        draw(solution, plot, colour)
     return [str(path) for path in (out, vtk, plot) if path is not None]
 
 
@@ -100,14 +109,16 @@ def _result(file: Path, job: "Job", found: "Found", seconds: float, written: lis
     }
 
 
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")
+
+
 def _print(result: dict[str, Any]) -> None:
     print(result["title"])
     statistics = result["statistics"]
-    effort = f"{statistics['iterations']} iterations, " if statistics["iterations"] else ""
-    print(
-        f"{result['analysis']}: {result['beams']} beams, {result['coordinates']} coordinates, "
-        f"{result['states']} states, {effort}{result['seconds']:.2f} s; {statistics['ended']}"
-    )
+    effort = f"{_counted(statistics['iterations'], 'iteration')}, " if statistics["iterations"] else ""
+    sizes = ", ".join(_counted(result[f"{what}s"], what) for what in ("beam", "coordinate", "state"))
+    print(f"{result['analysis']}: {sizes}, {effort}{result['seconds']:.2f} s; {statistics['ended']}")
     for name, title in _TITLES.items():
         if result.get(name):
             print_table(title, [{"": number, name: value} for number, value in enumerate(result[name], 1)])

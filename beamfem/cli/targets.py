@@ -6,8 +6,13 @@ from pathlib import Path
 from beamfem.errors import InputError
 from beamfem.extras import require_package
 
-_NEEDED = {"out": "h5py", "plot": "matplotlib", "vtk": "vtkmodules"}
-_SUFFIXES = {"out": (".h5", ".hdf5"), "plot": (".png", ".svg", ".pdf"), "vtk": (".pvd", ".vtkhdf")}
+_NEEDED = {"out": ("h5py",), "plot": ("matplotlib",), "vtk": ("vtkmodules",)}
+_OTHERWISE: dict[str, tuple[str, ...]] = {".html": (), ".mp4": ("matplotlib", "imageio_ffmpeg")}
+_SUFFIXES = {
+    "out": (".h5", ".hdf5"),
+    "plot": (".png", ".svg", ".pdf", ".html", ".gif", ".mp4"),
+    "vtk": (".pvd", ".vtkhdf"),
+}
 
 
 def require_target(option: str, path: Path | None) -> None:
@@ -20,12 +25,13 @@ def require_target(option: str, path: Path | None) -> None:
     suffixes = _SUFFIXES[option]
     if path.suffix.lower() not in suffixes:
         right = f"{path.with_suffix(suffixes[0])} would be right" if path.name else ""
-        raise InputError(f"{path} must end in {' or '.join(suffixes)}; {right}")
+        raise InputError(f"{path} must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}; {right}")
     if path.is_dir():
         raise InputError(f"{path} is a folder; give the name of a file")
     if not writable(path.parent):
         raise InputError(f"{path} cannot be written: {path.parent} takes no files")
-    require_package(_NEEDED[option], f"writing {path}")
+    for package in _OTHERWISE.get(path.suffix.lower(), _NEEDED[option]):
+        require_package(package, f"writing {path}")
 
 
 def writable(folder: Path) -> bool:

@@ -11,6 +11,7 @@ _EXTRAS = {
     "h5py": "store",
     "imageio-ffmpeg": "video",
     "matplotlib": "plot",
+    "pandas": "pandas",
     "meshio": "mesh",
     "pillow": "plot",
     "pyvista": "vtk",

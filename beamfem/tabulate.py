@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from beamfem.extras import needed_for
 from beamfem.files import whole
 
 if TYPE_CHECKING:
@@ -68,6 +69,13 @@ def as_html(header: Sequence[str], rows: Rows) -> str:
     lines = ("".join(f"<td style='{style}'>{escape(text)}</td>" for text in line) for line in cells(rows))
     body = "".join(f"<tr>{line}</tr>" for line in lines)
     return f"<table>{f'<tr>{head}</tr>' if head else ''}{body}</table>"
+
+
+def as_pandas(header: Sequence[str], rows: Rows) -> Any:
+    """Return a pandas.DataFrame. Raises MissingPackageError without pandas."""
+    with needed_for("to_pandas"):
+        import pandas
+    return pandas.DataFrame([list(row) for row in rows], columns=list(header))
 
 
 def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> None:

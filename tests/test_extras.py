@@ -43,6 +43,8 @@ for name, task in {{
     "save": lambda: solution.save("a.h5"),
     "load": lambda: bf.load("page.html"),
     "xarray": lambda: solution.to_xarray(),
+    "pandas": lambda: solution.to_pandas(),
+    "modes as a table": lambda: modes.to_pandas(),
     "mesh": lambda: bf.read_mesh("page.html"),
     "drawing": lambda: bf.read_dxf("page.html"),
 }}.items():
@@ -54,15 +56,7 @@ for name, task in {{
 print(json.dumps(said))
 """
 OPTIONAL = {
-    "PIL",
-    "ezdxf",
-    "h5py",
-    "imageio_ffmpeg",
-    "matplotlib",
-    "meshio",
-    "pyvista",
-    "typer",
-    "vtkmodules",
+    *("PIL", "ezdxf", "h5py", "imageio_ffmpeg", "matplotlib", "meshio", "pandas", "pyvista", "typer", "vtkmodules"),
     "xarray",
 }
 EXTRA_OF = {
@@ -71,6 +65,7 @@ EXTRA_OF = {
     **dict.fromkeys(("save", "load"), "store"),
     "mp4": "video",
     "xarray": "xarray",
+    **dict.fromkeys(("pandas", "modes as a table"), "pandas"),
     "mesh": "mesh",
     "drawing": "cad",
 }

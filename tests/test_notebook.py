@@ -82,12 +82,6 @@ def test_without_xarray_the_extra_is_named(monkeypatch):
         cantilever().to_xarray()
 
 
-def test_several_beams_need_a_name(monkeypatch):
-    monkeypatch.setitem(sys.modules, "xarray", sys)
-    with pytest.raises(bf.InputError, match="3 beams"):
-        frame().to_xarray()
-
-
 def test_a_figure_shows_itself():
     """As PNG, which is what is asked of the last value of a cell, whatever backend is active."""
     figure = cantilever().plot()

@@ -112,6 +112,10 @@ class Convergence:
         """Write the table of points with every digit; nan where there is no error or order."""
         tabulate.write_csv(path, *self.points())
 
+    def to_pandas(self) -> Any:
+        """Return the table of points as a pandas.DataFrame. Raises MissingPackageError."""
+        return tabulate.as_pandas(*self.points())
+
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw error over refinement, both logarithmic; written to `path` where one is given. Return the figure."""
         from beamfem.convergence.figure import plot_errors

@@ -277,8 +277,12 @@ class Solution:
         offered(Solution.to_vtk)(self, path)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return what varies along a beam over the steps as an xarray.Dataset."""
+        """Return what varies along a beam, or along all, over the steps as an xarray.Dataset."""
         return offered(Solution.to_xarray)(self, beam)
+
+    def to_pandas(self, beam: Beam | None = None) -> Any:
+        """Return what varies along a beam, or along all, over the steps as a pandas.DataFrame."""
+        return offered(Solution.to_pandas)(self, beam)
 
     def to_html(self, path: str | PathLike[str], **options: Any) -> Path:
         """Write a page with a slider over the steps, one file that works offline."""

@@ -11,6 +11,7 @@ import numpy as np
 from beamfem import tabulate
 from beamfem.brief import brief
 from beamfem.errors import InputError
+from beamfem.extras import needed_for
 from beamfem.progress import progress
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
 from beamfem.sweeps.stored import StoredCalls
@@ -99,6 +100,32 @@ class Sweep:
     def to_markdown(self) -> str:
         """Return the table of all points as Markdown."""
         return tabulate.as_markdown(*self._rows())
+
+    def to_pandas(self) -> Any:
+        """Return the table of all points as a pandas.DataFrame. Raises MissingPackageError."""
+        return tabulate.as_pandas(*self._rows())
+
+    def to_xarray(self) -> Any:
+        """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan where one failed.
+
+        Arrays of equal shape have dimensions of their own behind. Raises MissingPackageError.
+        """
+        with needed_for("to_xarray"):
+            import xarray
+        texts = self._texts()
+        names = list(self.labels[0])
+        step = [int(np.prod(self.shape[axis + 1 :])) for axis in range(len(names))]
+        coordinates = {
+            name: [texts[place * step[axis]][name] for place in range(self.shape[axis])]
+            for axis, name in enumerate(names)
+        }
+        data = {}
+        for name in self.table()[0]:
+            values = None if name in names else self[name]
+            if values is not None and values.dtype != object:
+                own = [f"{name}_{axis}" for axis in range(values.ndim - 1)]
+                data[name] = ((*names, *own), values.reshape(*self.shape, *values.shape[1:]))
+        return xarray.Dataset(data, coordinates)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table of all points with every digit."""

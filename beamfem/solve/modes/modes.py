@@ -25,6 +25,7 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.memory import require_room
 from beamfem.solve.start.multipliers import refuse_dampers, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
+from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
@@ -100,6 +101,15 @@ class Modes:
         statistics = Statistics(0, frames - 1, 0, "a mode of small vibration")
         loaded = np.full(frames, self.state.at)
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
+
+    def to_pandas(self) -> Any:
+        """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a pandas.DataFrame.
+
+        Raises MissingPackageError.
+        """
+        rigid = [*self.rigid, *[""] * (len(self) - len(self.rigid))]
+        rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
+        return as_pandas(("frequency", "growth", "rigid"), rows)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
         """Draw the modes, each with its frequency; return the figure."""

@@ -26,6 +26,7 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
 from beamfem.solve.start.start_state import resting_state
+from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
@@ -83,6 +84,14 @@ class Buckling:
         at = np.full(2, self.load_factors[mode])
         statistics = Statistics(0, 1, 0, "a critical state and its mode")
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
+
+    def to_pandas(self) -> Any:
+        """Return load factor, kind and uncertainty of the critical points as a pandas.DataFrame.
+
+        Raises MissingPackageError.
+        """
+        rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
+        return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
         """Draw the modes, each with its load factor; return the figure."""

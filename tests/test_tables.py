@@ -1,0 +1,78 @@
+"""Results, sweeps and studies as tables of pandas and arrays of xarray."""
+
+import numpy as np
+import pytest
+from drawn import cantilever, frame, pendulum
+
+import beamfem as bf
+
+pandas = pytest.importorskip("pandas")
+xarray = pytest.importorskip("xarray")
+
+
+@pytest.mark.parametrize(("make", "over"), [(frame, "load_factor"), (pendulum, "time")])
+def test_all_beams_at_once(make, over):
+    solution = make()
+    found = solution.to_xarray()
+    assert found["moment"].dims == (over, "station")
+    np.testing.assert_array_equal(found[over], solution.at)
+    for number, beam in enumerate(solution.model.beams):
+        own = found.where(found.beam == number, drop=True)
+        alone = solution.to_xarray(beam)
+        assert np.unique(alone.beam) == [number]
+        np.testing.assert_array_equal(own["moment"], alone["moment"])
+        np.testing.assert_allclose(own["x"][:, -1], solution.position(beam.end)[:, 0], atol=1e-12)
+        np.testing.assert_allclose(own["arc_length"][-1], beam.curve.length, rtol=1e-12)
+
+
+def test_a_data_frame_has_a_row_for_each_state_and_station():
+    solution = frame()
+    table, found = solution.to_pandas(), solution.to_xarray()
+    assert table.index.names == ["load_factor", "beam", "arc_length"]
+    assert len(table) == found.sizes["load_factor"] * found.sizes["station"]
+    for name in ("x", "moment", "rotation"):
+        np.testing.assert_array_equal(table[name].to_numpy().reshape(found[name].shape), found[name])
+    beam = solution.model.beams[1]
+    last = table.xs((1.0, 1), level=("load_factor", "beam"))
+    np.testing.assert_allclose(last[["ux", "uy"]].iloc[-1], solution.displacement(beam.end)[-1], atol=1e-12)
+
+
+def test_a_beam_of_another_model_is_refused():
+    with pytest.raises(bf.InputError, match="not in"):
+        cantilever().to_pandas(frame().model.beams[0])
+
+
+def grown(length: float, kind: str, grades: int = 2) -> dict[str, object]:
+    if kind == "bad" and length > 2.0:
+        raise bf.InputError("too long")
+    return {"area": length**2, "both": np.array([length, grades])}
+
+
+def test_a_sweep_is_a_grid_over_what_varies():
+    done = bf.sweep(grown, length=[1.0, 2.0, 3.0], kind=["good", "bad"])
+    found = done.to_xarray()
+    assert found["area"].dims == ("length", "kind")
+    assert found["both"].dims == ("length", "kind", "both_0")
+    np.testing.assert_array_equal(found["area"].sel(kind="good"), [1.0, 4.0, 9.0])
+    np.testing.assert_array_equal(found["area"].sel(kind="bad"), [1.0, 4.0, np.nan])
+    table = done.to_pandas()
+    assert list(table.columns[:3]) == ["length", "kind", "area"]
+    np.testing.assert_array_equal(table["area"], done["area"])
+
+
+def test_modes_buckling_and_studies_are_tables():
+    steel = bf.Material(2e11, 0.3, 7800.0)
+    column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel)
+    model = bf.Model([column], supports=[bf.Clamp(column.start)], loads=[bf.PointForce(column.end, (0, -1.0))])
+    modes, buckling = bf.solve_modes(model, 3), bf.solve_buckling(model)
+    np.testing.assert_array_equal(modes.to_pandas()["frequency"], modes.frequencies)
+    assert list(buckling.to_pandas()["kind"]) == ["bifurcation"]
+
+    def frequency(elements: int) -> float:
+        beam = bf.Beam(bf.Line((0, 0), (0, 1)), elements, bf.CRBF(2), bf.Rectangle(0.01, 0.01), steel)
+        return float(bf.solve_modes(bf.Model([beam], supports=[bf.Clamp(beam.start)]), 1).frequencies[0])
+
+    study = bf.converge(frequency, refine="elements", elements=[2, 4, 8])
+    table = study.to_pandas()
+    np.testing.assert_array_equal(table["elements"], [2, 4, 8])
+    np.testing.assert_array_equal(table[study.quantity], study.curves[0].value)

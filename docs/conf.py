@@ -6,6 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from drawn_by_pages import draw, show, with_pictures
 from plain_docstrings import as_markup, without_constants
 
 project = "beamfem"
@@ -26,5 +27,8 @@ suppress_warnings = ["myst.xref_missing"]
 
 
 def setup(app):
+    app.connect("builder-inited", draw)
+    app.connect("env-get-outdated", with_pictures)
+    app.connect("source-read", show)
     app.connect("autodoc-process-docstring", as_markup)
     app.connect("autodoc-process-signature", without_constants)

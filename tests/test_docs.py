@@ -1,59 +1,17 @@
 """Every code block of README and docs runs, prints what the page shows, and what pages name exists."""
 
-import contextlib
-import io
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 import beamfem as bf
+from docs.page_code import run
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-_FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 _TINY = 1e-8  # two numbers below this are round-off of zero
-
-
-@dataclass(frozen=True)
-class Block:
-    """A block of a page: its code, the line it starts after, the output that the page shows (None for none)."""
-
-    code: str
-    line: int
-    output: str | None
-
-
-def blocks_of(text: str) -> list[Block]:
-    """Python blocks in order; a text block shows what the python block before it prints."""
-    found: list[Block] = []
-    for fence in _FENCE.finditer(text):
-        language, body = fence.groups()
-        if language == "python":
-            found.append(Block(body, text[: fence.start(2)].count("\n"), None))
-        elif language == "text":
-            assert found, "a text block is the output of a python block, and there is none before"
-            assert found[-1].output is None, "two outputs of one block"
-            found[-1] = Block(found[-1].code, found[-1].line, body)
-    return found
-
-
-def run(page: Path, text: str) -> Iterator[tuple[Block, str]]:
-    """Run the blocks of a page in one namespace; a block whose first line is `# name.py` becomes that file."""
-    namespace: dict[str, object] = {"__name__": "page"}
-    for block in blocks_of(text):
-        file = re.match(r"# (\w+\.py)\n", block.code)
-        if file:
-            Path(file[1]).write_text(block.code)
-            continue
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            # empty lines in front: a traceback names the line of the page
-            exec(compile("\n" * block.line + block.code, str(page), "exec"), namespace)
-        yield block, printed.getvalue()
 
 
 def same(shown: str, printed: str) -> bool:

@@ -19,7 +19,7 @@ from beamfem.view.drawing import equal_axes
 from beamfem.view.frames import spread_rows
 from beamfem.view.held import supports_of
 from beamfem.view.history import plot_load_displacement
-from beamfem.view.shapes import Shapes
+from beamfem.view.shapes import Shapes, limits
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +63,13 @@ def test_shapes_go_through_the_positions_of_the_solution(falling):
         np.testing.assert_allclose(lines.get_segments()[0][-1], tip[row], atol=1e-12)
     assert bar.get_ylabel() == "time [s]"
     assert [tick.get_text() for tick in bar.get_yticklabels()] == [f"{falling.time[row]:.3g}" for row in rows]
+
+
+def test_what_is_the_same_to_three_digits_has_one_colour():
+    """A ring under pressure: its normal force -p r differs by parts in a million, which are errors of interpolation."""
+    low, high = limits([np.array([-50.0001, -50.0]), np.array([-50.0, -49.9999])])
+    assert high - low > 50.0
+    assert limits([np.array([-50.0, np.nan]), np.array([-49.0])]) == (-50.0, -49.0)
 
 
 def test_colour_bar_has_the_limits_and_the_unit_of_the_field(bent):

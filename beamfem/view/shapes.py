@@ -12,6 +12,7 @@ from beamfem.results.along import AxisPoints, Quantity, quantity
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
+_SAME = 1e-3  # of the largest value: smaller differences are not worth all colours
 FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print
 _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
 _UNKNOWN = 0.8  # grey of what has no value
@@ -163,11 +164,11 @@ class Shapes:
 
 
 def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Return the smallest and the largest value, further apart where the values are constant up to round-off."""
+    """Return the smallest and the largest value, further apart where all are the same to three digits."""
     known = [v[np.isfinite(v)] for v in values]
     low, high = min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
     size = max(abs(low), abs(high))
-    return (low, high) if high - low > 1e-9 * size else (low - (size or 1.0), high + (size or 1.0))
+    return (low, high) if high - low > _SAME * size else (low - (size or 1.0), high + (size or 1.0))
 
 
 def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:

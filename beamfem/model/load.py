@@ -1,7 +1,7 @@
 """What loads have in common: a factor in time, and values that may vary along a beam."""
 
 from collections.abc import Callable
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -41,6 +41,7 @@ def check_common(load: Scaled) -> None:
         flag(f"follower of {kind}", load.follower)
 
 
+@runtime_checkable
 class AlongBeam(Protocol):
     """A load along a beam; `along`: names of what may be a function of the arc length [m] from the start."""
 

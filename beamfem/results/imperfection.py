@@ -13,7 +13,7 @@ from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import functions_along
+from beamfem.model.load import AlongBeam, functions_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.results.postprocess import axis, nodal_velocities
@@ -180,7 +180,7 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
     if not is_dataclass(item) or isinstance(item, type):
         return item
     changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
-    if hasattr(item, "along"):
-        own = crooked[id(item.beam)]  # type: ignore[attr-defined]
-        changes |= {name: _along(function, own.old, own.new) for name, function in functions_along(item).items()}  # type: ignore[arg-type]
+    if isinstance(item, AlongBeam):
+        own = crooked[id(item.beam)]
+        changes |= {name: _along(function, own.old, own.new) for name, function in functions_along(item).items()}
     return replace(item, **changes)

@@ -1,16 +1,23 @@
-"""Pictures of a page, drawn by its own code while Sphinx builds, behind the blocks that draw them."""
+"""Pictures of a page, drawn by its own code while Sphinx builds, behind the blocks that draw them.
+
+Blocks of a page run one after the other; an example that a page includes runs on its own, and its time is told.
+"""
 
 import contextlib
+import io
 import logging
 import re
+import runpy
 import shutil
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from page_code import run
 
 _DRAWS = re.compile(r'"out/\w+\.(?:png|gif)"')
+_EXAMPLE = re.compile(r"^```\{literalinclude\} (\S+\.py)\n```$", re.M)
 _PICTURES = "_pictures"  # beside the pages, as Sphinx wants it; not in the repository
 
 
@@ -25,23 +32,47 @@ def draw(app) -> None:
         name = page.relative_to(source).with_suffix("").as_posix()
         text = page.read_text(encoding="utf-8")
         if _DRAWS.search(text):
-            app.drawn_by_pages[name] = _drawn(page, text, source / _PICTURES / name)
+            app.drawn_by_pages[name] = _of_blocks(page, text, source / _PICTURES / name)
+        elif _EXAMPLE.search(text):
+            app.drawn_by_pages[name] = _of_examples(page, text, source / _PICTURES / name)
 
 
-def _drawn(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
-    """Return where in the text of a page the pictures of each block belong, and their names."""
+def _of_blocks(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
+    """Return where in the text of a page something is to be added, and what: the pictures of its blocks."""
     found, known = [], set()
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         sys.path.insert(0, folder)
         for block, _ in run(page, text):
-            for picture in sorted(Path("out").glob("*.png")) + sorted(Path("out").glob("*.gif")):
-                if picture.name not in known:
-                    known.add(picture.name)
-                    keep.mkdir(parents=True, exist_ok=True)
-                    shutil.copy(picture, keep)
-                    found.append((block.end, picture.name))
+            found += [(block.end, shown) for shown in _pictures(Path("out"), keep, known)]
         sys.path.remove(folder)
     return found
+
+
+def _of_examples(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
+    """Return the same of examples, with what they print and the time that they take."""
+    found = []
+    for example in _EXAMPLE.finditer(text):
+        printed = io.StringIO()
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            begun = time.perf_counter()
+            with contextlib.redirect_stdout(printed):
+                runpy.run_path(str(page.parent / example[1]), run_name="__main__")
+            seconds = time.perf_counter() - begun
+            words = f"It prints, in {seconds:.1f} s with all files:\n\n```text\n{printed.getvalue()}```"
+            shown = [words, *_pictures(Path("out/examples"), keep, set())]
+            found += [(example.end(), own) for own in shown]
+    return found
+
+
+def _pictures(folder: Path, keep: Path, known: set[str]) -> list[str]:
+    """Keep the pictures of a folder that are not known yet; return how a page shows them."""
+    new = [own for own in sorted((*folder.glob("*.png"), *folder.glob("*.gif"))) if own.name not in known]
+    keep.mkdir(parents=True, exist_ok=True)
+    for picture in new:
+        known.add(picture.name)
+        shutil.copy(picture, keep)
+    below = keep.relative_to(next(own for own in keep.parents if own.name == _PICTURES).parent)
+    return [f"![What this draws](/{below.as_posix()}/{picture.name})" for picture in new]
 
 
 def with_pictures(app, env, added, changed, removed) -> list[str]:
@@ -52,6 +83,6 @@ def with_pictures(app, env, added, changed, removed) -> list[str]:
 def show(app, name: str, source: list[str]) -> None:
     """Put the pictures of a page behind their blocks."""
     text = source[0]
-    for end, picture in reversed(app.drawn_by_pages.get(name, [])):
-        text = f"{text[:end]}\n\n![What this draws](/{_PICTURES}/{name}/{picture})\n{text[end:]}"
+    for end, shown in reversed(app.drawn_by_pages.get(name, [])):
+        text = f"{text[:end]}\n\n{shown}\n{text[end:]}"
     source[0] = text

@@ -25,4 +25,5 @@ model = bf.Model(
 solution = bf.solve_static(model)
 sway = 0.5 * (solution.displacement(left) + solution.displacement(right))[-1, 0]
 print(f"sways by {1e3 * sway:.3f} mm")
+solution.plot("out/examples/portal.png", colour="moment")
 solution.to_vtk("out/examples/portal.pvd")

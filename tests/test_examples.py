@@ -42,7 +42,7 @@ def numbers(line):
 
 
 def test_examples_are_short():
-    assert len(NAMES) == 8
+    assert len(NAMES) == 12
     assert all(len((FOLDER / f"{name}.py").read_text().splitlines()) < 40 for name in NAMES)
 
 
@@ -151,3 +151,42 @@ def test_the_portal_sways_as_slope_and_deflection_say(printed):
     sway = 1e3 * np.linalg.solve(matrix, [0.5 * force, 0.0])[0]
     assert lines[0] == "member sets: columns, beam - point sets: feet, corners, midspan"
     assert numbers(lines[1])[0] == pytest.approx(sway, rel=3e-3)
+
+
+def test_the_guide_is_as_stiff_as_two_leaf_springs(printed):
+    """12 E I / L^3 each, which shear softens by 12 E I / (k_s G A L^2), and 3/5 u^2 / L for each that bends so."""
+    lines, _ = printed("parallel_guide")
+    rigidity = bf.Rectangle(10.0, 0.2).rigidity(bf.Material(2.0e5, 0.3, 7.85e-9))
+    softer = 1.0 + 12.0 * rigidity.bending / (rigidity.shear * 50.0**2)
+    # in parts of the stage's stiffness, which bends a little: (50 + 10 mm)^-1 of 125,000 times as much
+    assert numbers(lines[0])[0] == pytest.approx(2.0 * 12.0 * rigidity.bending / 50.0**3 / softer, rel=1e-3)
+    assert numbers(lines[1])[0] == pytest.approx(0.6 * 1.0**2 / 50.0, rel=1e-3)
+    assert abs(numbers(lines[2])[0]) < 1e-5
+
+
+def test_the_strip_is_rolled_up_into_two_circles(printed):
+    lines, _ = printed("roll_up")
+    assert numbers(lines[0]) == [0.0, 0.0]
+    assert numbers(lines[1]) == [2.0]
+
+
+def test_the_thermostat_is_timoshenkos(printed):
+    """Timoshenko 1925, layers of equal height: 1 / r = 24 da dT / (h (14 + n + 1 / n)), n the ratio of moduli."""
+    lines, _ = printed("thermostat")
+    ratio = 2.1e11 / 1.05e11
+    curvature = 24.0 * (19e-6 - 12e-6) * 100.0 / (1e-3 * (14.0 + ratio + 1.0 / ratio))
+    assert numbers(lines[0])[0] == pytest.approx(1.0 / curvature, rel=2e-3)  # strains of 1e-3 lengthen the strip
+    assert numbers(lines[1])[0] == pytest.approx(1e3 * (1.0 - np.cos(0.1 * curvature)) / curvature, rel=3e-3)
+
+
+def test_the_fishing_rod_is_an_elastica_and_keeps_its_energy(printed):
+    """Tip by shooting; the energy stored is the work of a weight that grows, by Simpson's rule over such tips."""
+    lines, _ = printed("fishing_rod")
+    rigidity = bf.Circle(0.008).rigidity(bf.Material(9e10, 0.3, 1600.0))
+    stiffness = rigidity.bending, rigidity.axial, rigidity.shear
+    sag = [0.0] + [-tip_displacement(2.5, (0.0, -8.0 * part / 16), *stiffness)[1] for part in range(1, 17)]
+    assert numbers(lines[0])[1] == pytest.approx(-sag[-1], abs=2e-5)
+    simpson = np.array([1.0, *[4.0, 2.0] * 7, 4.0, 1.0]) * (8.0 / 16) / 3.0
+    stored = 8.0 * sag[-1] - simpson @ np.array(sag)  # all of F u but what is under the curve u(F)
+    assert numbers(lines[1])[0] == pytest.approx(stored, rel=1e-5)
+    assert numbers(lines[2])[0] < 1e-3

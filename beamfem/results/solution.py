@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from beamfem.registry import offered
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import BeamStress, beam_stress
 from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
+from beamfem.results.drawing_options import FilmOptions, PageOptions, PictureOptions, ShapeOptions, WindowOptions
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.fitting import require_rows, require_state
@@ -284,11 +285,11 @@ class Solution:
         """Return what varies along a beam, or along all, over the steps as a pandas.DataFrame."""
         return offered(Solution.to_pandas)(self, beam)
 
-    def to_html(self, path: str | PathLike[str], **options: Any) -> Path:
+    def to_html(self, path: str | PathLike[str], **options: Unpack[PageOptions]) -> Path:
         """Write a page with a slider over the steps, one file that works offline."""
         return offered(Solution.to_html)(self, path, **options)
 
-    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ShapeOptions]) -> Any:
         """Draw deformed shapes, into a file where `path` is given; return the figure."""
         return offered(Solution.plot)(self, path, **options)
 
@@ -311,15 +312,15 @@ class Solution:
         """Draw the load factor over a displacement; return the figure."""
         return offered(Solution.plot_load_displacement)(self, point, quantity, path)
 
-    def animate(self, path: str | PathLike[str], **options: Any) -> Path:
+    def animate(self, path: str | PathLike[str], **options: Unpack[FilmOptions]) -> Path:
         """Write the moving body as GIF or MP4 by the suffix of `path`."""
         return offered(Solution.animate)(self, path, **options)
 
-    def show(self, **options: Any) -> Any:
+    def show(self, **options: Unpack[WindowOptions]) -> Any:
         """Open a window with the body and a slider over the steps."""
         return offered(Solution.show)(self, **options)
 
-    def picture(self, path: str | PathLike[str], **options: Any) -> Path:
+    def picture(self, path: str | PathLike[str], **options: Unpack[PictureOptions]) -> Path:
         """Write a picture of the solid body without a window."""
         return offered(Solution.picture)(self, path, **options)
 

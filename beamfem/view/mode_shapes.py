@@ -25,7 +25,7 @@ _WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]
 def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
     """Draw the first `most` modes of vibration, each with its frequency [Hz]; return the figure of matplotlib.
 
-    Dark the mode at its largest, pale half a period later, dashed the reference. Raises InputError; BeamfemError
+    Dark the mode at its largest, pale half a period later, dashed the reference. Raises InputError; MissingPackageError
     without matplotlib.
     """
 
@@ -45,8 +45,8 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
 def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
     """Draw the first `most` modes of buckling, each with its critical load factor; return the figure of matplotlib.
 
-    Pale the critical state, dark the same with its mode added, dashed the reference. Raises InputError; BeamfemError
-    without matplotlib.
+    Pale the critical state, dark the same with its mode added, dashed the reference.
+    Raises InputError; MissingPackageError without matplotlib.
     """
 
     def title(mode: int) -> str:

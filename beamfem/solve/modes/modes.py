@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
 from beamfem.registry import offered
+from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.locking import frequency_warnings
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
@@ -111,7 +112,7 @@ class Modes:
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
-    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its frequency; return the figure."""
         return offered(Modes.plot)(self, path, **options)
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, Unpack
 from warnings import warn
 
 import numpy as np
@@ -13,6 +13,7 @@ from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.model import Model
 from beamfem.registry import offered
+from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
@@ -93,7 +94,7 @@ class Buckling:
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
-    def plot(self, path: str | PathLike[str] | None = None, **options: Any) -> Any:
+    def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its load factor; return the figure."""
         return offered(Buckling.plot)(self, path, **options)
 

@@ -60,6 +60,23 @@ def test_a_sweep_is_a_grid_over_what_varies():
     np.testing.assert_array_equal(table["area"], done["area"])
 
 
+def test_a_sweep_is_drawn_over_a_parameter(tmp_path):
+    done = bf.sweep(grown, length=[3.0, 1.0, 2.0], kind=["good", "bad"])
+    axes = done.plot(path=tmp_path / "sweep.png").axes[0]
+    assert (tmp_path / "sweep.png").stat().st_size > 5000
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("length", "area")
+    good, bad = axes.lines
+    assert (good.get_label(), bad.get_label()) == ("kind=good", "kind=bad")
+    np.testing.assert_array_equal(good.get_xydata(), [[1.0, 1.0], [2.0, 4.0], [3.0, 9.0]])
+    np.testing.assert_array_equal(bad.get_ydata(), [1.0, 4.0, np.nan])
+    assert done.plot("seconds").axes[0].get_ylabel() == "seconds"
+    for options, words in (({"value": "aera"}, "did you mean area"), ({"over": "kind"}, "over is no parameter")):
+        with pytest.raises(bf.InputError, match=words):
+            done.plot(**options)
+    with pytest.raises(bf.InputError, match="nothing to draw"):
+        bf.sweep(grown, length=1.0, kind=["good", "bad"]).plot()
+
+
 def test_modes_buckling_and_studies_are_tables():
     steel = bf.Material(2e11, 0.3, 7800.0)
     column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), steel)

@@ -127,6 +127,17 @@ class Sweep:
                 data[name] = ((*names, *own), values.reshape(*self.shape, *values.shape[1:]))
         return xarray.Dataset(data, coordinates)
 
+    def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
+        """Draw a result over a parameter, a curve for each combination of the others; return the figure.
+
+        value: name of the result, the first one by default; over: name of a parameter that varies and is a number, the
+        first one by default; path: where to write it. Points that failed are left out. Raises InputError,
+        MissingPackageError.
+        """
+        from beamfem.sweeps.figure import plot_sweep
+
+        return plot_sweep(self, value, over, path)
+
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table of all points with every digit."""
         tabulate.write_csv(path, *self._rows())

@@ -85,6 +85,24 @@ def test_supports_move_only_where_they_roll(tmp_path):
     assert len(data["places"][0]) == len(data["outlines"])
 
 
+def test_loads_are_those_of_each_row(tmp_path):
+    solution = cantilever()
+    first, last = data_of(solution.to_html(tmp_path / "bent.html"))["loads"]
+    assert first == {"forces": [], "moments": [], "gravity": []}
+    (arrow,) = last["forces"]
+    np.testing.assert_allclose(arrow[:2], solution.position(solution.model.beams[0].end)[-1], rtol=1e-5)
+    (load,) = solution.model.point_loads
+    np.testing.assert_allclose(arrow[2:4], 40.0 * np.array(load.vector) / np.linalg.norm(load.vector), atol=0.1)
+    portal = frame()
+    acting = data_of(portal.to_html(tmp_path / "frame.html"))["loads"][-1]
+    assert len(acting["forces"]) > 20
+    ((*place, sense),) = acting["moments"]
+    (moment,) = (load for load in portal.model.loads if isinstance(load, bf.PointMoment))
+    np.testing.assert_allclose(place, portal.position(moment.point)[-1], rtol=1e-5, atol=1e-6)
+    assert sense == np.sign(moment.moment)
+    assert acting["gravity"][1] == -40.0
+
+
 def test_a_path_names_its_rows(tmp_path):
     path = arch()
     data = data_of(path.to_html(tmp_path / "arch.html"))
@@ -105,3 +123,44 @@ def test_browser_draws_the_step_of_the_address(falling, tmp_path):
         [*command, "--dump-dom", f"file://{path}#4:moment"], capture_output=True, text=True, timeout=60
     )
     assert f'<output id="now">{data_of(path)["labels"][4]}</output>' in done.stdout
+
+
+DRIVEN = """<script>
+const said = [], write = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+  said.push(text); write.call(this, text, ...place);
+};
+const corner = view.getBoundingClientRect();
+const middle = [0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom)];
+const send = (Kind, name, x, y, more) => view.dispatchEvent(
+  new Kind(name, {clientX: corner.left + x, clientY: corner.top + y, cancelable: true, pointerType: "touch", ...more}));
+// where the end of the beam is, when all is seen
+const end = [0, 1].map(axis => place(points, ((+slider.value + 1) * total - 1) * 2 * data.sides + axis));
+const at = [middle[0] + (end[0] - 0.5 * (data.high[0] - data.low[0])) * frame.scale,
+            middle[1] - (end[1] - 0.5 * (data.high[1] - data.low[1])) * frame.scale];
+const before = frame.scale;
+for (let i = 0; i < 4; i++) send(WheelEvent, "wheel", ...at, {deltaY: -1});
+said.length = 0;
+send(PointerEvent, "pointermove", ...at);
+document.body.append(Object.assign(document.createElement("pre"),
+  {id: "said", textContent: JSON.stringify({zoomed: frame.scale / before, said})}));
+</script></body>"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser")
+def test_browser_tells_values_where_one_points_and_zooms_about_the_pointer(falling, tmp_path):
+    path = falling.to_html(tmp_path / "fall.html", frames=10)
+    path.write_text(path.read_text().replace("</body>", DRIVEN))
+    command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'browser'}"]
+    done = subprocess.run(
+        [*command, "--dump-dom", f"file://{path}#9:moment"], capture_output=True, text=True, timeout=60
+    )
+    found = json.loads(re.search(r'<pre id="said">(.*?)</pre>', done.stdout, re.S)[1])
+    assert found["zoomed"] == pytest.approx(1.2**4)
+    end = falling.model.beams[0].end
+    told = {text.split(" ")[0]: [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", text)] for text in found["said"]}
+    # four digits of positions that a page keeps in 65534 levels
+    np.testing.assert_allclose(told["x"], falling.position(end)[-1], rtol=5e-4, atol=1e-4)
+    np.testing.assert_allclose(told["ux"], falling.displacement(end)[-1], rtol=5e-4, atol=1e-4)
+    assert any(text.startswith("bending moment [N m]: about ") for text in found["said"])

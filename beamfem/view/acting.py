@@ -72,18 +72,17 @@ def _arrows(axes: Any, at: np.ndarray, vector: np.ndarray, pivot: str, width: fl
     )
 
 
+def force_at(only: "Solution", load: PointForce, weight: float) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Return place [m] and vector [N] of a force in a solution of one row, and whether an arrow's tip touches there."""
+    vector = weight * np.array(load.vector)
+    if load.follower:
+        vector = _turned_by(vector, float(only.rotation(load.point)[0]))
+    return only.position(load.point)[0], vector, _pushes(only, load, vector)
+
+
 def _forces(axes: Any, solution: "Solution", items: list[tuple[Load, float, int]]) -> list[Any]:
-    places, vectors, pushing = [], [], []
-    for load, weight, row in items:
-        assert isinstance(load, PointForce)
-        only = one_row(solution, row)
-        vector = weight * np.array(load.vector)
-        if load.follower:
-            vector = _turned_by(vector, float(only.rotation(load.point)[0]))
-        places.append(only.position(load.point)[0])
-        vectors.append(vector)
-        pushing.append(_pushes(only, load, vector))
-    at, vector, push = np.array(places), np.array(vectors), np.array(pushing)
+    found = [force_at(one_row(solution, row), load, weight) for load, weight, row in items]  # type: ignore[arg-type]
+    at, vector, push = (np.array([own[part] for own in found]) for part in range(3))
     size = np.linalg.norm(vector, axis=1)
     there = size > 0.0
     if not there.any():
@@ -121,11 +120,9 @@ def _shares(load: LineLoad, mesh: BeamMesh) -> np.ndarray:
     return np.union1d(even, largest) if sizes[0].max() > sizes[1].max() else even
 
 
-def _distributed(axes: Any, solution: "Solution", load: LineLoad, weight: float, row: int) -> list[Any]:
-    from matplotlib.transforms import ScaledTranslation
-
-    only = one_row(solution, row)
-    shares = _shares(load, solution.model.mesh_of(load.beam.start))
+def forces_along(only: "Solution", load: LineLoad, weight: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return places (n, 2) [m] of arrows of a load along a beam in a solution of one row, and its vectors [N/m]."""
+    shares = _shares(load, only.model.mesh_of(load.beam.start))
     points = [load.beam.at(share) for share in shares]
     places = np.array([only.position(point)[0] for point in points])
     values = weight * load.values(shares * load.beam.curve.length)
@@ -136,6 +133,13 @@ def _distributed(axes: Any, solution: "Solution", load: LineLoad, weight: float,
         vector = _turned_by(values, np.array([float(only.rotation(point)[0]) for point in points]))
     else:
         vector = values
+    return places, vector
+
+
+def _distributed(axes: Any, solution: "Solution", load: LineLoad, weight: float, row: int) -> list[Any]:
+    from matplotlib.transforms import ScaledTranslation
+
+    places, vector = forces_along(one_row(solution, row), load, weight)
     size = np.linalg.norm(vector, axis=1).max()
     if size == 0.0:
         return []

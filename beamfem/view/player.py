@@ -17,6 +17,7 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.held import joints_of, supports_of
+from beamfem.view.page_loads import loads_of
 from beamfem.view.shapes import Shapes, limits
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.written import WrittenFile
@@ -83,6 +84,7 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
                 (np.concatenate([own.reference for own in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
             ).astype("<i2")
         ),
+        "loads": loads_of(shapes),
         "outlines": outlines,
         "places": places,
         "fields": _fields(shapes),

@@ -1,0 +1,81 @@
+"""Loads of the rows of a page: where arrows stand, and how long they are on the screen."""
+
+from typing import Any
+
+import numpy as np
+
+from beamfem.model.load import factor
+from beamfem.model.loads import Gravity, LineLoad, PointForce, PointMoment
+from beamfem.results.loading import loading
+from beamfem.view.acting import force_at, forces_along
+from beamfem.view.frames import one_row
+from beamfem.view.shapes import Shapes
+
+_LONGEST, _SHORTEST, _SPREAD = 40.0, 18.0, 26.0  # [pixels]: the largest force, a small one, loads along beams
+_MOST = 40_000  # numbers of arrows on a page
+
+
+def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
+    """Return for each row forces [x, y, across, up, tip], moments [x, y, sense] and gravity [across, up].
+
+    x, y [m]; across, up [pixels]: the arrow, whose tip stands at x, y where `tip` is 1, else its tail. Of a model with
+    many loads, or with many rows, those of the last row stand for all.
+    """
+    solution, rows = shapes.solution, [int(row) for row in shapes.rows]
+    system, at = loading(solution)
+    found = [_row(shapes, row, float(at[row]), system.static) for row in _chosen(shapes, rows)]
+    forces = [own for row in found for own in row["points"]]
+    largest = max((float(np.linalg.norm(vector)) for _, vector, _ in forces), default=0.0) or 1.0
+    dense = max((float(np.abs(vector).max()) for row in found for _, vector in row["lines"]), default=0.0) or 1.0
+    return [
+        {
+            "forces": [
+                *(_arrow(place, _scaled(vector, largest), tip) for place, vector, tip in row["points"] if vector.any()),
+                *(
+                    _arrow(place, _SPREAD * vector / dense, True)
+                    for places, vectors in row["lines"]
+                    for place, vector in zip(places, vectors, strict=True)
+                    if vector.any()
+                ),
+            ],
+            "moments": row["moments"],
+            "gravity": row["gravity"],
+        }
+        for row in found
+    ]
+
+
+def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
+    loads = shapes.solution.model.loads
+    arrows = sum(55 if isinstance(load, LineLoad) else 5 for load in loads)
+    return rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
+
+
+def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:
+    only = one_row(shapes.solution, row)
+    found: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
+    for load in shapes.solution.model.loads:
+        weight = factor(load, at, static)
+        if isinstance(load, PointForce):
+            found["points"].append(force_at(only, load, weight))
+        elif isinstance(load, LineLoad):
+            found["lines"].append(forces_along(only, load, weight))
+        elif isinstance(load, PointMoment) and weight * load.moment != 0.0:
+            found["moments"].append([*_short(only.position(load.point)[0]), float(np.sign(weight * load.moment))])
+        elif isinstance(load, Gravity) and weight != 0.0 and any(load.vector):
+            found["gravity"] = _short(np.sign(weight) * np.array(load.vector) / np.linalg.norm(load.vector) * _LONGEST)
+    return found
+
+
+def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:
+    """Return an arrow [pixels]: small forces are longer than their share, so that they are seen."""
+    size = float(np.linalg.norm(vector))
+    return np.asarray(vector / size * max(_LONGEST * np.sqrt(size / largest), _SHORTEST))
+
+
+def _arrow(place: np.ndarray, vector: np.ndarray, tip: bool) -> list[float]:
+    return [*_short(place), *(round(float(part), 1) for part in vector), int(tip)]
+
+
+def _short(values: np.ndarray) -> list[float]:
+    return [float(f"{value:.6g}") for value in values]

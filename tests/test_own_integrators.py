@@ -52,7 +52,10 @@ def test_a_discrete_gradient_keeps_the_energy():
     assert 0.0 < errors[0] < 1.2 * errors[1] < 1e-3
 
 
-def test_inclined_rollers_dashpots_and_kinks_of_loads_are_taken():
+@pytest.mark.parametrize(("step", "every"), [(1e-4, 10), (5e-5, 20), (2.5e-5, 40)])
+def test_inclined_rollers_dashpots_and_kinks_of_loads_are_taken(step, every):
+    """Short steps stay with those of order 3: extrapolated by seven differences they drifted by 2e-4, the more the
+    shorter, since what iterations leave came back enlarged."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), SECTION, RUBBER)
     other = bf.Beam(bf.Line((0, -0.5), (1, -0.5)), 2, bf.CRBF(2), SECTION, RUBBER)
     pulse = bf.Piecewise(lambda time: max(1.0 - abs(time / 0.0305 - 1.0), 0.0), (0.0305, 0.061))
@@ -63,9 +66,9 @@ def test_inclined_rollers_dashpots_and_kinks_of_loads_are_taken():
         connectors=[SpringDamper(beam.end, other.end, damping=30.0)],
     )
     own = bf.simulate(model, 0.1, 1e-3, integrator=Radau())
-    known = bf.simulate(model, 0.1, 5e-5, integrator=bf.GeneralizedAlpha(1.0), save_every=20)
+    known = bf.simulate(model, 0.1, step, integrator=bf.GeneralizedAlpha(1.0), save_every=every)
     for point in (beam.at(0.5), beam.end, other.end):
-        assert own.position(point) == pytest.approx(known.position(point), abs=2e-5)
+        assert own.position(point) == pytest.approx(known.position(point), abs=3e-6)
     moved = own.displacement(beam.end)
     assert moved @ np.array([-0.6, 0.8]) == pytest.approx(np.zeros(len(own)), abs=1e-12)
     assert np.abs(moved).max() > 1e-3

@@ -50,6 +50,7 @@ ROOMS = (
     "registry",
     "units",
     "validation",
+    "extras",
     "errors",
 )
 LONGEST = 350  # lines of a file

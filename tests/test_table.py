@@ -32,6 +32,7 @@ def test_a_table_of_a_motion_has_the_values_of_its_points():
         **dict.fromkeys(("kinetic_energy", "strain_energy", "potential_energy"), "J"),
         "moment": "N m",
         "axial_strain": "1",
+        "beam": "1",
         "time": "s",
     }
 

@@ -15,7 +15,7 @@ _REMAINDER = 1e-5
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
 # behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _NEGLECTED = 1e-8
-MOST = 7  # differences of the acceleration that extrapolate it: where a motion is smooth, few corrections are left
+MOST = 3  # differences of the acceleration that extrapolate it: more than these pass on noise from step to step
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
 
 

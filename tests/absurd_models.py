@@ -17,12 +17,13 @@ Random = np.random.Generator
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A model and an analysis of it: `run` makes what `analysis` names."""
+    """A model and an analysis of it: `run` makes what `analysis` names, with options."""
 
     seed: int
     analysis: str
     model: bf.Model
     run: Callable[[], object]
+    options: dict[str, object]
     said: str
 
 
@@ -41,7 +42,7 @@ def draw(seed: int, elements: Sequence[bf.Element]) -> Case:
     run, options = _analysis(rng, analysis, model)
     names = ", ".join(f"{type(beam.curve).__name__} {beam.element.name} {beam.element.forces.name}" for beam in beams)
     said = f"{analysis} {options}: {model!r} of [{names}]"
-    return Case(seed, analysis, model, run, said)
+    return Case(seed, analysis, model, run, options, said)
 
 
 def _analysis(rng: Random, analysis: str, model: bf.Model) -> tuple[Callable[[], object], dict[str, object]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from absurd_models import Case
 from complex_steps import elastic, external, nodal_force, sprung, to_coordinates
+from fuzz_steps import faults_of_steps
 from independent_balance import balance, floor_of
 from scipy.linalg import LinAlgError
 
@@ -81,6 +82,8 @@ def _faults(case: Case, result: object, verdict: str) -> Iterator[str]:
         yield from _of_buckling(result)
     elif isinstance(result, bf.Solution):
         yield from _of_states(result, verdict)
+        if case.analysis == "motion" and verdict == "right":
+            yield from faults_of_steps(result, case.options)
 
 
 def _of_states(solution: bf.Solution, verdict: str) -> Iterator[str]:

@@ -93,3 +93,20 @@ def test_a_section_with_less_than_its_least_fourth_moment_is_refused():
     with pytest.raises(bf.InputError, match=r"fourth_moment \(0\.9\) must be at least .* = 1"):
         bf.Section(1.0, 1.0, fourth_moment=0.9)
     assert bf.Section(1.0, 1.0, fourth_moment=1.0).fourth_moment == 1.0
+
+
+@pytest.mark.parametrize("element", [bf.ANCF(), bf.ANCFCRBF(), bf.CRBF(1), bf.BilinearCRBF()], ids=str)
+@pytest.mark.parametrize("degrees", [195.0, -195.0])
+def test_an_element_that_turns_by_more_than_half_a_turn_is_refused(element, degrees):
+    """Found by the fuzz (seed 253): its sections point inwards in between, and a beam at rest began to move."""
+
+    def model(elements):
+        curve = bf.Arc((0.0, 0.0), 1.4, 0.0, np.radians(degrees))
+        beam = bf.Beam(curve, elements, element, bf.Rectangle(1.0, 0.3), bf.Material(1e4, 0.0, 260.0))
+        return bf.Model([beam], [bf.Clamp(beam.start)])
+
+    with pytest.raises(bf.InputError, match=r"elements of .* are too long: .* turns by 195 degrees.*more elements"):
+        bf.solve_modes(model(1), 3)
+    modes = bf.solve_modes(model(2), 3)
+    assert (modes.growth == 0.0).all()
+    assert modes.frequencies[0] > 0.0

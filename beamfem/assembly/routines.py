@@ -110,15 +110,14 @@ class Routines:
         found = dict(_TASKS[task]) if kind < 0 else {}
         if kind < 0:
             found |= {number: getattr(own, name) for number, name in _PASSES.get(task, {}).items()}
-            if task == "forces" and self._law:
-                self.addresses[record.LAW] = self._law
-            elif task == "forces":
-                found[record.LAW] = linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants
+            if task == "forces":
+                linear = linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants
+                self.addresses[record.LAW] = self._law or linear.address
         elif task in _OF_KINDS:
             name, step = _OF_KINDS[task]
             found[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
         for number, routine in found.items():
-            self.addresses[number] = routine.address
+            self.addresses[number] = routine.entry
 
 
 @cache

@@ -112,6 +112,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.BEAM: block.beam,
         record.PLACE: place.T,
         record.DOF: block.dof.T,
+        record.SOURCE: np.append(np.maximum(block.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
         record.FRAME: np.append(block.frame.T, np.zeros(WIDTH)),  # read in vectors, beyond the last node too
         record.RUNS: _runs(block.node_kind),
         record.NUMBER: number.T,

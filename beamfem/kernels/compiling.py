@@ -63,7 +63,14 @@ class Routine:
 
     @property
     def address(self) -> int:
+        """Where it is called as C calls functions."""
         return self.compiled.address
+
+    @property
+    def entry(self) -> int:
+        """Where other compiled code calls it, without the function that lets C call it."""
+        name = self.compiled._wrapper_name.removeprefix("cfunc.")
+        return self.compiled._library.get_pointer_to_function(name)
 
     @cached_property
     def _callable(self) -> Callable[..., Any]:
@@ -74,7 +81,7 @@ class Routine:
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, with arrays of the right type or addresses for pointers; other threads run meanwhile."""
         both = zip(self.kinds, arguments, strict=True)
-        return self._callable(*(_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both))
+        return self._callable(*[_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both])
 
 
 def _address(kind: str, array: ndarray) -> int:

@@ -8,12 +8,12 @@ from beamfem.kernels.compiling import routine
 from beamfem.kernels.point import FORCE as POINT_FORCE
 from beamfem.kernels.point import HESSIAN as POINT_HESSIAN
 from beamfem.kernels.point import RATE, RESULTANT
-from beamfem.kernels.pointers import at, caller, reals, wholes
+from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
 _collect, _scatter = caller("iiiiii", types.int64), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
-_measure, _law = caller("ir"), caller("iirrrr")
+_measure, _law = caller("ir"), caller("iirrrr", of_c=True)
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
 _release = caller("iiiiirr")
@@ -23,6 +23,7 @@ _rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 @routine("ii")
 def add_elements(group, system):
     """Add the forces of all elements of a group to those of their nodes, their tangents to the matrix."""
+    small_code()
     b, s = wholes(group), wholes(system)
     call, x = wholes(b[r.ROUTINES]), reals(b[r.SPACE])
     nodes, vectors, bends, elements = b[r.NODES_PER_ELEMENT], b[r.VECTORS], b[r.BENDS], b[r.ELEMENTS]

@@ -5,7 +5,7 @@ Tables have a row of lanes each: elements of a batch may all be different.
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, zeros
-from beamfem.kernels.pointers import at
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -17,6 +17,7 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
 
     slope, second (nodes * vectors, ROW): derivatives of shape functions; director (nodes,): those of d.
     """
+    small_code()
     last = vectors - 1
     for i in range(0, count, WIDTH):
         rx, ry, dx, dy, third_x, third_y = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
@@ -44,6 +45,7 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
 @routine("iiiivvrvv", fastmath=FAST)
 def spread(nodes, vectors, bends, count, slope, second, director, q, f):
     """Add what forces on q (6, ROW) give to those of the nodes f (nodes, 2 vectors, ROW)."""
+    small_code()
     last = vectors - 1
     for i in range(0, count, WIDTH):
         rx, ry, dx, dy = q[i], q[ROW + i], q[2 * ROW + i], q[3 * ROW + i]

@@ -6,7 +6,7 @@ from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
-from beamfem.kernels.pointers import at, reals, wholes
+from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
 
@@ -20,9 +20,9 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
         own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
         if ordered != 0 and own[count - 1] - own[0] == count - 1:
             source, to = as_rows(at(chunks, own[0])), as_rows(whole)
-            for row in range(rows):
-                for i in range(0, count, WIDTH):
-                    to[row * ROW + i] = source[row * ROW + i]
+            for i in range(0, count, WIDTH):
+                for row in range(i, i + rows * ROW, ROW):
+                    to[row] = source[row]
         else:
             for row in range(rows):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
@@ -80,6 +80,7 @@ def collect(group, system, first, count, rows, copied):
     system: 0 where it does not matter what acts. Where nodes need not be copied and stand in a chunk as their elements
     follow one another, they are left there, and how far apart those of an element are is returned; else 0.
     """
+    small_code()
     b = wholes(group)
     nodes, elements, place, x = b[r.NODES_PER_ELEMENT], b[r.ELEMENTS], wholes(b[r.PLACE]), reals(b[r.SPACE])
     body, e, _, _, table, _, _, _, _, _, _ = rows_of(nodes, b[r.VECTORS], b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
@@ -103,6 +104,7 @@ def collect(group, system, first, count, rows, copied):
 @routine("iiiiiniirr")
 def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     """Add forces f (nodes, size, ROW) of a batch to those of its nodes, which begin at a row."""
+    small_code()
     for n in range(nodes):
         own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
         if ordered != 0 and own[count - 1] - own[0] == count - 1:

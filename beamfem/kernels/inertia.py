@@ -2,7 +2,7 @@
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, zeros
-from beamfem.kernels.pointers import at
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -14,6 +14,7 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, grav
 
     apart: the mass of d has no entries with that of r0, as in every section that is as heavy above as below the axis.
     """
+    small_code()
     slots, last = nodes * vectors, vectors - 1
     for i in range(0, count, WIDTH):
         for slot in range(slots):
@@ -38,6 +39,7 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, grav
 @routine("iidvv", fastmath=FAST)
 def add_scaled(rows, count, factor, source, to):
     """Add rows times a factor to others."""
+    small_code()
     for row in range(rows):
         own, its = at(source, row * ROW), at(to, row * ROW)
         for i in range(0, count, WIDTH):

@@ -189,3 +189,18 @@ def merged(context, value, other, count):
         return builder.select(inside, given[0], given[1])
 
     return signature(LANES, value, other, types.intp), generate
+
+
+@intrinsic
+def gathered(context, values, places):
+    """Return the numbers at the first `WIDTH` places."""
+
+    def generate(context, builder, outer, given):
+        lanes = ir.Constant(_VECTOR, ir.Undefined)
+        for lane in range(WIDTH):
+            place = builder.load(builder.gep(given[1], [ir.IntType(64)(lane)], inbounds=True))
+            value = builder.load(builder.gep(given[0], [place], inbounds=True))
+            lanes = builder.insert_element(lanes, value, ir.IntType(32)(lane))
+        return lanes
+
+    return signature(LANES, values, places), generate

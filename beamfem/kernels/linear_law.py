@@ -6,7 +6,7 @@ C comes as the rows of its upper triangle. Laws are passes over rows: strains in
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.point import RATE, RESULTANT, STIFFNESS, STRAIN
-from beamfem.kernels.pointers import at
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -15,6 +15,7 @@ FAST = {"contract", "reassoc", "nsz"}
 @routine("iivvvv", fastmath=FAST)
 def four_resultants(count, tangent, weight, c, reference, x):
     """Fill resultants of four measures and, where tangent, their stiffness; x: rows of a point, see `point`."""
+    small_code()
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
     for i in range(0, count, WIDTH):
         w = weight[i]

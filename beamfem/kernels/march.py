@@ -5,7 +5,7 @@ from numba import njit, types
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.pointers import at, caller, reals, wholes
+from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
@@ -66,15 +66,16 @@ def march(system, solver, calls):
 
     `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta.
     `LIMITS`: tolerance of the correction relative to the scale, largest number of iterations. `ROWS`: factors of the
-    last tangent. `STATISTICS` (9,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
+    last tangent. `STATISTICS` (10,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
     convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation,
-    how many differences it has, and what the last change of p'' changed in p.
+    how many differences it has, what the last change of p'' changed in p, and the size of corrections that are noise.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
     and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, from the acceleration of before and then
     from the positions of before.
     """
+    small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
     free, prescribed_dofs, rows, right = (
@@ -139,15 +140,19 @@ def march(system, solver, calls):
                 _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
             _solve_turned(s, b, call)
             last, size = size, _correct(n, unknown, state, right, free, scale, factors)
-            fresh = False
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[8])
-            done = _judge(iteration, full, size, last, first_size, limits[0], rate)
-            if done > 0:
+            own = 1 if renew else 0
+            done = _judge(iteration, full, own, size, last, first_size, limits[0], rate, at(statistics, 9))
+            fresh = done == 2
+            if done == 1:
                 break
+            if fresh:
+                done = 0
+                continue
             if full == 0:
                 fails = done < 0 or not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5))
             else:

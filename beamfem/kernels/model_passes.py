@@ -6,17 +6,18 @@ from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.point import RATE, RESULTANT, STRAIN
-from beamfem.kernels.pointers import at, caller, reals, wholes
+from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
 
 _two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", types.int64)
-_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
+_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr", of_c=True)
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
 @routine("i")
 def balance(system):
     """Fill the residual (n,) and, where wanted, the matrix of a model."""
+    small_code()
     s = wholes(system)
     residual, matrix, groups, values = (
         reals(s[r.RESIDUAL]),

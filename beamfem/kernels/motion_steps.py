@@ -6,7 +6,7 @@ from numba import njit, types
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, as_rows, zeros
-from beamfem.kernels.pointers import at, reals, wholes
+from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -83,19 +83,25 @@ def correct(n, unknown, state, right, free, inverse_scale, coefficients):
     return largest
 
 
-@routine("iiddddr", types.int64)
-def judge(iteration, full, size, last, changed, tolerance, rate):
-    """Return 1 if a step is done after a correction, -1 if it is lost; rate (1,): at which corrections shrink, updated.
+@routine("iiiddddrr", types.int64)
+def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
+    """Return 1 if a step is done after a correction, -1 if it is lost, 2 if a new tangent has to tell.
 
-    size, last: this correction and the one before; changed: what a change of acceleration changes in the step; full:
-    each correction has its own tangent. Hairer and Wanner 1996, IV.8.
+    own: this correction has a tangent of its own, full: each has; size, last: this correction and the one before;
+    changed: what a change of acceleration changes in the step. Updated: rate (1,) at which corrections shrink, noise
+    (1,): corrections of this size are round-off, as a new tangent has shown. Hairer and Wanner 1996, IV.8.
     """
     if not size < _LARGEST:
         return -1
     if iteration > 1:
-        if last <= tolerance and size <= tolerance and size > 0.5 * last:
-            # corrections within the tolerance that no longer shrink are round-off, and tell nothing of the tangent
-            return 1
+        if last <= tolerance and size <= tolerance:
+            if own != 0:
+                if size <= 2.0 * last:
+                    noise[0] = 2.0 * last
+                return 1
+            if size > 0.5 * last:
+                # they no longer shrink: round-off, or what is left is out of reach of a tangent that was kept
+                return 1 if size <= noise[0] else 2
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
         return 1 if size <= tolerance else 0
@@ -146,6 +152,7 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
 @routine("inrrr")
 def count_turns(pairs, table, before, now, turned):
     """Add to `turned` (pairs,) [rad] by how much vectors at coordinates (pairs, 2) have turned between states (n,)."""
+    small_code()
     for i in range(pairs):
         x, y = table[2 * i], table[2 * i + 1]
         crossed = before[x] * now[y] - before[y] * now[x]
@@ -165,6 +172,7 @@ def keep_directions(group, first, kept):
 @routine("iirr", fastmath=FAST)
 def turns_since(group, first, kept, turns):
     """Fill cosine and sine (N, 2) of how far the nodes of a group have turned since their vectors d were kept."""
+    small_code()
     b = wholes(group)
     chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
     for node in range(b[NODES]):
@@ -182,6 +190,7 @@ def turn_pairs(pairs, sense, table, turns, right):
     A kept tangent turns with the sections: K(now) is near R K(kept) R^T, exact where a body has turned as a whole; then
     a pendulum or a rotor needs no new tangent for its turning.
     """
+    small_code()
     for i in range(pairs):
         first, second, node = table[3 * i], table[3 * i + 1], table[3 * i + 2]
         c, s = turns[2 * node], sense * turns[2 * node + 1]

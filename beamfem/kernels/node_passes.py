@@ -7,7 +7,7 @@ from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TUR
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.nodes import put, take
-from beamfem.kernels.pointers import at, caller, reals, slots, wholes
+from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
 from beamfem.kernels.reduction import add_node_forces
 
@@ -21,10 +21,11 @@ def _clear_forces(b, chunks):
     last = (b[r.NODES] - 1) // LANES
     for chunk in range(last + 1):
         count = LANES if chunk < last else b[r.NODES] - last * LANES
-        for row in range(b[r.FORCE], b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS]):
-            own = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + row) * ROW))
-            for i in range(0, count, WIDTH):
-                own[i] = 0.0
+        rows = b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS] - b[r.FORCE]
+        own = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + b[r.FORCE]) * ROW))
+        for i in range(0, count, WIDTH):
+            for row in range(i, i + rows * ROW, ROW):
+                own[row] = 0.0
 
 
 @routine("iii")
@@ -33,11 +34,12 @@ def place_nodes(group, system, moving):
 
     Forces on nodes are zero then.
     """
+    small_code()
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])
     runs, stride, size = wholes(b[r.RUNS]), b[r.NODES], 2 * b[r.VECTORS]
-    dof, frame, chunks, x = (
-        wholes(b[r.DOF]),
+    source, frame, chunks, x = (
+        wholes(b[r.SOURCE]),
         reals(b[r.FRAME]),
         reals(b[r.CHUNKS]),
         reals(b[r.SPACE]),
@@ -56,20 +58,21 @@ def place_nodes(group, system, moving):
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
+            last = lane + count == LANES or first + count == stride
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
-            take(first, count, linear, stride, dof, p, chunk)
+            take(first, count, linear, stride, source, p, last, chunk)
             if moving != 0:
-                take(first, count, linear, stride, dof, a, at(chunk, b[r.ACCELERATION] * ROW))
+                take(first, count, linear, stride, source, a, last, at(chunk, b[r.ACCELERATION] * ROW))
             if kind == TURNED_GRADIENTS:
                 c, t = at(frame, first), at(frame, stride + first)
                 _rotate(call[r.ROTATE], count, c, t, at(chunk, (size - 2) * ROW))
                 if moving != 0:
                     _rotate(call[r.ROTATE], count, c, t, at(chunk, (b[r.ACCELERATION] + size - 2) * ROW))
             elif kind != GRADIENTS:
-                take(first, count, own, stride, at(dof, linear * stride), p, x)
+                take(first, count, own, stride, at(source, linear * stride), p, True, x)
                 if moving != 0:
-                    take(first, count, own, stride, at(dof, linear * stride), v, at(x, own * ROW))
-                    take(first, count, own, stride, at(dof, linear * stride), a, at(x, 2 * own * ROW))
+                    take(first, count, own, stride, at(source, linear * stride), v, True, at(x, own * ROW))
+                    take(first, count, own, stride, at(source, linear * stride), a, True, at(x, 2 * own * ROW))
                 else:
                     _clear(call[r.CLEAR], 2 * own, count, at(x, own * ROW))
                 directions = at(x, 3 * own * ROW)
@@ -84,11 +87,12 @@ def place_nodes(group, system, moving):
                 )
                 _place(call[r.PLACE_KIND + 3 * (kind - 1)], count, x)
                 parts, result = size - linear, at(directions, 3 * ROW)
-                put(parts, count, result, at(chunk, linear * ROW))
+                put(parts, count, last, result, at(chunk, linear * ROW))
                 if moving != 0:
                     put(
                         parts,
                         count,
+                        last,
                         at(result, parts * ROW),
                         at(chunk, (b[r.ACCELERATION] + linear) * ROW),
                     )
@@ -96,23 +100,25 @@ def place_nodes(group, system, moving):
                 corner = (turned - parts) * turning + linear - (size - turned)
                 for part in range(parts):
                     to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
-                    put(own, count, at(result, (2 * parts + part * own) * ROW), to)
+                    put(own, count, last, at(result, (2 * parts + part * own) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
                     _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
                     for part in range(parts):
                         to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
-                        put(own, count, at(result, part * own * ROW), to)
+                        put(own, count, last, at(result, part * own * ROW), to)
             first += count
 
 
 @routine("ii")
 def finish_nodes(group, system):
     """Add the forces on all nodes of a group to the residual, and what turns with them to the matrix."""
+    small_code()
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])
     runs, stride, size = wholes(b[r.RUNS]), b[r.NODES], 2 * b[r.VECTORS]
-    dof, frame, chunks, x = (
+    dof, source, frame, chunks, x = (
         wholes(b[r.DOF]),
+        wholes(b[r.SOURCE]),
         reals(b[r.FRAME]),
         reals(b[r.CHUNKS]),
         reals(b[r.SPACE]),
@@ -138,6 +144,7 @@ def finish_nodes(group, system):
             b[r.TRANSFORM],
             b[r.FORCE],
             chunk,
+            x,
             residual,
         )
         first += count
@@ -153,8 +160,9 @@ def finish_nodes(group, system):
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
+            last = lane + count == LANES or first + count == stride
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
-            take(first, count, own, stride, at(dof, linear * stride), p, x)
+            take(first, count, own, stride, at(source, linear * stride), p, True, x)
             directions, parts = at(x, 3 * own * ROW), size - linear
             _turn(
                 call[r.TURN],
@@ -165,11 +173,12 @@ def finish_nodes(group, system):
                 at(frame, 2 * stride + first),
                 directions,
             )
-            put(parts, count, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
+            put(parts, count, True, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
             _place(call[r.PLACE_KIND + 3 * (kind - 1) + 2], count, x)
             put(
                 own * own,
                 count,
+                last,
                 at(directions, (3 + parts) * ROW),
                 at(chunk, b[r.CURVATURE] * ROW),
             )

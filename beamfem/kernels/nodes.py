@@ -4,8 +4,8 @@ import numpy as np
 from numba import njit
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged
-from beamfem.kernels.pointers import at
+from beamfem.kernels.lanes import WIDTH, as_rows, gathered
+from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 
 # half a turn's half in three parts, the first of few digits, so that products with whole numbers are exact
@@ -41,26 +41,40 @@ def _cosine_sine(angle):
 
 
 @njit(forceinline=True, _nrt=False)
-def take(first, count, coordinates, stride, dof, values, rows):
-    """Copy values (n,) of some coordinates of nodes to rows (coordinates, ROW); dof (coordinates, stride)."""
+def take(first, count, coordinates, stride, source, values, last, rows):
+    """Copy values (n,) of coordinates of nodes to rows; source (coordinates, stride): see `record`.
+
+    last: no lanes of other nodes follow these.
+    """
     for row in range(coordinates):
-        own, to = at(dof, row * stride + first), at(rows, row * ROW)
-        for i in range(count):
-            to[i] = values[own[i]]
+        own, to = at(source, row * stride + first), at(rows, row * ROW)
+        if last:
+            lanes = as_rows(to)
+            for i in range(0, count, WIDTH):
+                lanes[i] = gathered(values, at(own, i))
+        else:
+            for i in range(count):
+                to[i] = values[own[i]]
 
 
 @njit(forceinline=True, _nrt=False)
-def put(rows, count, source, to):
-    """Copy rows to lanes of a chunk whose neighbours are of other nodes."""
-    own, its = as_rows(source), as_rows(to)
-    for row in range(rows):
-        for i in range(row * ROW, row * ROW + count, WIDTH):
-            its[i] = merged(own[i], its[i], row * ROW + count - i)
+def put(rows, count, last, source, to):
+    """Copy rows to lanes of a chunk; last: no lanes of other nodes follow these."""
+    if last:
+        own, its = as_rows(source), as_rows(to)
+        for i in range(0, count, WIDTH):
+            for row in range(i, i + rows * ROW, ROW):
+                its[row] = own[row]
+    else:
+        for row in range(rows):
+            for i in range(row * ROW, row * ROW + count):
+                to[i] = source[i]
 
 
 @routine("ivvvvv", fastmath={"contract"})
 def turn(count, angle, c, s, length, rows):
     """Fill rows: cosine and sine of angles from a reference whose cosines and sines are c and s, and its length."""
+    small_code()
     for i in range(0, count, WIDTH):
         cosine, sine = _cosine_sine(angle[i])
         rows[i] = cosine * c[i] - sine * s[i]
@@ -80,14 +94,16 @@ def rotate(count, c, s, vector):
 @routine("iivv")
 def copy(rows, count, source, to):
     """Copy rows."""
-    for row in range(rows):
-        for i in range(row * ROW, row * ROW + count, WIDTH):
-            to[i] = source[i]
+    small_code()
+    for i in range(0, count, WIDTH):
+        for row in range(i, i + rows * ROW, ROW):
+            to[row] = source[row]
 
 
 @routine("iiv")
 def clear(rows, count, to):
     """Set rows to zero."""
-    for row in range(rows):
-        for i in range(row * ROW, row * ROW + count, WIDTH):
-            to[i] = 0.0
+    small_code()
+    for i in range(0, count, WIDTH):
+        for row in range(i, i + rows * ROW, ROW):
+            to[row] = 0.0

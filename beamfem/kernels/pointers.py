@@ -36,6 +36,17 @@ def at(context, pointer, count):
     return signature(pointer, pointer, types.intp), generate
 
 
+@intrinsic
+def small_code(context):
+    """Keep the code of the function that says so small: no loop of it is unrolled, or compiled once for each case."""
+
+    def generate(context, builder, outer, given):
+        builder.function.attributes.add("optsize")
+        return context.get_dummy_value()
+
+    return signature(types.none), generate
+
+
 def _pointer(kind: types.Type) -> Callable[..., Any]:
     def pointer(context, address):
         def generate(context, builder, outer, given):
@@ -52,17 +63,25 @@ slots = _pointer(SLOTS)
 
 
 @cache
-def caller(kinds: str, returns: types.Type = types.void) -> Callable[..., Any]:
-    """Return call(address, *arguments) for compiled functions of these kinds of arguments."""
-    wanted = [KINDS["r" if kind == "v" else kind] for kind in kinds]  # drivers have pointers to single numbers
+def caller(kinds: str, returns: types.Type = types.void, of_c: bool = False) -> Callable[..., Any]:
+    """Return call(address, *arguments) for compiled functions of these kinds of arguments.
+
+    The address is a `Routine.entry`, called as Numba's functions call one another; of_c: that of any function, which
+    is called as C does.
+    """
+    wanted = tuple(KINDS["r" if kind == "v" else kind] for kind in kinds)  # drivers have pointers to single numbers
 
     def call(context, address, *arguments):
         def generate(context, builder, outer, given):
-            kept = [context.get_value_type(kind) for kind in wanted]
-            result = context.get_value_type(returns)
-            pointer = builder.inttoptr(given[0], ir.FunctionType(result, kept).as_pointer())
             values = [context.cast(builder, *each) for each in zip(given[1:], outer.args[1:], wanted, strict=True)]
-            value = builder.call(pointer, values)
+            if of_c:
+                kept = [context.get_value_type(kind) for kind in wanted]
+                own = ir.FunctionType(context.get_value_type(returns), kept)
+                value = builder.call(builder.inttoptr(given[0], own.as_pointer()), values)
+            else:
+                own = context.call_conv.get_function_type(returns, wanted)
+                target = builder.inttoptr(given[0], own.as_pointer())
+                value = context.call_conv.call_function(builder, target, returns, wanted, values)[1]
             return context.get_dummy_value() if returns is types.void else value
 
         return signature(returns, address, *wanted), generate

@@ -78,7 +78,8 @@ VELOCITY = 60  # rows of a node: e', where resultants depend on it
 APART = 61  # whether no entry of the mass is of d and r0
 NATURAL = 62  # address (elements, points, measures): strains that loads impose; 0 where none do
 ORDERED = 63  # whether each node of an element has a greater number than that of the element before
-BLOCK_FIELDS = 64
+SOURCE = 64  # address (coordinates of a node, nodes) and more: as DOF, 0 where there are fewer, read in vectors
+BLOCK_FIELDS = 65
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0

@@ -7,7 +7,7 @@ b), b (turned, turning) a node. What a node has no coordinate for is numbered -1
 from numba import njit
 
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH
+from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
 
@@ -96,22 +96,27 @@ def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
 
 
 @njit(forceinline=True, _nrt=False)
-def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, residual):
-    """Add B^T f of nodes of a chunk to the residual (n,); dof (coordinates, stride); force: row where f begins."""
+def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, space, residual):
+    """Add B^T f of nodes of a chunk to the residual (n,).
+
+    dof (coordinates, stride); force: row where f begins; space (ROW,).
+    """
     linear = size - turned
     for row in range(linear):
         own, source = at(dof, row * stride + first), at(chunk, (force + row) * ROW)
         for i in range(count):
             residual[own[i]] += source[i]
-    b = at(chunk, rows * ROW)
+    b, f, sums = as_rows(at(chunk, rows * ROW)), as_rows(at(chunk, (force + linear) * ROW)), as_rows(space)
     for column in range(turning):
         own = at(dof, (linear + column) * stride + first)
+        for i in range(0, count, WIDTH):
+            total = b[column * ROW + i] * f[i]
+            for part in range(1, turned):
+                total += b[(part * turning + column) * ROW + i] * f[part * ROW + i]
+            sums[i] = total
         for i in range(count):
             if own[i] >= 0:
-                total = 0.0
-                for part in range(turned):
-                    total += b[(part * turning + column) * ROW + i] * chunk[(force + linear + part) * ROW + i]
-                residual[own[i]] += total
+                residual[own[i]] += space[i]
 
 
 @routine("iiiiiiiinnnisrrd")

@@ -1,15 +1,21 @@
-"""Whether the body of a beam can be: its sections must not reach the centre of the axis' curvature."""
+"""Whether the body of a beam can be: its sections must not overlap, on its curve and on what elements make of it."""
 
 import numpy as np
 
+from beamfem.element.axis import cross
 from beamfem.errors import InputError
 from beamfem.model.grid import Grid
-from beamfem.model.reference import curvature, sections_at, stations
+from beamfem.model.reference import curvature, reference_axis, sections_at, stations
 from beamfem.section.protocol import CrossSection, HasParts
+
+_SAMPLES = 33  # along an element
 
 
 def require_body(grid: Grid) -> None:
-    """Raise InputError where a face of a section of known shape lies at the centre of curvature or beyond it."""
+    """Raise InputError where a face of a section of known shape lies at the centre of curvature or beyond it.
+
+    Between nodes the axis and its sections are interpolated: elements that turn too far are refused as well.
+    """
     if grid.straight:
         return
     element, xi = stations(grid)
@@ -29,6 +35,27 @@ def require_body(grid: Grid) -> None:
             f"m, and its section reaches {abs(face):g} m towards the centre: the body would overlap itself; take a "
             "larger radius or a lower section"
         )
+    _require_short(grid, element, xi, faces)
+
+
+def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray) -> None:
+    """Raise InputError where the interpolated body has det J = (r0' + y d') x d <= 0 at its axis or a face."""
+    axis = reference_axis(grid, element, xi)
+    at_axis = cross(axis.r_s, axis.d)
+    volume = at_axis + (np.column_stack([faces * np.ones((len(xi), 1)), np.zeros(len(xi))]).T * cross(axis.d_s, axis.d))
+    worst = int(np.argmin(volume.min(axis=0)))
+    if volume[:, worst].min() <= 0.0:
+        own = element[worst]
+        first, last = grid.vertices[own], grid.vertices[own + 1]
+        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, *_along(own)), np.linspace(first, last, _SAMPLES))))
+        raise InputError(
+            f"elements of {grid.beam!r} are too long: that from arc length {first:g} m to {last:g} m turns by "
+            f"{turn:.0f} degrees, and the sections that it interpolates between its nodes overlap; take more elements"
+        )
+
+
+def _along(element: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.full(_SAMPLES, element), np.linspace(0.0, 1.0, _SAMPLES)
 
 
 def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:

@@ -15,7 +15,7 @@ class BandMotion:
     """Marches through time steps; keeps tangent and differences of the acceleration from one call to the next.
 
     space: which it has for itself; rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction
-    relative to the scale of a coordinate, largest number of iterations; statistics (9,): see `kernels.march.march`.
+    relative to the scale of a coordinate, largest number of iterations; statistics (10,): see `kernels.march.march`.
     """
 
     def __init__(

@@ -41,7 +41,7 @@ class Record:
 
 def new_statistics() -> np.ndarray:
     """Return the statistics of a motion that has not begun."""
-    return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0])
+    return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
 @dataclass
@@ -93,7 +93,7 @@ def march(
                 if isinstance(integrator, GeneralizedAlpha):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
-                statistics[[4, 6, 7, 8]] = -1.0, 0.0, 0.0, 0.0
+                statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
             loaded = np.append(part.times[1:-1], part.loads_to)

@@ -97,23 +97,25 @@ class SparseMotion:
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
         state[0, self._multipliers] = before[0, self._multipliers]
         while iteration < most and not done:
+            own = fresh or full or self._factors is None
             try:
-                right = self._correction(state, time, fresh or full)
+                right = self._correction(state, time, own)
             except LinAlgError:
                 break
             scale = self._inverse_scale
             last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
             state[1:, self._multipliers] = 0.0  # they have no rates
-            fresh = False
             iteration += 1
             statistics[0] += 1
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[8])
             self._number[0] = rate
-            judged = judge(iteration, int(full), size, last, first_size, self.tolerance, self._number)
-            done, rate = judged > 0, float(self._number[0])
-            if judged < 0 or (not full and iteration > 1 and rate >= 0.5):
+            judged = judge(
+                *(iteration, int(full), int(own), size, last, first_size, self.tolerance, self._number, statistics[9:])
+            )
+            done, fresh, rate = judged == 1, judged == 2, float(self._number[0])
+            if not fresh and (judged < 0 or (not full and iteration > 1 and rate >= 0.5)):
                 break
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if not done or iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
@@ -122,7 +124,7 @@ class SparseMotion:
     def _correction(self, state: np.ndarray, time: float, renew: bool) -> np.ndarray:
         """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError."""
         p, v, a, _ = state
-        if renew or self._factors is None:
+        if renew:
             self._factors = None  # room for the new ones
             unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients)
             self._factors = tangent.factorised(self.system.rotated)

@@ -124,7 +124,7 @@ class SparseMotion:
     def _correction(self, state: np.ndarray, time: float, renew: bool) -> np.ndarray:
         """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError."""
         p, v, a, _ = state
-        if renew:
+        if renew or self._factors is None:
             self._factors = None  # room for the new ones
             unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients)
             self._factors = tangent.factorised(self.system.rotated)

@@ -26,6 +26,7 @@ def draw(app) -> None:
     source = Path(app.srcdir)
     shutil.rmtree(source / _PICTURES, ignore_errors=True)
     app.drawn_by_pages = {}
+    _of_drawings(source / "drawings", source / _PICTURES / "drawings")
     for noisy in ("skfem", "ezdxf"):
         logging.getLogger(noisy).setLevel(logging.WARNING)
     for page in sorted(source.rglob("*.md")):
@@ -35,6 +36,16 @@ def draw(app) -> None:
             app.drawn_by_pages[name] = _of_blocks(page, text, source / _PICTURES / name)
         elif _EXAMPLE.search(text):
             app.drawn_by_pages[name] = _of_examples(page, text, source / _PICTURES / name)
+
+
+def _of_drawings(scripts: Path, keep: Path) -> None:
+    """Run the scripts that draw what no page shows the code of; a page names their pictures itself."""
+    keep.mkdir(parents=True)
+    for script in sorted(scripts.glob("*.py")):
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            runpy.run_path(str(script), run_name="__main__")
+            for picture in Path().glob("*.png"):
+                shutil.copy(picture, keep)
 
 
 def _of_blocks(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:

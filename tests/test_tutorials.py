@@ -1,0 +1,30 @@
+"""The tutorials run in a kernel as a notebook does, and show their pictures without magic."""
+
+from pathlib import Path
+
+import pytest
+
+nbclient = pytest.importorskip("nbclient")
+nbformat = pytest.importorskip("nbformat")
+pytest.importorskip("ipykernel")
+
+NOTEBOOKS = sorted((Path(__file__).parents[1] / "docs" / "tutorials").glob("*.ipynb"))
+
+
+def test_there_are_tutorials():
+    assert [path.stem for path in NOTEBOOKS] == ["bending", "falling", "snapping"]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_tutorial_runs_and_shows_its_pictures(path, tmp_path):
+    notebook = nbformat.read(path, 4)
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs for cell in cells), "kept without outputs: they are of one machine on one day"
+    kernel = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", resources=kernel).execute()
+    for cell in cells:
+        last = cell.source.rstrip().splitlines()[-1]
+        kinds = {kind for output in cell.outputs for kind in output.get("data", {})}
+        assert ("image/png" in kinds) == (".plot" in last), last
+        assert cell.outputs, "a cell that shows nothing"
+        assert not any(output.get("name") == "stderr" for output in cell.outputs)

@@ -55,7 +55,8 @@ class Memory:
 @contextmanager
 def uncompiled(memory: Memory) -> Iterator[None]:
     """Let functions of all kernel modules call each other as Python, on this memory."""
-    functions = {routine.address: routine.function for routine in Routine.made if "compiled" in vars(routine)}
+    compiled = [routine for routine in Routine.made if "compiled" in vars(routine)]
+    functions = {at: routine.function for routine in compiled for at in (routine.address, routine.entry)}
     replaced: list[tuple[ModuleType, str, Any]] = []
 
     def call(address: int, *arguments: Any) -> Any:
@@ -71,6 +72,8 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         "slots": memory.at,
         "as_rows": lambda pointer: pointer,
         "zeros": lambda: 0,
+        "gathered": lambda values, places: values[places[0]],
+        "small_code": lambda: None,
         "merged": lambda value, other, count: value,
     }
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))

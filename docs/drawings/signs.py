@@ -31,13 +31,8 @@ def faces(axes):
     arrow(axes, (2.54, 0.25), (2.54, -0.5))
     moment(axes, (1.6, 0.0), 1, 1)
     moment(axes, (2.6, 0.0), -1, -1)
-    for at, text in (
-        ((2.1, 0.08), "N"),
-        ((1.5, 0.58), "Q"),
-        ((2.6, -0.72), "Q"),
-        ((1.86, -0.58), "M"),
-        ((2.2, 0.5), "M"),
-    ):
+    labels = {(2.1, 0.08): "N", (1.5, 0.58): "Q", (2.6, -0.72): "Q", (1.86, -0.58): "M", (2.2, 0.5): "M"}
+    for at, text in labels.items():
         axes.text(*at, f"${text}$", color=RED, fontsize=13)
     arrow(axes, (0.15, -0.95), (0.95, -0.95), INK)
     axes.text(1.0, -1.0, "$s$ grows", fontsize=11)

@@ -38,6 +38,9 @@ def hinged():
 
 def panel(axes, name, model):
     drawn = model.plot()
+    drawn.set_size_inches(2.6, 1.3)  # symbols keep their size
+    drawn.set_dpi(200)
+    drawn.axes[0].set(xlim=(-0.05, 0.36), ylim=(-0.07, 0.08))
     drawn.axes[0].axis("off")
     drawn.axes[0].set_title("")
     drawn.canvas.draw()

@@ -60,6 +60,7 @@ __all__ = [
     "Modes",
     "Newton",
     "NotJoinedWarning",
+    "NotReadWarning",
     "NotStoredWarning",
     "Parametric",
     "Path",

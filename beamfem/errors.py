@@ -70,5 +70,9 @@ class NotJoinedWarning(UserWarning):
     """Lines of a mesh end close to others without being joined to them."""
 
 
+class NotReadWarning(UserWarning):
+    """A mesh file holds more than lines and sets, such as sections, materials or supports, which are not taken over."""
+
+
 class UnknownStressWarning(UserWarning):
     """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""

@@ -29,6 +29,7 @@ from beamfem.errors import (
     LimitPointError,
     MissingPackageError,
     NotJoinedWarning,
+    NotReadWarning,
     NotStoredWarning,
     RoundOffWarning,
     UnknownPointError,

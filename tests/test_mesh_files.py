@@ -175,7 +175,8 @@ Held, 1, 3
 def test_an_abaqus_file_keeps_its_sets(tmp_path):
     path = tmp_path / "frame.inp"
     path.write_text(ABAQUS)
-    mesh = read_mesh(path)
+    with pytest.warns(bf.NotReadWarning, match=r"frame\.inp: .* left out: \*BOUNDARY\. Give"):
+        mesh = read_mesh(path)
     members = {name: cells.tolist() for name, cells in mesh.member_sets.items()}
     assert members == {"Beams": [1, 2], "Curved": [3], "Frame": [0, 2], "All": [0, 1, 2, 3]}
     assert mesh.nodes[mesh.cells[3]].tolist() == [[2, 1], [2, 0], [2.5, 0.4]]
@@ -184,6 +185,20 @@ def test_an_abaqus_file_keeps_its_sets(tmp_path):
     assert len(found.points("ALL")) == 2
 
 
+def test_what_an_abaqus_file_holds_besides_lines_is_named(tmp_path):
+    others = "*Beam Section, elset=Beams, material=Steel, section=RECT\n0.1, 0.2\n"
+    others += "*Material, name=Steel\n*Elastic\n2e11, 0.3\n"
+    others += "".join(f"*Material, name=M{number}\n" for number in range(7)) + "*Step\n*Static\n*End Step\n"
+    path = tmp_path / "whole.inp"
+    path.write_text("*Heading\na frame\n" + ABAQUS + others)
+    names = r"\*BOUNDARY, \*BEAM SECTION Beams, \*MATERIAL Steel, \*ELASTIC, \*MATERIAL M0, .* M3 and 5 more\."
+    with pytest.warns(bf.NotReadWarning, match=names):
+        read_mesh(path)
+    path.write_text(ABAQUS.split("*Boundary")[0])
+    assert len(read_mesh(path).cells) == 4
+
+
+@pytest.mark.filterwarnings("ignore::beamfem.NotReadWarning")
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -1,4 +1,4 @@
-"""Meshes in input files of Abaqus and CalculiX.
+"""Meshes in input files of Abaqus and CalculiX: nodes, elements and sets; what else there is, a warning names.
 
 meshio 5.3.5 gives sets of elements to the wrong cells where a block of elements has no set of its own or two share one,
 drops sets of nodes made of other sets, and keeps only the last of several blocks of nodes: all without a word.
@@ -6,6 +6,7 @@ Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); no
 """
 
 import re
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain
@@ -13,12 +14,16 @@ from pathlib import Path
 
 import numpy as np
 
-from beamfem.errors import InputError
+from beamfem.errors import InputError, NotReadWarning
 from beamfem.files import readable
 from beamfem.io.mesh_file import MeshFile
 
 _STRAIGHT = re.compile(r"(T[23]D2|B[23][13]|PIPE[23]1|FRAME[23]D)")
 _QUADRATIC = re.compile(r"(T[23]D3|B[23]2|PIPE[23]2)")
+# What belongs to the mesh, or says nothing; *INCLUDE is followed where it stands.
+_OF_THE_MESH = {"NODE", "ELEMENT", "NSET", "ELSET", "HEADING", "PREPRINT", "INSTANCE", "PART", "ASSEMBLY"}
+_OF_THE_MESH |= {"END INSTANCE", "END PART", "END ASSEMBLY", "END STEP"}
+_NAMED = 8
 _GENERATORS = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "SYSTEM")
 
 
@@ -84,7 +89,10 @@ def read_abaqus(path: Path) -> MeshFile:
     nodes: dict[int, tuple[float, ...]] = {}
     cells: dict[int, tuple[str, list[int]]] = {}
     node_sets, element_sets = _Sets("nset"), _Sets("elset")
+    others: dict[str, None] = {}
     for section in _sections(path):
+        if section.keyword not in _OF_THE_MESH:
+            others[_shown(section)] = None
         try:
             if section.keyword == "NODE":
                 _add_nodes(section, nodes, node_sets)
@@ -100,7 +108,22 @@ def read_abaqus(path: Path) -> MeshFile:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"{section.place}: the lines below *{section.keyword} cannot be read: {error}") from error
-    return _assembled(path, nodes, cells, node_sets, element_sets)
+    found = _assembled(path, nodes, cells, node_sets, element_sets)
+    if others:
+        named, more = list(others)[:_NAMED], len(others) - _NAMED
+        warnings.warn(
+            f"{path}: nodes, elements and sets are read, and nothing else; left out: {', '.join(named)}"
+            f"{f' and {more} more' if more > 0 else ''}. Give sections, materials, supports and loads to beamfem",
+            NotReadWarning,
+            stacklevel=3,
+        )
+    return found
+
+
+def _shown(section: _Section) -> str:
+    """Return a keyword with the name of what it describes, if it has one."""
+    name = section.parameters.get("NAME") or section.parameters.get("ELSET", "")
+    return f"*{section.keyword} {name}".rstrip()
 
 
 def _add_nodes(section: _Section, nodes: dict[int, tuple[float, ...]], sets: _Sets) -> None:

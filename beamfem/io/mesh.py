@@ -84,6 +84,7 @@ def read_mesh(path: str | PathLike[str]) -> LineMesh:
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
     its end. A `NotJoinedWarning` names ends that stand within 30 times that of another line and are not joined to it.
+    A `NotReadWarning` names what else an .inp holds: sections, materials, supports, loads.
     Raises FileError, FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another
     kind, nodes off the plane z = 0, lines of no length or given twice, lines that end inside a line3, and nodes at one
     place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.

@@ -1,11 +1,17 @@
-"""Progress of long work: a bar on a terminal, silence in a pipe or an import."""
+"""Progress of long work: a bar on a terminal or in a notebook, silence in a pipe or an import."""
 
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from importlib.util import find_spec
 
 _held: ContextVar[bool] = ContextVar("_held", default=False)
+
+
+def in_notebook() -> bool:
+    """Tell whether this runs in the kernel of a notebook, which shows below a cell what is written to stderr."""
+    return type(sys.stderr).__module__ == "ipykernel.iostream"
 
 
 @contextmanager
@@ -21,7 +27,9 @@ def no_progress() -> Iterator[None]:
 @contextmanager
 def progress(label: str, total: float) -> Iterator[Callable[[float], None]]:
     """Yield a function that takes how much of `total` is done."""
-    if _held.get() or not sys.stderr.isatty():
+    # rich moves a bar of a notebook by ipywidgets
+    moves = (in_notebook() and find_spec("ipywidgets") is not None) or sys.stderr.isatty()
+    if _held.get() or not moves:
         yield lambda done: None
         return
     from rich.console import Console

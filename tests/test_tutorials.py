@@ -1,5 +1,6 @@
 """The tutorials run in a kernel as a notebook does, and show their pictures without magic."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -27,4 +28,21 @@ def test_a_tutorial_runs_and_shows_its_pictures(path, tmp_path):
         kinds = {kind for output in cell.outputs for kind in output.get("data", {})}
         assert ("image/png" in kinds) == (".plot" in last), last
         assert cell.outputs, "a cell that shows nothing"
-        assert not any(output.get("name") == "stderr" for output in cell.outputs)
+        said = "".join(output.text for output in cell.outputs if output.get("name") == "stderr")
+        assert re.fullmatch(r"(compiling kernels, .*\n)?", said)
+
+
+def test_a_first_solve_in_a_kernel_says_that_it_compiles(tmp_path, monkeypatch):
+    """Below the cell, once: a cell that only runs for twenty seconds is thought to hang."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    lines = [
+        "import beamfem as bf",
+        "from beamfem.assembly.compiled import tell_of_compilation",
+        "tell_of_compilation()",
+        "tell_of_compilation()",
+    ]
+    cell = nbformat.v4.new_code_cell("\n".join(lines))
+    notebook = nbformat.v4.new_notebook(cells=[cell])
+    nbclient.NotebookClient(notebook, timeout=100, kernel_name="python3").execute()
+    said = "".join(output.text for output in notebook.cells[0].outputs)
+    assert said == "compiling kernels, once on this computer: some twenty seconds ...\n"

@@ -4,6 +4,7 @@ import sys
 from functools import cache
 
 from beamfem.kernels.compiling import Routine, cache_folder
+from beamfem.progress import in_notebook
 
 
 def compiled_here() -> list[Routine]:
@@ -19,8 +20,8 @@ def cached() -> int:
 
 @cache
 def tell_of_compilation() -> None:
-    """Say on a terminal, once, that the first solve has to wait for the compiler."""
-    if not sys.stderr.isatty() or cached():
+    """Say on a terminal or in a notebook, once, that the first solve has to wait for the compiler."""
+    if not (sys.stderr.isatty() or in_notebook()) or cached():
         return
     if cache_folder() is None:
         how_often = "again in each process, since no folder can be written (NUMBA_CACHE_DIR names one)"

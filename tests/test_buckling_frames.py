@@ -1,5 +1,6 @@
 """Critical points of frames: named, at any rotation, up to the number asked for."""
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -95,11 +96,23 @@ def test_a_pinned_column_buckles_at_any_angle(degrees):
     require_counts(model, found)
 
 
+@cache
+def path_loaded_at_midspan():
+    return bf.trace_equilibrium(portal([0.5], [EI]), until=4.0)
+
+
+@cache
+def loaded_beside_the_middle():
+    """The path and the critical loads of the portal as it stands."""
+    path = bf.trace_equilibrium(portal([0.25], [EI]), until=lambda state: state.load_factor < 0.0, points=80)
+    return path, bf.solve_buckling(portal([0.25], [EI]), 2)
+
+
 @pytest.mark.parametrize(("degrees", "mirror"), [(0, 1.0), (17, 1.0), (200, 1.0), (33, -1.0)])
 def test_a_portal_sways_and_then_has_a_limit_point(degrees, mirror):
     """Loaded at midspan; the path, traced by arc length, has the same two points."""
     model = portal([0.5], [EI], degrees, mirror)
-    path = bf.trace_equilibrium(portal([0.5], [EI]), until=4.0)
+    path = path_loaded_at_midspan()
     found = bf.solve_buckling(model, 5)
     assert found.kinds == ("bifurcation", "limit point")
     assert found.load_factors[0] == pytest.approx(path.bifurcations[0].load_factor, rel=1e-7)
@@ -132,11 +145,11 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])
 def test_a_portal_loaded_beside_its_middle_has_a_limit_point(degrees):
-    path = bf.trace_equilibrium(portal([0.25], [EI]), until=lambda state: state.load_factor < 0.0, points=80)
+    path, upright = loaded_beside_the_middle()
     found = bf.solve_buckling(portal([0.25], [EI], degrees), 2)
     assert found.kinds == ("limit point",)
     assert found.load_factors == pytest.approx([path.limit_points[0].load_factor], rel=1e-7)
-    assert found.linearised == pytest.approx(bf.solve_buckling(portal([0.25], [EI]), 2).linearised, rel=1e-8)
+    assert found.linearised == pytest.approx(upright.linearised, rel=1e-8)
 
 
 @pytest.mark.parametrize("degrees", [0, 71])

@@ -34,7 +34,10 @@ ONCE_WRONG = {
 }
 
 
-@pytest.mark.parametrize("seed", ONCE_WRONG)
+LONG = {11681: pytest.mark.slow}
+
+
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=LONG.get(seed, ())) for seed in ONCE_WRONG])
 def test_random_models_that_once_were_wrong(seed):
     verdict, was = ONCE_WRONG[seed]
     assert judged(seed).verdict == verdict, was

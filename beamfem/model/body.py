@@ -39,12 +39,17 @@ def require_body(grid: Grid) -> None:
 
 
 def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray) -> None:
-    """Raise InputError where the interpolated body has det J = (r0' + y d') x d <= 0 at its axis or a face."""
+    """Raise InputError where the interpolated body has det J = (r0' + y d') x d <= 0.
+
+    At its axis, and at its faces (2,) or (n, 2) where forces are integrated over the body.
+    """
     axis = reference_axis(grid, element, xi)
-    at_axis = cross(axis.r_s, axis.d)
-    volume = at_axis + (np.column_stack([faces * np.ones((len(xi), 1)), np.zeros(len(xi))]).T * cross(axis.d_s, axis.d))
-    worst = int(np.argmin(volume.min(axis=0)))
-    if volume[:, worst].min() <= 0.0:
+    heights = np.zeros((len(xi), 3))
+    if grid.beam.element.forces.fills_body:
+        heights[:, :2] = faces
+    volume = (cross(axis.r_s, axis.d)[:, None] + heights * cross(axis.d_s, axis.d)[:, None]).min(axis=1)
+    worst = int(np.argmin(volume))
+    if volume[worst] <= 0.0:
         own = element[worst]
         first, last = grid.vertices[own], grid.vertices[own + 1]
         turn = np.degrees(np.abs(np.trapezoid(curvature(grid, *_along(own)), np.linspace(first, last, _SAMPLES))))

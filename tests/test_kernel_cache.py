@@ -10,6 +10,7 @@ from numba import types
 
 import beamfem
 from beamfem.kernels import compiling
+from beamfem.kernels.band import band
 
 KERNELS = Path(beamfem.__file__).parent / "kernels"
 PLAIN = {
@@ -119,3 +120,14 @@ def test_what_is_compiled_comes_from_the_kernels_alone():
             if line.startswith(("from ", "import ")):
                 module = line.split()[1]
                 assert module in PLAIN or module.startswith(("beamfem.kernels", "numba.")), f"{file.name}: {line}"
+
+
+def test_no_two_kernels_share_a_name():
+    """Machine code on disk is found by name. The functions of a band had one name for all half widths: of two processes
+    that compiled different ones at once, one wrote its code in the place that the index of the other named, and models
+    got the factors of another width."""
+    for half_width in range(20):
+        band(half_width)
+    names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]
+    assert len({name for name in names if ".band." in name}) == 3 * 7
+    assert len(set(names)) == len(names)

@@ -42,9 +42,9 @@ def _push(window, value):
 @cache
 def _band(known: int) -> Band:
     """Return functions that know a half width; 0: any."""
-    window = (0.0,) * known if known else (0.0,)
+    window, case = (0.0,) * known if known else (0.0,), f"half_width_{known or 'any'}"
 
-    @routine("iiiirrr", types.float64, fastmath=FAST)
+    @routine("iiiirrr", types.float64, case, fastmath=FAST)
     def factor(n, count, half, eliminates, ab, right, original):
         """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
@@ -117,7 +117,7 @@ def _band(known: int) -> Band:
                 below[w + j] *= inverse_below
         return worst
 
-    @routine("iiirr", fastmath={"contract"})
+    @routine("iiirr", case=case, fastmath={"contract"})
     def solve_lower(rows, n, half, lu, x):
         """Replace the right-hand side x (n,) by that of the upper triangle."""
         last, w = window, len(window) if len(window) > 1 else half
@@ -132,7 +132,7 @@ def _band(known: int) -> Band:
                     total -= row[w + k - i] * x[k]
             x[i] = total
 
-    @routine("iiirr", fastmath={"contract"})
+    @routine("iiirr", case=case, fastmath={"contract"})
     def solve_upper(rows, n, half, lu, x):
         """Replace what `solve_lower` left in x (n,) by the solution; what it holds beyond the rows is known already."""
         last, w = window, len(window) if len(window) > 1 else half

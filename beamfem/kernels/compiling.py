@@ -91,9 +91,22 @@ def _address(kind: str, array: ndarray) -> int:
     return address_of(array)
 
 
-def routine(kinds: str, returns: types.Type = types.void, **options: Any) -> Callable[[Callable[..., Any]], Routine]:
-    """Return a decorator that makes a `Routine` of a function; `options` are those of `numba.cfunc`."""
-    return lambda function: Routine(function, kinds, returns, {"_nrt": False, **options})
+def routine(
+    kinds: str, returns: types.Type = types.void, case: str = "", **options: Any
+) -> Callable[[Callable[..., Any]], Routine]:
+    """Return a decorator that makes a `Routine` of a function; `options` are those of `numba.cfunc`.
+
+    case: tells functions of one definition apart. Machine code is found by name, so that two of a name that come from
+    the disk, each compiled by another process, may be taken for one another.
+    """
+
+    def made(function: Callable[..., Any]) -> Routine:
+        if case:
+            function.__name__ += f"_{case}"
+            function.__qualname__ += f"_{case}"
+        return Routine(function, kinds, returns, {"_nrt": False, **options})
+
+    return made
 
 
 def inlined(function: Routine) -> Callable[..., Any]:

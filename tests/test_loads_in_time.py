@@ -58,7 +58,7 @@ def test_steps_that_end_at_kinks_are_those_of_the_grid():
     points = [(0.0, 0.0), (0.004, 1.0), (0.01, 0.2)]
     table, plain = pushed(bf.Interpolated(points)), pushed(lambda t: np.interp(t, *np.transpose(points)))
     assert np.array_equal(table.p, plain.p)
-    assert table.statistics == plain.statistics
+    assert repr(table.statistics) == repr(plain.statistics)  # digits may be nan
 
 
 @pytest.mark.parametrize("save_every", [1, 3, 100])

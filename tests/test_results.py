@@ -46,7 +46,7 @@ def moving_solution(element: bf.Element) -> Solution:
 
 def assert_same(before: Solution, after: Solution) -> None:
     assert after.static == before.static
-    assert after.statistics == before.statistics
+    assert repr(after.statistics) == repr(before.statistics)  # digits may be nan
     for name in ("at", "p", "v", "a"):
         np.testing.assert_array_equal(getattr(after, name), getattr(before, name), strict=True)
     for name in ("kinetic", "strain", "potential"):

@@ -55,6 +55,7 @@ def test_a_step_that_is_not_converged_or_does_not_follow_is_seen():
         (0, 4e-10, 6e-10, 0.0, 2),  # a kept tangent that no longer gains
         (0, 4e-10, 6e-10, 5e-10, 1),  # where a new one has found no more than noise
         (1, 5e-10, 4e-10, 0.0, 1),  # a new one finds nothing
+        (1, 1e-16, 4e-10, 0.0, 1),  # a new one finds that it was no noise, and that all is done
         (1, 4e-7, 4e-10, 0.0, 0),  # a new one finds what was left
         (0, 3e-12, 6e-10, 0.0, 0),
         (0, 1e-15, 6e-10, 0.0, 1),
@@ -64,4 +65,4 @@ def test_a_step_that_is_not_converged_or_does_not_follow_is_seen():
 def test_a_kept_tangent_does_not_judge_itself(own, size, last, noise, verdict):
     rate, known = np.array([0.1]), np.array([noise])
     assert judge(3, 0, own, size, last, 1.0, TOLERANCE, rate, known) == verdict
-    assert known[0] == (2.0 * last if verdict == 1 and own else noise)
+    assert known[0] == (2.0 * last if own and size == 5e-10 else noise)

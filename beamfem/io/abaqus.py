@@ -113,7 +113,8 @@ def read_abaqus(path: Path) -> MeshFile:
         named, more = list(others)[:_NAMED], len(others) - _NAMED
         warnings.warn(
             f"{path}: nodes, elements and sets are read, and nothing else; left out: {', '.join(named)}"
-            f"{f' and {more} more' if more > 0 else ''}. Give sections, materials, supports and loads to beamfem",
+            f"{f' and {more} more' if more > 0 else ''}. Give section and material to mesh.frame(...), "
+            "supports and loads to Model(...)",
             NotReadWarning,
             stacklevel=3,
         )

@@ -96,7 +96,7 @@ def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
     if iteration > 1:
         if last <= tolerance and size <= tolerance:
             if own != 0:
-                if size <= 2.0 * last:
+                if 0.5 * last < size <= 2.0 * last:
                     noise[0] = 2.0 * last
                 return 1
             if size > 0.5 * last:

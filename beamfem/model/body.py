@@ -44,23 +44,20 @@ def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.nd
     At its axis, and at its faces (2,) or (n, 2) where forces are integrated over the body.
     """
     axis = reference_axis(grid, element, xi)
-    heights = np.zeros((len(xi), 3))
+    heights = np.zeros((len(xi), 3))  # of both faces and of the axis
     if grid.beam.element.forces.fills_body:
         heights[:, :2] = faces
     volume = (cross(axis.r_s, axis.d)[:, None] + heights * cross(axis.d_s, axis.d)[:, None]).min(axis=1)
     worst = int(np.argmin(volume))
     if volume[worst] <= 0.0:
-        own = element[worst]
-        first, last = grid.vertices[own], grid.vertices[own + 1]
-        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, *_along(own)), np.linspace(first, last, _SAMPLES))))
+        own = np.full(_SAMPLES, element[worst])
+        along = np.linspace(0.0, 1.0, _SAMPLES)
+        arc = grid.arc_length(own, along)
+        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, own, along), arc)))
         raise InputError(
-            f"elements of {grid.beam!r} are too long: that from arc length {first:g} m to {last:g} m turns by "
+            f"elements of {grid.beam!r} are too long: that from arc length {arc[0]:g} m to {arc[-1]:g} m turns by "
             f"{turn:.0f} degrees, and the sections that it interpolates between its nodes overlap; take more elements"
         )
-
-
-def _along(element: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.full(_SAMPLES, element), np.linspace(0.0, 1.0, _SAMPLES)
 
 
 def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:

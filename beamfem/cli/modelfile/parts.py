@@ -94,7 +94,10 @@ def elements(root: Table) -> Named:
     forces = Named("kind of forces", {}, {}, lambda table: build_kind(table, FORCES, {}), tuple(FORCES))
     readers = {"forces": forces}
     short = tuple(name for name in ELEMENTS if name != "CRBF")
-    make = lambda table: build_kind(table, ELEMENTS, readers)  # noqa: E731
+
+    def make(table: Table) -> Any:
+        return build_kind(table, ELEMENTS, readers)
+
     return Named("element", root.named("elements"), {}, make, short)
 
 

@@ -9,7 +9,7 @@ import pytest
 from numba import types
 
 import beamfem
-from beamfem.kernels import compiling
+from beamfem.kernels import cache, compiling
 from beamfem.kernels.band import band
 
 KERNELS = Path(beamfem.__file__).parent / "kernels"
@@ -24,6 +24,7 @@ PLAIN = {
     "time",
     "typing",
     "hashlib",
+    "sys",
     "pickle",
     "shutil",
     "tempfile",
@@ -40,7 +41,7 @@ OUTER = (
 )
 RUN = (
     "import sys; sys.path.insert(0, sys.argv[1])\n"
-    "from small.outer import outer\nfrom small.compiling import cache_folder\n"
+    "from small.outer import outer\nfrom small.cache import cache_folder\n"
     "print(outer(2.0), 0 if outer.compiled_here else 1, cache_folder())"
 )
 
@@ -51,7 +52,7 @@ def small(tmp_path):
     package = tmp_path / "small"
     package.mkdir()
     (package / "__init__.py").touch()
-    for name in ("compiling.py", "lanes.py", "pointers.py"):
+    for name in ("cache.py", "compiling.py", "lanes.py", "pointers.py"):
         (package / name).write_text((KERNELS / name).read_text().replace("beamfem.kernels", "small"))
     (package / "inner.py").write_text(INNER.format(factor=3.0))
     (package / "outer.py").write_text(OUTER)
@@ -80,6 +81,18 @@ def test_a_change_of_an_inlined_kernel_is_noticed(small):
     assert not Path(folder).exists()  # nobody needs it any more
 
 
+def test_machines_that_share_a_home_do_not_share_machine_code(small):
+    """Numba chooses a file for new code from an index that another machine may be writing just then."""
+    here, there = run(small), run(small, NUMBA_CPU_NAME="generic")
+    assert there[:2] == (7.0, 0)
+    assert there[2] != here[2]
+    assert Path(there[2]).parent == Path(here[2]).parent
+    assert run(small) == (7.0, 1, here[2])
+    assert run(small, NUMBA_CPU_NAME="generic") == (7.0, 1, there[2])
+    for folder in here[2], there[2]:
+        assert len(list(Path(folder).glob("*.nbc"))) == 1
+
+
 def test_a_damaged_file_of_machine_code_is_compiled_again(small):
     folder = Path(run(small)[2])
     for file in folder.iterdir():
@@ -104,7 +117,7 @@ def test_a_disk_that_is_full_while_compiling_is_no_error(small, monkeypatch):
     def full(self, sig, data):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(compiling.FunctionCache, "save_overload", full)
+    monkeypatch.setattr(cache.FunctionCache, "save_overload", full)
 
     @compiling.routine("d", types.float64)
     def doubled(x):

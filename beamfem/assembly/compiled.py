@@ -3,7 +3,8 @@
 import sys
 from functools import cache
 
-from beamfem.kernels.compiling import Routine, cache_folder
+from beamfem.kernels.cache import cache_folder
+from beamfem.kernels.compiling import Routine
 from beamfem.progress import in_notebook
 
 

@@ -26,7 +26,7 @@ def doctor(as_json: AsJson = False) -> None:
         begun = time.perf_counter()
         from beamfem.assembly import compiled
         from beamfem.cli import targets
-        from beamfem.kernels.compiling import cache_folder
+        from beamfem.kernels.cache import cache_folder
 
         cache = cache_folder()
         found: dict[str, Any] = {

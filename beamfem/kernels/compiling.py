@@ -1,28 +1,22 @@
-"""How kernels are compiled and kept: one decorator, and a cache whose folder is named by the content of all kernels.
+"""How kernels are compiled: one decorator.
 
 A pass over rows of numbers is compiled once, on its own, and called by its address: drivers that call it neither wait
 for it nor compile it again.
 """
 
-import hashlib
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
-from functools import cache, cached_property
-from pathlib import Path
+from functools import cached_property
 from time import process_time
 from typing import Any, ClassVar
 
-from numba import config, njit, types
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba import njit, types
 from numba.core.ccallback import CFunc
-from numba.misc.appdirs import AppDirs
 from numpy import dtype, float64, int32, int64, ndarray
 
+from beamfem.kernels.cache import KernelCache, cache_folder
 from beamfem.kernels.pointers import KINDS, address_of
 
-_HERE = Path(__file__).parent
 # of arrays by kind of argument; a table of whole numbers may stand for its address
 _TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
 
@@ -47,7 +41,7 @@ class Routine:
         begun, arguments = process_time(), tuple(KINDS[kind] for kind in self.kinds)
         pointer: Any = CFunc(self.function, (arguments, self.returns), {}, {"error_model": "numpy", **self.options})
         if cache_folder() is not None:
-            pointer._cache = _KernelCache(self.function)
+            pointer._cache = KernelCache(self.function)
         pointer.compile()
         self.seconds = process_time() - begun
         return pointer
@@ -112,94 +106,3 @@ def routine(
 def inlined(function: Routine) -> Callable[..., Any]:
     """Return what other compiled code calls without going through an address, where a routine is a small part of it."""
     return njit(error_model="numpy", forceinline=True, **function.options)(function.function)
-
-
-@cache
-def cache_folder() -> Path | None:
-    """Return the folder of machine code of exactly these kernels, None where none can be written.
-
-    Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code
-    of other sources is never found, whatever their times and whoever else writes.
-    """
-    sources = sorted(_HERE.rglob("*.py"))
-    if not sources:  # imported from an archive
-        return None
-    digest = hashlib.sha256(b"".join(source.name.encode() + source.read_bytes() for source in sources))
-    for parent in _parents():
-        folder = parent / f"beamfem-{digest.hexdigest()[:16]}"
-        try:
-            _clear_others(folder)
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-        except OSError:
-            continue
-        return folder
-    return None
-
-
-def _parents() -> Iterator[Path]:
-    """Yield where machine code may be kept, the first that can be written is taken: as Numba does."""
-    if config.CACHE_DIR:
-        yield Path(config.CACHE_DIR)
-        return
-    yield _HERE / "__pycache__"
-    of_the_user = Path(AppDirs(appname="beamfem", appauthor=False).user_cache_dir)
-    if of_the_user.is_absolute():  # it is not where the user has no home
-        yield of_the_user
-
-
-def _clear_others(folder: Path) -> None:
-    """Remove machine code of earlier sources, beside the sources only: elsewhere other installations have theirs."""
-    if folder.parent.parent != _HERE or folder.exists():
-        return
-    for other in folder.parent.glob("beamfem-*"):
-        shutil.rmtree(other, ignore_errors=True)
-
-
-class _Locator(_CacheLocator):
-    """Where the machine code of one kernel lies."""
-
-    def __init__(self, function, file):
-        self._py_file = file
-        self._line = function.__code__.co_firstlineno
-
-    @classmethod
-    def from_function(cls, py_func, py_file):
-        return cls(py_func, py_file)
-
-    def get_cache_path(self):
-        return str(cache_folder())
-
-    def get_source_stamp(self):
-        return cache_folder().name
-
-    def get_disambiguator(self):
-        return str(self._line)
-
-
-class _Implementation(CompileResultCacheImpl):
-    _locator_classes = (_Locator,)
-
-
-class _KernelCache(FunctionCache):
-    """A cache that never stands in the way of a solve: what cannot be read or written is compiled."""
-
-    _impl_class = _Implementation
-
-    def load_overload(self, sig, target_context):
-        try:
-            return super().load_overload(sig, target_context)
-        except Exception:  # a damaged file raises whatever unpickling it leads to
-            return None
-
-    def save_overload(self, sig, data):
-        try:
-            try:
-                super().save_overload(sig, data)
-            except OSError:
-                raise
-            except Exception:  # a damaged index is written anew
-                self.flush()
-                super().save_overload(sig, data)
-        except Exception:  # of the disk, or of a compilation that was interrupted
-            self.disable()

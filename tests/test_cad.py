@@ -152,13 +152,36 @@ def test_ellipses(read):
 def test_only_one_layer(read):
     def draw(space):
         space.add_line((0, 0), (1, 0), dxfattribs={"layer": "Axes"})
-        space.add_text("a beam", dxfattribs={"layer": "notes"})
+        space.add_line((0, 1), (1, 1), dxfattribs={"layer": "Ties"})
 
     assert read(draw, "axes") == (Line((0, 0), (1, 0)),)
-    with pytest.raises(InputError, match=r"nothing is drawn in layer 'beams'; known are Axes, notes"):
+    assert len(read(draw)) == 2
+    with pytest.raises(InputError, match=r"nothing is drawn in layer 'beams'; known are Axes, Ties"):
         read(draw, "beams")
-    with pytest.raises(InputError, match=r"TEXT on layer 'notes', handle [0-9A-F]+, is no curve"):
-        read(draw)
+
+
+def annotate(space):
+    """Write beside a curve what drawings hold."""
+    here = {"layer": "notes"}
+    space.add_text("a beam", dxfattribs=here)
+    space.add_mtext("of steel", dxfattribs=here)
+    space.add_linear_dim(base=(0, 2), p1=(0, 0), p2=(3, 0), dxfattribs=here).render()
+    space.add_radius_dim(center=(0, 0), radius=2, angle=45, dxfattribs=here).render()
+    space.add_leader([(0, 0), (1, 1)], dxfattribs=here)
+    space.add_hatch(dxfattribs=here).paths.add_polyline_path([(0, 0), (1, 0), (1, 1)])
+
+
+def test_texts_and_dimensions_are_passed_over(read):
+    def draw(space):
+        annotate(space)
+        space.add_line((0, 0), (3, 0))
+        annotate(space)
+
+    assert read(draw) == (Line((0, 0), (3, 0)),)
+    with pytest.raises(InputError, match=r"nothing is drawn in layer 'notes'"):
+        read(draw, "notes")
+    with pytest.raises(InputError, match=r"nothing is drawn in its modelspace, only annotation"):
+        read(annotate)
 
 
 TILTED = {"extrusion": (0, 0.6, 0.8)}
@@ -185,6 +208,7 @@ BAD = {
         lambda space: space.add_open_spline([(0, 0), (1, 1), (0, 1), (1, 0)]),
         "SPLINE on layer '0', handle .*stands still",
     ),
+    "point": (lambda space: space.add_point((0, 0)), r"POINT on layer '0', handle [0-9A-F]+, is no curve"),
     "block": (lambda space: (space.doc.blocks.new("B"), space.add_blockref("B", (0, 0))), "INSERT .*explode"),
 }
 

@@ -21,13 +21,16 @@ _FLAT = 1e-9
 _SMALL_BULGE = 1e-4
 # flag of a vertex (group code 70) that a smoothed polyline only remembers
 _FRAME = 16
+# what is written beside the curves of a drawing
+_ANNOTATION = ("TEXT", "MTEXT", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LEADER", "MULTILEADER", "TOLERANCE", "HATCH")
 
 
 def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
     """Return the curves in the modelspace of a DXF file, of one layer or of all, in the units and order of the drawing.
 
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines), all
-    exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does.
+    exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does. Texts,
+    dimensions, leaders, tolerances and hatches are annotation, and passed over.
     Raises FileError, FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the
     plane z = 0, and where there is no curve; MissingPackageError without ezdxf.
     """
@@ -38,11 +41,12 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
         entities = list(ezdxf.readfile(source).modelspace())
     except Exception as error:  # ezdxf raises anything for a damaged file
         raise InputError(f"{source} is not a DXF file that can be read: {error}") from error
-    chosen = [entity for entity in entities if layer is None or entity.dxf.layer.lower() == layer.lower()]
+    drawn = [entity for entity in entities if entity.dxftype() not in _ANNOTATION]
+    chosen = [entity for entity in drawn if layer is None or entity.dxf.layer.lower() == layer.lower()]
     if not chosen:
-        layers = sorted({entity.dxf.layer for entity in entities})
+        layers = sorted({entity.dxf.layer for entity in drawn})
         if layer is None:
-            raise InputError(f"{source}: nothing is drawn in its modelspace")
+            raise InputError(f"{source}: nothing is drawn in its modelspace{', only annotation' if entities else ''}")
         raise InputError(f"{source}: nothing is drawn in layer {layer!r}; {nearest(layer, layers)}")
     return tuple(_curve(entity) for entity in chosen)
 

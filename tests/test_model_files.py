@@ -255,7 +255,7 @@ def run(text, tmp_path, *options):
 
 
 def test_documented_files_are_right(tmp_path):
-    weight, string, column, driven = (run(block, tmp_path) for block in BLOCKS)
+    weight, string, column, driven, rolled, swept = (run(block, tmp_path) for block in BLOCKS)
     # reactions of weight and force; the moment has the deflected levers
     clamp = weight["outputs"][1]["rows"][0]
     assert clamp["fy"] == pytest.approx(10.0 + 7800.0 * 1e-4 * 9.81, rel=1e-9)
@@ -273,6 +273,12 @@ def test_documented_files_are_right(tmp_path):
     np.testing.assert_allclose(column["load_factors"], bending * np.pi**2 / 4 * np.array([1, 9]), rtol=1e-3)
     assert [row["time"] for row in driven["outputs"][0]["rows"]] == [0.1, 0.2]
     assert driven["states"] == 21
+    assert [Path(path).stat().st_size > 1000 for path in rolled["written"]] == [True]
+    by_force = np.array([point["tip uy"] for point in swept["points"]]).reshape(4, 2)
+    assert np.all(np.diff(by_force, axis=0) > 0.0)  # stiffer and stiffer
+    ratio = by_force[:, 1] / by_force[:, 0]  # of a load ten times as large, nearer to ten the less the beam bends
+    assert np.all(np.diff(ratio) > 0.0)
+    assert np.all(ratio < 10.0)
 
 
 def test_examples_are_right(tmp_path):

@@ -8,6 +8,7 @@ import typer
 
 from beamfem.cli.pictures import Colour, draw
 from beamfem.cli.report import AsJson, Quiet, print_json, print_table, reported
+from beamfem.cli.run_sweep import run_sweep
 
 if TYPE_CHECKING:
     from beamfem.cli.modelfile.analyses import Found
@@ -28,7 +29,10 @@ _TITLES = {
 
 def run(
     model: Annotated[Path, typer.Argument(help="A model file (.toml), see docs/model_files.md.", show_default=False)],
-    out: Annotated[Path | None, typer.Option(help="Save model and states (.h5).", show_default=False)] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Save model and states (.h5), or the table of a sweep (.csv).", show_default=False),
+    ] = None,
     vtk: Annotated[Path | None, typer.Option(help="Write files for ParaView (.pvd).", show_default=False)] = None,
     plot: Annotated[
         Path | None,
@@ -48,6 +52,9 @@ def run(
         from beamfem.errors import ConvergenceError
 
         job = read_model_file(model)
+        if job.varied:
+            run_sweep(job, out, vtk, plot, colour, as_json, quiet)
+            return
         for option, target in (("out", out), ("vtk", vtk), ("plot", plot)):
             require_target(option, target)
         if not quiet:
@@ -64,7 +71,9 @@ def run(
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun
-        written = _write(found.solution, out, vtk, plot, colour)
+        for curve in job.curves:
+            curve.draw(found.solution)
+        written = [str(curve.file) for curve in job.curves] + _write(found.solution, out, vtk, plot, colour)
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)

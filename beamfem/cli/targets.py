@@ -6,26 +6,35 @@ from pathlib import Path
 from beamfem.errors import InputError
 from beamfem.extras import require_package
 
-_NEEDED = {"out": ("h5py",), "plot": ("matplotlib",), "vtk": ("vtkmodules",)}
+_NEEDED: dict[str, tuple[str, ...]] = {
+    "out": ("h5py",),
+    "plot": ("matplotlib",),
+    "curve": ("matplotlib",),
+    "vtk": ("vtkmodules",),
+    "table": (),
+}
 _OTHERWISE: dict[str, tuple[str, ...]] = {".html": (), ".mp4": ("matplotlib", "imageio_ffmpeg")}
 _SUFFIXES = {
     "out": (".h5", ".hdf5"),
     "plot": (".png", ".svg", ".pdf", ".html", ".gif", ".mp4"),
+    "curve": (".png", ".svg", ".pdf"),
     "vtk": (".pvd", ".vtkhdf"),
+    "table": (".csv",),
 }
 
 
 def require_target(option: str, path: Path | None) -> None:
     """Raise InputError where a file of this kind cannot be written: suffix, a folder in its place, a missing package.
 
-    option: "out", "plot" or "vtk".
+    option: "out", "plot", "vtk"; "curve" or "table" of a sweep.
     """
     if path is None:
         return
     suffixes = _SUFFIXES[option]
     if path.suffix.lower() not in suffixes:
         right = f"{path.with_suffix(suffixes[0])} would be right" if path.name else ""
-        raise InputError(f"{path} must end in {', '.join(suffixes[:-1])} or {suffixes[-1]}; {right}")
+        allowed = " or ".join(", ".join(suffixes).rsplit(", ", 1))
+        raise InputError(f"{path} must end in {allowed}; {right}")
     if path.is_dir():
         raise InputError(f"{path} is a folder; give the name of a file")
     if not writable(path.parent):

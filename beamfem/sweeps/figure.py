@@ -42,7 +42,7 @@ def plot_sweep(
     axes.set_ylabel(value)
     axes.margins(0.04)
     if 1 < len(curves) <= _NAMED:
-        axes.legend(frameon=False, fontsize=9)
+        figure.legend(frameon=False, fontsize=9, loc="outside upper left")
     if path is not None:
         save_figure(figure, path)
     return figure

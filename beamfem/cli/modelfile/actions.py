@@ -8,8 +8,8 @@ from typing import Any
 from beamfem.assembly.system import System
 from beamfem.cli.modelfile import parts
 from beamfem.cli.modelfile.functions import Components
-from beamfem.cli.modelfile.parts import Kinds
-from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, shown
+from beamfem.cli.modelfile.parts import Kinds, Named
+from beamfem.cli.modelfile.table import Reader, Table, build, build_kind
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.imposed_strains import Actuation, Temperature
@@ -41,10 +41,10 @@ JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 _POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
 
 
-def beams(root: Table) -> dict[str, Beam]:
+def beams(root: Table, function: Named) -> dict[str, Beam]:
     """Return the beams of a file by name. Raises ModelFileError."""
     material, element = parts.materials(root), parts.elements(root)
-    section = parts.sections(root, material)
+    section = parts.sections(root, material, function)
     readers: dict[str, Reader] = {
         "curve": parts.curve,
         "element": element,
@@ -93,19 +93,10 @@ class Places:
             raise table.error(str(error), key) from None
 
 
-def model(root: Table, known: Mapping[str, Beam], moving: bool) -> Model:
+def model(root: Table, known: Mapping[str, Beam], function: Named, moving: bool) -> Model:
     """Return the model of a file; moving: for an analysis in time. Raises ModelFileError."""
-    places, function = Places(known), parts.functions(root)
-    function.check_all()
+    places, value = Places(known), parts.value_by(function)
     all_beams = list(known.values())
-
-    def value(table: Table, key: str) -> Any:
-        given = table.values[key]
-        if isinstance(given, bool) or not isinstance(given, int | float | str | dict):
-            raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
-        if isinstance(given, int | float):
-            return given
-        return function(table, key)
 
     def vector(table: Table, key: str) -> Any:
         given = table.values[key]

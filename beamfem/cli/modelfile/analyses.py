@@ -20,8 +20,9 @@ from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import solve_buckling
+from beamfem.solve.statics.load_steps import Snap
 from beamfem.solve.statics.statics import solve_static, solve_through
-from beamfem.validation import count, finite, positive
+from beamfem.validation import count, finite, one_of, positive
 
 
 @dataclass(frozen=True)
@@ -50,19 +51,21 @@ class Analysis(Protocol):
 
 @dataclass(frozen=True)
 class Static:
-    """Equilibria from load factor 0 to 1."""
+    """Equilibria from load factor 0 to 1; snap: what to do at a limit point, "error" or "jump"."""
 
     steps: int = 1
     newton: Newton | None = None
+    snap: Snap = "error"
     states: bool = field(default=True, init=False)
     moving: bool = field(default=False, init=False)
     span: tuple[float, float] = field(default=(0.0, 1.0), init=False)
 
     def __post_init__(self) -> None:
         count("steps", self.steps)
+        one_of("snap", self.snap, ("error", "jump"))
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        return Found(solve_through(model, at, self.steps, self.newton))
+        return Found(solve_through(model, at, self.steps, self.newton, snap=self.snap))
 
 
 @dataclass(frozen=True)

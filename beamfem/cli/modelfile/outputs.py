@@ -16,8 +16,8 @@ from beamfem.results.path import Path, PathState
 from beamfem.results.solution import Solution
 from beamfem.validation import finite, nearest
 
-# quantity: method of a Solution and component of what it returns
-_POINT = {
+# of a point: method of a Solution and component of what it returns
+QUANTITIES = {
     "x": ("position", 0),
     "y": ("position", 1),
     "ux": ("displacement", 0),
@@ -69,7 +69,7 @@ class Output:
     @property
     def known(self) -> tuple[str, ...]:
         """Quantities that can be asked here."""
-        return tuple(_POINT) if self.point is not None else _BEAM if self.beam is not None else _ENERGY
+        return tuple(QUANTITIES) if self.point is not None else _BEAM if self.beam is not None else _ENERGY
 
     @property
     def _where(self) -> str:
@@ -117,11 +117,11 @@ class Output:
     def _columns(self, solution: Solution) -> dict[str, np.ndarray]:
         if self.point is not None:
             found = {
-                method: getattr(solution, method)(self.point) for method in {_POINT[q][0] for q in self.quantities}
+                method: getattr(solution, method)(self.point) for method in {QUANTITIES[q][0] for q in self.quantities}
             }
             return {
                 quantity: found[method] if component is None else found[method][:, component]
-                for quantity, (method, component) in ((q, _POINT[q]) for q in self.quantities)
+                for quantity, (method, component) in ((q, QUANTITIES[q]) for q in self.quantities)
             }
         source = solution.energy() if self.beam is None else solution.section_forces(self.beam)
         return {quantity: np.asarray(getattr(source, quantity)) for quantity in self.quantities}
@@ -129,7 +129,6 @@ class Output:
 
 def outputs(root: Table, places: Places, model: Model, analysis: Analysis) -> list[Output]:
     """Return what a file asks to print. Raises ModelFileError."""
-    held = {(id(support.point.beam), support.point.fraction) for support in model.point_supports}
     found = []
     for number, table in enumerate(root.tables("outputs"), 1):
         if not analysis.states:
@@ -139,12 +138,18 @@ def outputs(root: Table, places: Places, model: Model, analysis: Analysis) -> li
         for value in output.asked:
             if not low <= value <= high:
                 raise table.error(f"there is no state at {value:g}, only from {low:g} to {high:g}", "at")
-        reactions = [q for q in output.quantities if _POINT.get(q, ("",))[0] == "reaction"]
-        point = output.point
-        if point is not None and reactions and (id(point.beam), point.fraction) not in held:
-            raise table.error(f"{reactions[0]} is a reaction, but there is no support at {point}", "quantities")
+        if output.point is not None:
+            require_supported(table, "quantities", model, output.point, output.quantities)
         found.append(output)
     return found
+
+
+def require_supported(table: Table, key: str, model: Model, point: Point, quantities: Sequence[str]) -> None:
+    """Raise ModelFileError where a reaction is asked for at a point without a support."""
+    reactions = [quantity for quantity in quantities if QUANTITIES[quantity][0] == "reaction"]
+    supported = {(id(support.point.beam), support.point.fraction) for support in model.point_supports}
+    if reactions and (id(point.beam), point.fraction) not in supported:
+        raise table.error(f"{reactions[0]} is a reaction, but there is no support at {point}", key)
 
 
 def critical(output: Output, path: Path) -> dict[str, list[dict[str, Any]]]:

@@ -2,11 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import signature
+from pathlib import Path
 from typing import Any
 
+from beamfem.cli.modelfile.drawing import from_drawing
 from beamfem.cli.modelfile.functions import FUNCTIONS
-from beamfem.cli.modelfile.table import Table, build, build_kind, shown
-from beamfem.curves import Arc, BSpline, Chain, Line, Polyline
+from beamfem.cli.modelfile.table import Reader, Table, build, build_kind, shown
+from beamfem.cli.modelfile.varying import varying
+from beamfem.curves import Arc, BSpline, Chain, Line, Polyline, elliptic_arc
 from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.material import Material
@@ -39,7 +43,15 @@ FORCES: Kinds = {
     "structural": _structural,
 }
 ELEMENTS: Kinds = {kind.__name__: kind for kind in (ANCF, ANCFCRBF, BilinearANCF, BilinearCRBF, CRBF, ShearRigid)}
-CURVES: Kinds = {"line": Line, "arc": Arc, "polyline": Polyline, "bspline": BSpline, "chain": Chain}
+CURVES: Kinds = {
+    "line": Line,
+    "arc": Arc,
+    "elliptic-arc": elliptic_arc,
+    "polyline": Polyline,
+    "bspline": BSpline,
+    "chain": Chain,
+    "dxf": from_drawing,
+}
 SECTIONS: Kinds = {
     "rectangle": Rectangle,
     "circle": Circle,
@@ -48,6 +60,8 @@ SECTIONS: Kinds = {
     "stiffness": Section.from_stiffness,
     "layered": Layered,
 }
+# numbers of sections, which may be functions of the arc length
+_NUMBERS = {key for kind in SECTIONS.values() for key in signature(kind).parameters} - {"layers"}
 
 
 @dataclass(frozen=True)
@@ -101,13 +115,15 @@ def elements(root: Table) -> Named:
     return Named("element", root.named("elements"), {}, make, short)
 
 
-def sections(root: Table, material: Named) -> Named:
-    """Return the sections of a file; layers use its materials."""
+def sections(root: Table, material: Named, function: Named) -> Named:
+    """Return the sections of a file; layers use its materials, numbers may be functions of the arc length."""
 
     def layers(table: Table, key: str) -> list[Layer]:
         return [build(layer, Layer, {"material": material}) for layer in table.tables(key)]
 
-    return Named("section", root.named("sections"), {}, lambda table: build_kind(table, SECTIONS, {"layers": layers}))
+    readers: dict[str, Reader] = {"layers": layers} | dict.fromkeys(_NUMBERS, value_by(function))
+    kinds = {kind: varying(make) for kind, make in SECTIONS.items()}
+    return Named("section", root.named("sections"), {}, lambda table: build_kind(table, kinds, readers))
 
 
 def functions(root: Table) -> Named:
@@ -115,10 +131,29 @@ def functions(root: Table) -> Named:
     return Named("function", root.named("functions"), {}, lambda table: build_kind(table, FUNCTIONS, {}))
 
 
+def value_by(function: Named) -> Reader:
+    """Return what reads a number, or a function by name or as a table."""
+
+    def value(table: Table, key: str) -> Any:
+        given = table.values[key]
+        if isinstance(given, bool) or not isinstance(given, int | float | str | dict):
+            raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
+        if isinstance(given, str) and given not in function.tables:
+            known = nearest(given, function.tables) if function.tables else "the file has none"
+            raise table.error(f"must be a number or the name of a function, got {shown(given)}; {known}", key)
+        return given if isinstance(given, int | float) else function(table, key)
+
+    return value
+
+
 def curve(table: Table, key: str) -> Any:
     """Return the curve at a key. Raises ModelFileError."""
 
     def parts(chain: Table, name: str) -> list[Any]:
-        return [build_kind(part, CURVES, {"curves": parts}) for part in chain.tables(name)]
+        return [build_kind(part, CURVES, readers) for part in chain.tables(name)]
 
-    return build_kind(table.table(key), CURVES, {"curves": parts})
+    def file(drawing: Table, name: str) -> Path:
+        return drawing.source.file.parent / drawing.text(name)
+
+    readers: dict[str, Reader] = {"curves": parts, "file": file}
+    return build_kind(table.table(key), CURVES, readers)

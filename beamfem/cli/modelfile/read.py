@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from beamfem.cli.modelfile import actions
+from beamfem.cli.modelfile import actions, parts
 from beamfem.cli.modelfile.analyses import Analysis, Found, analysis
+from beamfem.cli.modelfile.curves import OutputCurve, curves
 from beamfem.cli.modelfile.errors import ModelFileError
 from beamfem.cli.modelfile.lines import key_lines
 from beamfem.cli.modelfile.outputs import Output, outputs
 from beamfem.cli.modelfile.table import Source, Table
+from beamfem.cli.modelfile.varied import Varied, varied
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
@@ -29,12 +31,14 @@ _KEYS = (
     "loads",
     "analysis",
     "outputs",
+    "curves",
+    "sweep",
 )
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a model file describes: the model with its beams by name, the analysis and what to print."""
+    """What a model file describes: the model with its beams by name, the analysis, what to print, draw and vary."""
 
     title: str
     beams: dict[str, Beam]
@@ -42,7 +46,14 @@ class Job:
     kind: str
     analysis: Analysis
     outputs: tuple[Output, ...]
-    file: Path
+    curves: tuple[OutputCurve, ...]
+    varied: tuple[Varied, ...]
+    root: Table
+
+    @property
+    def file(self) -> Path:
+        """The model file."""
+        return self.root.source.file
 
     def solve(self) -> Found:
         """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
@@ -79,12 +90,19 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         raise ModelFileError(f"a number cannot be read: {error}", file, None, None) from None
     except RecursionError:
         raise ModelFileError("arrays or tables are nested too deeply", file, None, None) from None
-    root = Table(Source(file, lines), (), values)
+    return job_of(Table(Source(file, lines), (), values))
+
+
+def job_of(root: Table) -> Job:
+    """Return what the whole table of a file describes. Raises ModelFileError."""
     root.require_known(_KEYS)
-    title = root.text("title") if "title" in values else file.stem
-    beams = actions.beams(root)
+    title = root.text("title") if "title" in root.values else root.source.file.stem
+    function = parts.functions(root)
+    function.check_all()
+    beams = actions.beams(root, function)
     places = actions.Places(beams)
     chosen = analysis(root, places)
-    model = actions.model(root, beams, chosen.moving)
-    kind = values.get("analysis", {}).get("kind", "static")
-    return Job(title, beams, model, kind, chosen, tuple(outputs(root, places, model, chosen)), file)
+    model = actions.model(root, beams, function, chosen.moving)
+    kind = root.values.get("analysis", {}).get("kind", "static")
+    asked = tuple(outputs(root, places, model, chosen))
+    return Job(title, beams, model, kind, chosen, asked, curves(root, places, model, chosen), varied(root), root)

@@ -1,0 +1,67 @@
+"""Curves that a model file asks to draw: one quantity of a point over another, over time or over the load factor."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from beamfem.cli.modelfile.actions import Places
+from beamfem.cli.modelfile.analyses import Analysis
+from beamfem.cli.modelfile.outputs import QUANTITIES, require_supported
+from beamfem.cli.modelfile.table import Table, build
+from beamfem.cli.targets import require_target
+from beamfem.errors import InputError
+from beamfem.model.beam import Point
+from beamfem.model.model import Model
+from beamfem.results.solution import Solution
+from beamfem.validation import require_known
+
+Quantity = str | tuple[str, Point]
+
+
+@dataclass(frozen=True)
+class OutputCurve:
+    """A picture of y over x: each a name and a point, or "load_factor", "time"."""
+
+    file: Path
+    x: Quantity
+    y: Quantity
+
+    def __post_init__(self) -> None:
+        require_target("curve", self.file)
+
+    def draw(self, solution: Solution) -> None:
+        """Write the picture."""
+        solution.plot_curve(self.x, self.y, self.file)
+
+
+def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tuple[OutputCurve, ...]:
+    """Return the curves that a file asks for. Raises ModelFileError."""
+    axis = "time" if analysis.moving else "load_factor"
+
+    def file(table: Table, key: str) -> Path:
+        return table.source.file.parent / table.text(key)
+
+    def quantity(table: Table, key: str) -> Quantity:
+        if not isinstance(table.values[key], dict):
+            if table.text(key) != axis:
+                raise table.error(
+                    f'must be "{axis}" or {{ point = ..., quantity = ... }}, got "{table.text(key)}"', key
+                )
+            return axis
+        of_point = table.table(key)
+        name, point = build(of_point, _of_point, {"point": places.point})
+        require_supported(of_point, "quantity", model, point, [name])
+        return name, point
+
+    found = []
+    for table in root.tables("curves"):
+        if not analysis.states:
+            raise table.error("this analysis has nothing to draw a curve of; curves go with static, path and dynamics")
+        found.append(build(table, OutputCurve, {"file": file, "x": quantity, "y": quantity}))
+    return tuple(found)
+
+
+def _of_point(point: Point, quantity: str) -> tuple[str, Point]:
+    if not isinstance(quantity, str):
+        raise InputError(f"quantity must be one of {', '.join(QUANTITIES)}, got {quantity!r}")
+    require_known(f"there is no quantity {quantity!r} of a point", quantity, QUANTITIES)
+    return quantity, point

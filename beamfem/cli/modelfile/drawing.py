@@ -1,0 +1,22 @@
+"""The axis of a beam from a drawing that a model file names."""
+
+from pathlib import Path
+
+from beamfem.curves import Curve
+from beamfem.errors import InputError
+from beamfem.io.cad import read_dxf
+from beamfem.validation import count
+
+
+def from_drawing(file: Path, layer: str | None = None, number: int | None = None) -> Curve:
+    """Return the curve of a DXF file, of one layer or of all; number: which one, from 1, where there are several.
+
+    Raises InputError.
+    """
+    found = read_dxf(file, layer)
+    if number is None and len(found) > 1:
+        raise InputError(f"{file.name} has {len(found)} curves there; number, from 1 to {len(found)}, chooses one")
+    chosen = 1 if number is None else count("number", number)
+    if chosen > len(found):
+        raise InputError(f"number is {number}, but {file.name} has {len(found)} curves there")
+    return found[chosen - 1]

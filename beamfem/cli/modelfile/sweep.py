@@ -1,0 +1,80 @@
+"""A model file solved at every combination of the values that it gives to some of its keys."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from beamfem.cli.modelfile.analyses import Found
+from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.outputs import Output
+from beamfem.cli.modelfile.read import Job, job_of
+from beamfem.cli.modelfile.table import Table
+from beamfem.cli.modelfile.varied import Varied, with_values
+from beamfem.sweeps.sweep import Sweep, sweep
+
+_NUMBERED = {
+    "load_factors": "load factor",
+    "frequencies": "frequency [Hz]",
+    "growth": "growth [1/s]",
+    "limit_points": "limit point",
+    "bifurcations": "bifurcation",
+}
+
+
+@dataclass(frozen=True)
+class PointOfFile:
+    """What the analysis of a file finds with some values in place of those that are written there."""
+
+    root: Table
+    varied: tuple[Varied, ...]
+
+    def job(self, values: dict[str, Any]) -> Job:
+        """Return the model and analysis with these values by name. Raises ModelFileError."""
+        try:
+            return job_of(with_values(self.root, {each.path: values[each.name] for each in self.varied}))
+        except ModelFileError as error:
+            where = ", ".join(f"{name} = {value}" for name, value in values.items())
+            raise ModelFileError(f"{error.message} (with {where})", error.file, error.line, error.key) from error
+
+    def __call__(self, **values: Any) -> dict[str, Any]:
+        job = self.job(values)
+        return numbers(job, job.solve())
+
+
+def solve_sweep(job: Job) -> Sweep:
+    """Return what a file with a sweep finds, a row a point. Raises ModelFileError before anything is solved."""
+    point = PointOfFile(job.root, job.varied)
+    first = {each.name: each.values[0] for each in job.varied}
+    for each in job.varied:
+        for value in each.values:
+            _require_single_rows(point.job(first | {each.name: value}))
+    parameters: Any = {each.name: each.values for each in job.varied}
+    return sweep(point, **parameters)
+
+
+def numbers(job: Job, found: Found) -> dict[str, Any]:
+    """Return what a file asks for by name, and what its analysis finds, numbered from 1."""
+    named = {
+        f"{title} {number}": value
+        for key, title in _NUMBERED.items()
+        for number, value in enumerate(found.values.get(key, ()), 1)
+    }
+    for output in job.outputs:
+        (row,) = output.rows(found.solution)
+        named |= {f"{output.name} {quantity}": row[quantity] for quantity in output.quantities}
+    return named
+
+
+def _require_single_rows(job: Job) -> None:
+    """Raise ModelFileError for an output that has more than a number for each quantity of a point of the sweep."""
+    for number, output in enumerate(job.outputs, 1):
+        where = f"outputs[{number}]"
+        if output.beam is not None:
+            raise ModelFileError(_refused(output, "point, not along a beam"), job.file, None, where)
+        if output.at != "last" and (output.at == "all" or len(output.at) != 1):
+            raise ModelFileError(_refused(output, 'single state: at = "last" or one number'), job.file, None, where)
+        if output.name in [other.name for other in job.outputs[: number - 1]]:
+            raise ModelFileError(f"two outputs are called {output.name!r}; a sweep needs names", job.file, None, where)
+
+
+def _refused(output: Output, what: str) -> str:
+    return f"in a sweep {output.name!r} must be of a {what}"

@@ -1,0 +1,69 @@
+"""Keys of a model file that a sweep varies."""
+
+import copy
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beamfem.cli.modelfile.lines import Path
+from beamfem.cli.modelfile.table import Source, Table, shown
+
+_PART = re.compile(r"(?:^|\.)(?P<key>[^.\[\]]+)|\[(?P<item>[1-9]\d*)\]")
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A key as messages write it, loads[1].vector[2] for example, where that is, and the values that it takes."""
+
+    name: str
+    path: Path
+    values: list[Any]
+
+
+def varied(root: Table) -> tuple[Varied, ...]:
+    """Return what the tables [[sweep]] of a file vary. Raises ModelFileError."""
+    found: list[Varied] = []
+    for table in root.tables("sweep"):
+        table.require_known(("key", "values"))
+        for key in ("key", "values"):
+            if key not in table.values:
+                raise table.error(f"the key {key} is missing; needed are key, values")
+        name, values = table.text("key"), table.values["values"]
+        if not isinstance(values, list) or not values:
+            raise table.error(f"must be an array of the values that {name} takes, got {shown(values)}", "values")
+        path = _path(table, root)
+        for other in found:
+            shared = min(len(path), len(other.path))
+            if path[:shared] == other.path[:shared]:
+                raise table.error(f"{name} and {other.name} vary the same key", "key")
+        found.append(Varied(name, path, values))
+    return tuple(found)
+
+
+def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
+    """Return the file with other values at some of its keys."""
+    changed = copy.deepcopy(dict(root.values))
+    for path, value in values.items():
+        within: Any = changed
+        for part in path[:-1]:
+            within = within[part]
+        within[path[-1]] = copy.deepcopy(value)
+    return Table(Source(root.source.file, root.source.lines), (), changed)
+
+
+def _path(table: Table, root: Table) -> Path:
+    """Return where in the file the key of a sweep stands. Raises ModelFileError where it does not."""
+    name, path, end = table.text("key"), [], 0
+    for found in _PART.finditer(name):
+        if found.start() != end:
+            break
+        end = found.end()
+        path.append(found["key"] if found["key"] else int(found["item"]) - 1)
+    if not path or end != len(name):
+        raise table.error(f'must be a key such as "sections.NAME.height" or "loads[1].vector[2]", got "{name}"', "key")
+    if path[0] in ("sweep", "title", "units", "outputs", "curves"):
+        raise table.error(f"{path[0]} cannot be varied", "key")
+    if tuple(path) not in root.source.lines:
+        raise table.error(f"{name} is not in the file; write it there with one of its values", "key")
+    return tuple(path)

@@ -1,0 +1,69 @@
+"""`beamfem run` of a model file with a sweep."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from beamfem.cli.report import FAILED, print_json
+
+if TYPE_CHECKING:
+    from beamfem.cli.modelfile.read import Job
+    from beamfem.sweeps.sweep import Sweep
+
+
+def run_sweep(
+    job: "Job", out: Path | None, vtk: Path | None, plot: Path | None, colour: str | None, as_json: bool, quiet: bool
+) -> None:
+    """Solve every point, print the table and write it; ends with 1 where a point failed. Raises InputError."""
+    from beamfem.assembly.compiled import tell_of_compilation
+    from beamfem.cli.modelfile.sweep import solve_sweep
+    from beamfem.cli.targets import require_target
+    from beamfem.errors import InputError
+
+    if vtk is not None or colour is not None:
+        raise InputError(f"{'--vtk' if vtk else '--colour'} is for one solution, and {job.file} has a sweep")
+    if job.curves:
+        raise InputError(f"{job.file} has [[curves]], which are of one solution, and a sweep; leave one of them out")
+    require_target("table", out)
+    require_target("curve", plot)
+    if not quiet:
+        tell_of_compilation()
+    begun = time.perf_counter()
+    try:
+        found = solve_sweep(job)
+    except KeyboardInterrupt as error:
+        partial = getattr(error, "sweep", None)
+        if partial is not None and out is not None:
+            partial.to_csv(out)
+            error.add_note(f"The points computed before are in {out}.")
+        raise
+    seconds = time.perf_counter() - begun
+    if out is not None:
+        found.to_csv(out)
+    if plot is not None:
+        found.plot(path=plot)
+    written = [str(path) for path in (out, plot) if path is not None]
+    if as_json:
+        print_json(_result(job, found, seconds, written))
+    elif not quiet:
+        print(job.title)
+        print(f"{job.kind}: {seconds:.2f} s")
+        print(found)
+        for path in written:
+            print(f"wrote {path}")
+    if found.failures:
+        raise typer.Exit(FAILED)
+
+
+def _result(job: "Job", found: "Sweep", seconds: float, written: list[str]) -> dict[str, object]:
+    return {
+        "title": job.title,
+        "file": str(job.file),
+        "analysis": job.kind,
+        "seconds": seconds,
+        "points": found.table(),
+        "failures": [str(failure) for failure in found.failures],
+        "written": written,
+    }

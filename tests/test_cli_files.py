@@ -48,8 +48,14 @@ def test_everything_that_the_template_mentions_can_be_read(tmp_path):
         own = "[analysis]\n" + re.sub(r"^# ", "", analysis, flags=re.MULTILINE)
         kinds.append(re.search(r'kind = "(\w+)"', own)[1])
         asked = rest if kinds[-1] in ("static", "path", "dynamics") else ""
-        (tmp_path / "model.toml").write_text(begin + own + re.sub(r"^# (?=\w+ = )", "", asked, flags=re.MULTILINE))
+        asked = re.sub(r"^# (?=\w+ = |\[\[)", "", asked, flags=re.MULTILINE)
+        if kinds[-1] == "dynamics":
+            asked = asked.replace('y = "load_factor"', 'y = "time"')
+        (tmp_path / "model.toml").write_text(begin + own + asked)
         read_model_file(tmp_path / "model.toml")
+    tapered = re.search(r"height = \S+ # tapered: (\{.*\})", begin)[1]
+    (tmp_path / "model.toml").write_text(re.sub(r"height = .*", f"height = {tapered}", begin))
+    assert read_model_file(tmp_path / "model.toml").beams["arm"].section_at(0.2).area == pytest.approx(0.03 * 0.0015)
     assert kinds == ["static", "path", "buckling", "modes", "dynamics"]
 
 

@@ -1,6 +1,7 @@
 """Results of calls on disk: a file of JSON lines, one a result, that a killed process leaves readable.
 
-A row names the code that computed it by a digest; another line tells once what files that code is.
+A row names the code that computed it by a digest; another line tells once what files that code is. Whole solutions are
+files of their own in a folder beside, named by their row.
 """
 
 import hashlib
@@ -9,13 +10,16 @@ import os
 from collections.abc import Mapping
 from errno import ENOSPC
 from os import PathLike
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
-from beamfem.errors import FileError
+from beamfem.errors import FileError, InputError
 from beamfem.files import path_of
+from beamfem.io.results import load
+from beamfem.results.solution import Solution
 from beamfem.sweeps.workers import Outcome
 
 
@@ -74,7 +78,8 @@ class Store:
         if code not in self._sources:
             self._sources[code] = dict(sources)
             self._write({"code": code, "sources": self._sources[code]})
-        self._write({"key": key, "code": code, **about, "value": _encode(outcome.value), "seconds": outcome.seconds})
+        value = self._encode(outcome.value, f"{key}-{code}")
+        self._write({"key": key, "code": code, **about, "value": value, "seconds": outcome.seconds})
 
     def _write(self, record: Mapping[str, Any]) -> None:
         line = json.dumps(record).encode() + b"\n"
@@ -91,29 +96,42 @@ class Store:
         if code not in self._known.get(key, {}):
             return None
         value, seconds = self._known[key][code]
-        return Outcome(_decode(value), seconds)
+        try:
+            return Outcome(self._decode(value), seconds)
+        except (FileError, InputError):  # the file of a solution is gone or damaged
+            return None
+
+    def _encode(self, value: Any, row: str) -> Any:
+        """A mapping stays one; a single value becomes a list of one, so that the two cannot be mixed up."""
+        if isinstance(value, dict):
+            return {name: self._item(item, f"{row}-{number}") for number, (name, item) in enumerate(value.items())}
+        return [self._item(value, row)]
+
+    def _item(self, value: Any, name: str) -> Any:
+        if isinstance(value, np.ndarray):
+            return {"dtype": value.dtype.str, "shape": value.shape, "data": value.ravel().tolist()}
+        if isinstance(value, Solution):
+            value.save(self._solutions / f"{name}.h5")
+            return {"solution": name}
+        return value
+
+    def _decode(self, value: Any) -> Any:
+        if isinstance(value, dict):
+            return {name: self._value(item) for name, item in value.items()}
+        return self._value(value[0])
+
+    def _value(self, item: Any) -> Any:
+        if not isinstance(item, dict):
+            return item
+        if "solution" in item:
+            return load(self._solutions / f"{item['solution']}.h5")
+        return np.array(item["data"], dtype=item["dtype"]).reshape(item["shape"])
+
+    @property
+    def _solutions(self) -> Path:
+        """The folder of whole solutions."""
+        return self.path.with_suffix("")
 
 
 def _digest(sources: Mapping[str, str]) -> str:
     return hashlib.sha256(json.dumps(sorted(sources.items())).encode()).hexdigest()[:24]
-
-
-def _encode(value: Any) -> Any:
-    """A mapping stays one; a single number becomes a list of one, so that the two cannot be mixed up."""
-    return {name: _item(item) for name, item in value.items()} if isinstance(value, dict) else [_item(value)]
-
-
-def _item(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return {"dtype": value.dtype.str, "shape": value.shape, "data": value.ravel().tolist()}
-    return value
-
-
-def _decode(value: Any) -> Any:
-    return {name: _array(item) for name, item in value.items()} if isinstance(value, dict) else _array(value[0])
-
-
-def _array(item: Any) -> Any:
-    if isinstance(item, dict):
-        return np.array(item["data"], dtype=item["dtype"]).reshape(item["shape"])
-    return item

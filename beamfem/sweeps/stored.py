@@ -7,7 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from beamfem.errors import ChangedCodeWarning, NotStoredWarning
+from beamfem.errors import ChangedCodeWarning, InputError, MissingPackageError, NotStoredWarning
 from beamfem.sweeps.keys import function_form, point_key
 from beamfem.sweeps.sources import SCRIPT, Sources
 from beamfem.sweeps.store import Store
@@ -60,12 +60,14 @@ class StoredCalls:
         about = self._about | {"parameters": parameters}
         try:
             self._store.add(self._keys[number], self._code[number], about, outcome)
+        except (InputError, MissingPackageError) as error:  # of the model of a solution
+            warnings.warn(f"not kept in the store {self._store.path}: {error}", NotStoredWarning, stacklevel=3)
         except OSError as error:
             # no more lines: one that was written in part would spoil the next one
             self._writable = False
             warnings.warn(
-                f"the store {self._store.path} cannot be written any more ({error.strerror}): the sweep goes on, and "
-                "what it computes from here on is in its result only",
+                f"the store {self._store.path} cannot be written any more ({error.strerror or error}): the sweep goes "
+                "on, and what it computes from here on is in its result only",
                 NotStoredWarning,
                 stacklevel=3,
             )

@@ -13,6 +13,7 @@ from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.progress import progress
+from beamfem.results.solution import Solution
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
 from beamfem.sweeps.stored import StoredCalls
 from beamfem.sweeps.tasks import Failure, TaskRunner
@@ -46,14 +47,18 @@ class Sweep:
         return len(self.values)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return a column (points,), of arrays of equal shape (points, ...); nan where a point failed."""
+        """Return a column (points,), of arrays of equal shape (points, ...); nan where a point failed.
+
+        Solutions are in an array of objects, None where a point failed.
+        """
         rows = self.table()
         require_known(f"the sweep has no {shown(name)}", name, rows[0])
         column = [row[name] for row in rows]
         found = [value for value in column if value is not None]
         if not all(isinstance(value, bool | int | float | np.ndarray) for value in found):
             array = np.empty(len(column), dtype=object)
-            array[:] = column
+            for place, value in enumerate(column):  # a solution is a sequence, which numpy would unpack
+                array[place] = value
             return array
         shapes = {np.shape(value) for value in found}
         if len(shapes) > 1:
@@ -64,7 +69,8 @@ class Sweep:
     def table(self) -> list[dict[str, Any]]:
         """Return a mapping a point: varied parameters, named values (None where it failed) and seconds.
 
-        A value that is called like a parameter is found as `name (result)`; a bare number as `value`.
+        A value that is called like a parameter is found as `name (result)`; a bare number as `value`. Tables that are
+        printed or written leave out whole solutions.
         """
         names = dict.fromkeys(name for value in self.values for name in _named(value))
         varied = list(self.labels[0])
@@ -78,7 +84,8 @@ class Sweep:
 
     def _rows(self) -> tuple[list[str], list[list[Any]]]:
         rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
-        return list(rows[0]), [list(row.values()) for row in rows]
+        numbers = [name for name in rows[0] if not any(isinstance(row[name], Solution) for row in rows)]
+        return numbers, [[row[name] for name in numbers] for row in rows]
 
     def _texts(self) -> list[dict[str, Any]]:
         """Numbers as they are, everything else by its label."""
@@ -162,8 +169,9 @@ def sweep(
 ) -> Sweep:
     """Call a function at every combination of the values in lists; return all results.
 
-    function: returns a number, an array or a mapping of named ones. parameters: lists, tuples, ranges and arrays of
-    one dimension are varied, everything else is passed on as it is.
+    function: returns a number, an array, a Solution or a mapping of named ones; a store keeps solutions as files in a
+    folder beside it. parameters: lists, tuples, ranges and arrays of one dimension are varied, everything else is
+    passed on as it is.
     executor: a class or a function without arguments that makes a `concurrent.futures.Executor`; None calls here, one
     after the other. store: a file or a folder where results are kept as they come and found again by the next run of
     the same function with the same parameters. Where one of the user's own files that the function runs has changed

@@ -19,10 +19,12 @@ import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
 from beamfem.progress import no_progress
+from beamfem.results.solution import Solution
 
 ExecutorFactory = Callable[[], Executor]
 Point = Mapping[str, Any]
 
+_RETURNED = "a number, an array, a Solution or a mapping of named ones"
 _THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -173,19 +175,21 @@ def _one_thread() -> None:
 
 
 def _checked(value: Any) -> Any:
-    """Return a number, an array of numbers or a dict of named ones. Raises InputError."""
+    """Return a number, an array of numbers, a Solution or a dict of named ones. Raises InputError."""
     if not isinstance(value, Mapping):
-        return _number(value)
+        return _single(value)
     if not value or not all(isinstance(name, str) for name in value):
-        raise InputError(f"the function must return a number or a mapping of named numbers, got {value!r}")
-    return {name: _number(number) for name, number in value.items()}
+        raise InputError(f"the function must return {_RETURNED}, got {value!r}")
+    return {name: _single(item) for name, item in value.items()}
 
 
-def _number(value: Any) -> Any:
+def _single(value: Any) -> Any:
+    if isinstance(value, Solution):
+        return value
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "biuf":
         return value if isinstance(value, np.ndarray) and value.ndim else value.item()
     if isinstance(value, bool | int):
         return value
     if isinstance(value, Real):
         return float(value)
-    raise InputError(f"the function must return a number or a mapping of named numbers, got {value!r}")
+    raise InputError(f"the function must return {_RETURNED}, got {value!r}")

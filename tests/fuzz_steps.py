@@ -11,6 +11,7 @@ from beamfem.solve.motion.own_steps import EquationsOfMotion
 _ROWS = 8
 _LEFT = 1e-8  # of the model, or [rad]: ten times the tolerance of a step
 _ROUND_OFF = 1e-9  # of what a step adds up: the mean of one step has the errors of all before
+_PREDICTING = 4  # accelerations before, which predict that of a step: it has the round-off of what they add up to
 
 
 def faults_of_steps(motion: bf.Solution, options: Mapping[str, object]) -> Iterator[str]:
@@ -46,7 +47,8 @@ def faults_of_steps(motion: bf.Solution, options: Mapping[str, object]) -> Itera
         new = (of_force * a[row - 1] + (1.0 - of_force) * a[row] - of_mean * mean) / (1.0 - of_mean)
         moved = p[row - 1] + h * v[row - 1] + h * h * ((0.5 - beta) * mean + beta * new)
         faster = v[row - 1] + h * ((1.0 - gamma) * mean + gamma * new)
-        sizes = np.abs([p[row], h * v[row], h * h * a[row], h * h * new]).max()
+        predicted = h * h * a[max(row - _PREDICTING, 0) : row + 1]
+        sizes = max(np.abs([p[row], h * v[row], h * h * new]).max(), np.abs(predicted).max())
         left = max(float(np.abs(moved - p[row]).max()), h * float(np.abs(faster - v[row]).max()))
         if left > _ROUND_OFF * sizes:
             yield f"step to {time[row]:g} s does not follow from the one before: {left:.1e} of {sizes:.1e}"

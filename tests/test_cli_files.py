@@ -4,9 +4,12 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+import pyvista
 from test_cli import CANTILEVER, invoke
 
+import beamfem as bf
 from beamfem.cli import new
 from beamfem.cli.modelfile import read_model_file
 
@@ -75,3 +78,19 @@ def test_a_colour_that_nobody_knows_is_named(saved, tmp_path):
     assert done.exit_code == 2
     assert "did you mean moment" in done.stderr
     assert "has colours to choose from" in invoke("plot", saved, tmp_path / "a.html", "--colour", "moment").stderr
+
+
+def test_export_takes_what_one_chooses(saved, tmp_path):
+    options = ["--reference", "--field", "displacement", "--field", "rotation", "--every", 2, "--single"]
+    done = invoke("export", saved, tmp_path / "a.pvd", *options)
+    assert (done.exit_code, done.stdout) == (0, f"wrote {tmp_path / 'a.pvd'}\n")
+    solution = bf.load(saved)
+    files = sorted((tmp_path / "a").iterdir())
+    assert len(files) == len(solution[::2])
+    mesh = pyvista.read(files[-1])
+    assert sorted(mesh.point_data) == ["displacement", "rotation"]
+    assert mesh.points.dtype == np.float32
+    np.testing.assert_allclose(mesh.points, pyvista.read(files[0]).points)
+    refused = invoke("export", saved, tmp_path / "b.pvd", "--field", "displacemnt")
+    assert refused.exit_code == 2
+    assert "did you mean displacement" in refused.stderr

@@ -40,7 +40,6 @@ def test_shear_stress_is_the_parabola_of_the_shear_force(element, tmp_path):
     np.testing.assert_allclose(data["stress_xy"], shear, atol=1e-3 * 1e5)
     bending = -SHEARED * (1.0 - s) * y / SECTION.second_moment
     np.testing.assert_allclose(data["stress_xx"], bending, atol=3e-3 * np.abs(bending).max())
-    assert not data["stress_yy"].any()
     mises = np.sqrt(data["stress_xx"] ** 2 + 3.0 * data["stress_xy"] ** 2)
     np.testing.assert_allclose(data["von_mises_stress"], mises, rtol=1e-12)
     middle = solution.fields(beam.at(0.3)).stress

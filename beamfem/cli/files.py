@@ -40,7 +40,15 @@ def info(results: Results, as_json: AsJson = False) -> None:
 
 def export(
     results: Results,
-    target: Annotated[Path, typer.Argument(help="A file for ParaView (.pvd).", show_default=False)],
+    target: Annotated[Path, typer.Argument(help="A file for ParaView (.pvd, .vtkhdf).", show_default=False)],
+    reference: Annotated[
+        bool, typer.Option("--reference", help="Leave the points at the reference, to warp them by the displacement.")
+    ] = False,
+    field: Annotated[
+        list[str] | None, typer.Option(help="A field to write, once for each; all by default.", show_default=False)
+    ] = None,
+    every: Annotated[int, typer.Option(help="Write every n-th state.", min=1)] = 1,
+    single: Annotated[bool, typer.Option("--single", help="Write numbers of four bytes.")] = False,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -50,7 +58,9 @@ def export(
         from beamfem.io.results import load
 
         require_target("vtk", target)
-        load(results).to_vtk(target)
+        solution = load(results)
+        shown = solution if every == 1 else solution[::every]
+        shown.to_vtk(target, geometry="reference" if reference else "deformed", fields=field or None, single=single)
         _wrote(target, as_json, quiet)
 
 

@@ -1,27 +1,25 @@
-"""What ParaView files hold: points of bodies and centrelines by cells, and the fields there."""
+"""Points of bodies and centrelines in the cells of ParaView files, and the fields there."""
 
-import warnings
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.errors import UnknownStressWarning
+from beamfem.material import Material
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
 from beamfem.results.self_stress import self_stress
 from beamfem.results.stresses import in_the_plane, von_mises
+from beamfem.section import Layered
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _LINES_PER_ELEMENT = 12
 _ACROSS = 2  # intervals of a layer, whose stress is a parabola at most
-_NAMED = 10  # beams that a warning names
+_FORCES = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
 
 
 class Samples:
@@ -52,18 +50,32 @@ class Samples:
         """Number of points."""
         return len(self.element) * len(self.order)
 
+    @property
+    def at_rest(self) -> np.ndarray:
+        """The reference positions of all points (1, points, 3) [m]."""
+        return self._by_cell(self.reference[None])
+
+    @property
+    def material(self) -> Material | None:
+        """The material of the beam, or of its layer; None where the section brings its stiffness."""
+        beam = self.mesh.beam
+        if self.layer is not None and isinstance(beam.section, Layered):
+            return beam.section.layers[self.layer].material
+        return beam.material
+
     def arrays(self, solution: "Solution", rows: slice = slice(None)) -> dict[str, np.ndarray]:
         """Return numbers (steps, points), vectors (..., 3) and tensors (..., 6) of some rows of a solution."""
         element, xi, p, v = self.points.element, self.points.xi, solution.p[rows], solution.v[rows]
         now = postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), element, xi)
-        rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
         position = self._at_heights(now.r, now.d)
         result = {
             "points": position,
             "displacement": position - self.reference,
-            "velocity": self._at_heights(rate.r, rate.d),
             "rotation": np.repeat(rotation(self.points, solution, rows)[..., None], self.y.shape[-1], axis=-1),
         }
+        if not solution.static:
+            rate = postprocess.axis(self.mesh, postprocess.nodal_velocities(self.mesh, p, v), element, xi)
+            result["velocity"] = self._at_heights(rate.r, rate.d)
         strain = postprocess.green_strain(now, self.axis, self.y)
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
@@ -73,10 +85,8 @@ class Samples:
         result["cauchy_stress"] = in_the_plane(
             result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
         )
-        if self.layer is None:
-            names = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_moment"}
-            for name, values in forces.items():
-                result[names[name]] = values[..., None]
+        for name, values in forces.items():
+            result[_FORCES[name]] = np.repeat(values[..., None], self.y.shape[-1], axis=-1)
         return {name: self._by_cell(values) for name, values in result.items()}
 
     @cached_property
@@ -95,9 +105,7 @@ class Samples:
         own = self.distributions
         along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"]) + self_stress
         sheared = own.shear_stress(self.layer, self.y, forces["shear"])
-        # beam theory: fibres do not press on each other
-        found = {"stress_xx": along, "stress_yy": 0.0 * along, "stress_xy": sheared}
-        return found | {"von_mises_stress": von_mises(along, sheared)}
+        return {"stress_xx": along, "stress_xy": sheared, "von_mises_stress": von_mises(along, sheared)}
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:
         return np.asarray(r[..., None, :] + self.y[..., None] * d[..., None, :])
@@ -129,65 +137,3 @@ def body(mesh: BeamMesh, alike: bool = False) -> list[Samples]:
 def centreline(mesh: BeamMesh) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
     return [Samples(AxisPoints(mesh, _LINES_PER_ELEMENT), None, np.arange(_LINES_PER_ELEMENT + 1))]
-
-
-class Cells:
-    """The cells of all beams of one kind, one an element and layer, which shares no points with others.
-
-    alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others.
-    """
-
-    def __init__(self, model: Model, whole: bool, alike: bool = False) -> None:
-        self.whole, self.meshes = whole, model.meshes
-        by_beam = [body(mesh, alike) if whole else centreline(mesh) for mesh in model.meshes]
-        self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
-        numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
-        cells = [len(part.element) for part in self.samples]
-        self.beam = np.repeat(numbers, cells)
-        self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
-        self.degree = np.repeat([(part.points.pieces, part.across) for part in self.samples], cells, axis=0)
-        self.offsets = np.append(0, np.cumsum(np.repeat([len(part.order) for part in self.samples], cells)))
-
-    @property
-    def points(self) -> int:
-        return int(self.offsets[-1])
-
-    @property
-    def degrees(self) -> np.ndarray:
-        """Degrees of the Lagrange cells (cells, 3)."""
-        return np.column_stack([self.degree, np.ones(len(self.degree))]).astype(float)
-
-    @property
-    def numbers(self) -> dict[str, np.ndarray]:
-        """Cell data (cells,) by name: the beam in the model, and the layer of bodies from the bottom up."""
-        return {"beam": self.beam, "layer": self.layer} if self.whole else {"beam": self.beam}
-
-    def warn_of_unknown_stress(self) -> None:
-        """Warn of beams whose stress is left out, or nan beside that of others."""
-        number = {id(mesh): i for i, mesh in enumerate(self.meshes)}
-        unknown = sorted({number[id(part.mesh)] for part in self.samples if not part.known["stress_xx"]})
-        if unknown:
-            shown = ", ".join(map(str, unknown[:_NAMED])) + (", ..." if len(unknown) > _NAMED else "")
-            what = "left out" if len(unknown) == len(self.meshes) else "nan"
-            warnings.warn(
-                f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
-                "sections are given by a stiffness, a law of their own, or moments without a height; "
-                "Section(..., height=) gives it",
-                UnknownStressWarning,
-                stacklevel=5,
-            )
-
-    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
-        """Return the fields at all points, (steps, points) and (steps, points, 3 or 6), of some rows of a solution.
-
-        A stress that is known nowhere is left out.
-        """
-        parts = [part.arrays(solution, rows) for part in self.samples]
-        known = {name for part in self.samples for name, told in part.known.items() if told}
-        names = [name for name in parts[0] if "stress" not in name or name in known]
-        return {name: np.concatenate([part[name] for part in parts], axis=1) for name in names}
-
-
-def times(at: np.ndarray) -> np.ndarray:
-    """Return what ParaView takes for time: `at` where it rises, else the numbers of the rows."""
-    return at if np.all(np.diff(at) > 0.0) else np.arange(len(at), dtype=float)

@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,13 +10,14 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from beamfem.errors import FileError, InputError
 from beamfem.files import make_folder, path_of, whole
-from beamfem.io.samples import Cells, times
+from beamfem.io.cells import Cells, Content, Geometry, times
+from beamfem.validation import items
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -24,12 +26,21 @@ VALUES_IN_MEMORY = 100_000
 _STEPS_BETWEEN_PUBLISHING = 50
 
 
-def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
+def write_vtk(
+    solution: "Solution",
+    path: str | PathLike[str],
+    *,
+    geometry: Geometry = "deformed",
+    fields: Sequence[str] | None = None,
+    single: bool = False,
+) -> None:
     """Write the body into `path` and the centrelines into <stem>_centreline beside it; folders are made.
 
     .pvd: a collection of .vtu files, one a step, in the folder <stem>; .vtkhdf: all steps in one file, for ParaView
-    5.12 or newer. Fields, names and units: docs/paraview.md. Raises InputError for another suffix; BeamfemError where
-    .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
+    5.12 or newer. geometry: "reference" leaves the points where they were, to be warped by `displacement`. fields:
+    names of those to write, all by default; single: numbers of four bytes, half the size, seven digits. Names and
+    units: docs/paraview.md. Raises InputError for another suffix and for unknown fields; BeamfemError where .vtkhdf is
+    asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
     """
     path = path_of(path)
     suffix = path.suffix.lower()
@@ -38,11 +49,15 @@ def write_vtk(solution: "Solution", path: str | PathLike[str]) -> None:
         raise InputError(f'ParaView opens a .pvd or a .vtkhdf file, got "{path}"; "{right}" would be right')
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to write")
-    bodies = Cells(solution.model, True, alike=suffix == ".vtkhdf")
+    chosen = None if fields is None else tuple(items("fields", fields))
+    content = Content(geometry, chosen, single)
+    bodies = Cells(solution.model, True, suffix == ".vtkhdf", content)
     bodies.warn_of_unknown_stress()
+    if chosen is not None:
+        content.require_known(Cells(solution.model, True).names(solution))
     for target, cells in (
         (path, bodies),
-        (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False)),
+        (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False, content=content)),
     ):
         if suffix == ".pvd":
             _write_series(solution, target, cells)
@@ -81,6 +96,8 @@ class _Series:
             self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
         for name_of_cells, values in cells.numbers.items():
             self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))
+        for name_of_legend, texts in cells.legend.items():
+            self.grid.GetFieldData().AddArray(_texts(name_of_legend, texts))
         self.writer = vtkXMLUnstructuredGridWriter()
         self.writer.SetInputData(self.grid)
         self.writer.EncodeAppendedDataOff()
@@ -125,4 +142,12 @@ class _Series:
 def _named(name: str, values: np.ndarray) -> object:
     array = numpy_to_vtk(values, deep=True)
     array.SetName(name)
+    return array
+
+
+def _texts(name: str, texts: Sequence[str]) -> vtkStringArray:
+    array = vtkStringArray()
+    array.SetName(name)
+    for text in texts:
+        array.InsertNextValue(text)
     return array

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from beamfem.io.cells import Cells, times
 from beamfem.io.hdf5 import written_hdf5
-from beamfem.io.samples import Cells, times
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -53,11 +53,13 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int, require_wr
             key = "Points" if array == "points" else array
             if key not in place:
                 tail = values.shape[2:]
-                size = max(1, min(_CHUNK_BYTES // (8 * int(np.prod(tail, dtype=int))), steps * cells.points))
+                size = max(
+                    1, min(_CHUNK_BYTES // (values.itemsize * int(np.prod(tail, dtype=int))), steps * cells.points)
+                )
                 place.create_dataset(
                     key,
                     (steps * cells.points, *tail),
-                    np.float64,
+                    values.dtype,
                     chunks=(size, *tail),
                     compression="gzip",
                     shuffle=True,

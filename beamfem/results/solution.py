@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import Any, Unpack, overload
+from typing import Any, Literal, Unpack, overload
 
 import numpy as np
 
@@ -273,9 +273,16 @@ class Solution:
         e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
         return without_removable_knots(spline_through_hermite(mesh.parameter, e[:, 0], mesh.rate * e[:, 1]))
 
-    def to_vtk(self, path: str | PathLike[str]) -> None:
-        """Write deformed body and centreline for ParaView; `path` ends in .pvd or .vtkhdf."""
-        offered(Solution.to_vtk)(self, path)
+    def to_vtk(
+        self,
+        path: str | PathLike[str],
+        *,
+        geometry: Literal["deformed", "reference"] = "deformed",
+        fields: Sequence[str] | None = None,
+        single: bool = False,
+    ) -> None:
+        """Write body and centreline for ParaView, all fields or some; `path` ends in .pvd or .vtkhdf."""
+        offered(Solution.to_vtk)(self, path, geometry=geometry, fields=fields, single=single)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
         """Return what varies along a beam, or along all, over the steps as an xarray.Dataset."""

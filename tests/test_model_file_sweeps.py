@@ -75,15 +75,24 @@ def test_a_tapered_cantilever_bends_as_the_integral_says(written):
 
 
 def test_a_section_may_vary_by_several_numbers_and_by_functions_in_place(written):
-    text = ARM.replace("width = 0.01", 'width = { kind = "table", points = [[0, 0.01], [0.5, 0.03], [1, 0.01]] }')
-    beam = read_model_file(written(text)).beams["arm"]
-    assert beam.section_at(0.25).area == pytest.approx(0.02 * 0.0175)
-    assert 0.5 in [float(end) for end in read_model_file(written(text)).model.meshes[0].vertices]
+    text = ARM.replace("width = 0.01", 'width = { kind = "table", points = [[0, 0.01], [0.4, 0.03], [1, 0.01]] }')
+    job = read_model_file(written(text))
+    assert job.beams["arm"].section_at(0.2).area == pytest.approx(0.02 * 0.018)
+    assert job.beams["arm"].section.kinks == (0.0, 0.4, 1.0)
+
+
+def test_a_varying_section_that_no_beam_has_is_checked_too(written):
+    text = ARM + '[sections.other]\nkind = "rectangle"\nwidth = -0.01\nheight = "height"\n'
+    with pytest.raises(ModelFileError, match="width") as caught:
+        read_model_file(written(text))
+    assert caught.value.key == "sections.other.width"
 
 
 def test_a_sweep_has_a_row_a_combination(written, tmp_path):
-    found = solve_sweep(read_model_file(written(ARM + SWEEP)))
+    job = read_model_file(written(ARM + SWEEP))
+    found = solve_sweep(job)
     assert found.shape == (2, 3)
+    assert job.root.values["loads"][0]["vector"] == [0, -1e-3]  # the file stays what it is
     expected = [tapered_tip(end, force) for force in (1e-3, 2e-3) for end in (0.01, 0.015, 0.02)]
     np.testing.assert_allclose(found["tip uy"], expected, rtol=1e-5)
     table, picture = tmp_path / "table.csv", tmp_path / "picture.png"

@@ -57,3 +57,15 @@ def rng():
 def beam(element, elements=3, start=(0.0, 0.0), end=(1.0, 0.5)):
     section = bf.Section(area=1.6e-3, second_moment=8.533e-6)
     return bf.Beam(bf.Line(start, end), elements, element, section, bf.Material(0.7e6, 0.3, 5540.0))
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Write a text as a model file."""
+
+    def write(text):
+        file = tmp_path / "model.toml"
+        file.write_text(text)
+        return file
+
+    return write

@@ -1,4 +1,4 @@
-"""Model files: tapers, axes from drawings, sweeps and curves as in Python; mistakes have file and key."""
+"""Model files: sweeps and curves as in Python; mistakes have file and key."""
 
 import csv
 import json
@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import beamfem as bf
 from beamfem.cli.app import app
 from beamfem.cli.modelfile import ModelFileError, read_model_file
 from beamfem.cli.modelfile.sweep import solve_sweep
@@ -44,16 +43,6 @@ values = [0.01, 0.015, 0.02]
 """
 
 
-@pytest.fixture
-def written(tmp_path):
-    def write(text):
-        file = tmp_path / "model.toml"
-        file.write_text(text)
-        return file
-
-    return write
-
-
 def run(file, *options, code=0):
     result = CliRunner().invoke(app, ["run", str(file), *map(str, options)])
     assert result.exit_code == code, result.output
@@ -67,25 +56,6 @@ def tapered_tip(end, force=1e-3, modulus=2e11, width=0.01, start=0.02):
     shear = 5 / 6 * modulus / 2.6 * width * height
     bending = modulus * width * height**3 / 12
     return -force * np.trapezoid((1 - x) ** 2 / bending + 1 / shear, x)
-
-
-def test_a_tapered_cantilever_bends_as_the_integral_says(written):
-    uy = json.loads(run(written(ARM), "--json").stdout)["outputs"][0]["rows"][0]["uy"]
-    assert uy == pytest.approx(tapered_tip(0.01), rel=1e-6)
-
-
-def test_a_section_may_vary_by_several_numbers_and_by_functions_in_place(written):
-    text = ARM.replace("width = 0.01", 'width = { kind = "table", points = [[0, 0.01], [0.4, 0.03], [1, 0.01]] }')
-    job = read_model_file(written(text))
-    assert job.beams["arm"].section_at(0.2).area == pytest.approx(0.02 * 0.018)
-    assert job.beams["arm"].section.kinks == (0.0, 0.4, 1.0)
-
-
-def test_a_varying_section_that_no_beam_has_is_checked_too(written):
-    text = ARM + '[sections.other]\nkind = "rectangle"\nwidth = -0.01\nheight = "height"\n'
-    with pytest.raises(ModelFileError, match="width") as caught:
-        read_model_file(written(text))
-    assert caught.value.key == "sections.other.width"
 
 
 def test_a_sweep_has_a_row_a_combination(written, tmp_path):
@@ -182,6 +152,13 @@ def test_files_of_one_solution_are_refused_for_a_sweep(written, options, words):
     assert words in " ".join(run(written(ARM + SWEEP), *options, code=2).stderr.split())
 
 
+def test_a_sweep_over_vectors_alone_cannot_be_drawn_and_is_not_solved(written, tmp_path):
+    file = written(ARM + '[[sweep]]\nkey = "loads[1].vector"\nvalues = [[0, -1e-3], [0, -2e-3]]\n')
+    said = run(file, "--plot", tmp_path / "a.png", code=2)
+    assert "--plot draws over a key whose values are numbers" in " ".join(said.stderr.split())
+    assert not said.stdout
+
+
 CURVE = """
 [[curves]]
 file = "curves/curve.png"
@@ -215,28 +192,3 @@ def test_a_mistake_in_a_curve_is_named(written, old, new, key, words):
         read_model_file(written(text + CURVE.replace(old, new)))
     assert caught.value.key == key
     assert words in caught.value.message
-
-
-def test_an_axis_may_come_from_a_drawing_or_be_an_ellipse(written, tmp_path):
-    ezdxf = pytest.importorskip("ezdxf")
-    drawing = ezdxf.new()
-    drawing.modelspace().add_line((0, 0), (2, 1), dxfattribs={"layer": "a"})
-    for height in (0, 1):
-        drawing.modelspace().add_line((0, height), (2, 2), dxfattribs={"layer": "b"})
-    drawing.saveas(tmp_path / "axes.dxf")
-    line = 'kind = "line", start = [0, 0], end = [1, 0]'
-
-    def axis(keys):
-        return read_model_file(written(ARM.replace(line, keys))).beams["arm"].curve
-
-    assert axis('kind = "dxf", file = "axes.dxf", layer = "a"') == bf.Line((0, 0), (2, 1))
-    assert axis('kind = "dxf", file = "axes.dxf", layer = "b", number = 2') == bf.Line((0, 1), (2, 2))
-    ellipse = 'kind = "elliptic-arc", center = [0, 0], first = [2, 0], second = [0, 1], start = 0, end = 1.5'
-    assert axis(ellipse) == bf.elliptic_arc((0, 0), (2, 0), (0, 1), 0, 1.5)
-    for keys, words in (
-        ('layer = "b"', "has 2 curves there; number, from 1 to 2, chooses one"),
-        ('layer = "b", number = 3', "number is 3, but axes.dxf has 2 curves"),
-        ("number = 0", "number"),
-    ):
-        with pytest.raises(ModelFileError, match=words):
-            axis(f'kind = "dxf", file = "axes.dxf", {keys}')

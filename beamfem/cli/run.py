@@ -71,9 +71,10 @@ def run(
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun
+        written = _write(found.solution, out, vtk, plot, colour)
         for curve in job.curves:
             curve.draw(found.solution)
-        written = [str(curve.file) for curve in job.curves] + _write(found.solution, out, vtk, plot, colour)
+            written.append(str(curve.file))
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)

@@ -28,6 +28,8 @@ def run_sweep(
         raise InputError(f"{job.file} has [[curves]], which are of one solution, and a sweep; leave one of them out")
     require_target("table", out)
     require_target("curve", plot)
+    if plot is not None and not any(all(map(_is_number, each.values)) for each in job.varied):
+        raise InputError(f"--plot draws over a key whose values are numbers, and {job.file} varies none")
     if not quiet:
         tell_of_compilation()
     begun = time.perf_counter()
@@ -67,3 +69,7 @@ def _result(job: "Job", found: "Sweep", seconds: float, written: list[str]) -> d
         "failures": [str(failure) for failure in found.failures],
         "written": written,
     }
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from beamfem.curves import Curve
-from beamfem.errors import InputError
+from beamfem.errors import FileError, InputError
 from beamfem.io.cad import read_dxf
 from beamfem.validation import count
 
@@ -13,7 +13,10 @@ def from_drawing(file: Path, layer: str | None = None, number: int | None = None
 
     Raises InputError.
     """
-    found = read_dxf(file, layer)
+    try:
+        found = read_dxf(file, layer)
+    except FileError as error:
+        raise InputError(f"file: {error}") from error
     if number is None and len(found) > 1:
         raise InputError(f"{file.name} has {len(found)} curves there; number, from 1 to {len(found)}, chooses one")
     chosen = 1 if number is None else count("number", number)

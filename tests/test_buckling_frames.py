@@ -88,8 +88,8 @@ def test_a_pinned_column_buckles_at_any_angle(degrees):
     found = bf.solve_buckling(model, 2)
     bending = STEEL.youngs_modulus * model.beams[0].section.second_moment
     exact = bending * np.array([reissner(100, 1, 5 / 6), reissner(100, 2, 5 / 6)])
-    # 10 elements of order 2
-    assert found.load_factors == pytest.approx(exact, rel=1e-3)
+    # 10 elements of order 2: 4e-4 too high at the second
+    assert found.load_factors == pytest.approx(exact, rel=6e-4)
     assert found.load_factors == pytest.approx(bf.solve_buckling(pinned_column(0), 2).load_factors, rel=1e-7)
     assert found.kinds == ("bifurcation", "bifurcation")
     assert found.uncertainty.max() < 1e-9

@@ -30,7 +30,7 @@ ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 def compile_kernels(first: int, apart: int) -> None:
     """Compile, or load, some of the kernels: each process others, where it would else be each process all."""
     for kernel in Routine.made[first::apart]:
-        _ = kernel.compiled
+        _ = kernel.address
 
 
 def timed(folder: str) -> tuple[Part, float]:

@@ -15,7 +15,7 @@ def extrapolated(accelerations, weights):
     """Go through accelerations (steps, n); return what each step expected (steps - 1, n), and the last order."""
     n = accelerations.shape[1]
     state, before, differences = np.zeros((4, n)), np.zeros((4, n)), np.zeros(difference_rows(n))
-    inverse_scale, order, expected = np.zeros(padded.py_func(n)), np.zeros(2), []
+    inverse_scale, order, expected = np.zeros(padded(n)), np.zeros(2), []
     inverse_scale[:n] = weights
     state[2] = accelerations[0]
     for now in accelerations[1:]:

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from numba import njit
 
 from beamfem.kernels import nodes
 from beamfem.kernels.compiling import routine
@@ -81,9 +80,3 @@ def test_addresses_of_all_arrays():
     locked.flags.writeable = False
     for array in (whole, whole[1:], whole.T, whole[:, 1], locked, np.empty(0), np.arange(3)):
         assert address_of(array) == array.__array_interface__["data"][0]
-
-
-def test_numbers_and_lanes_are_no_lanes_by_accident():
-    """Operators of other types are left alone."""
-    assert njit(lambda a, b: a * b + math.sqrt(a))(2.0, 3.0) == 6.0 + math.sqrt(2.0)
-    assert np.array_equal(njit(lambda a: np.floor(a) - 1.0)(np.array([1.5, 2.5])), [0.0, 1.0])

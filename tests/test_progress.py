@@ -51,11 +51,13 @@ def test_a_pipe_is_shown_no_bar(capsys):
 
 
 @pytest.mark.parametrize("solve", [bf.solve_static, lambda model: bf.simulate(model, 1e-3, 1e-3)])
-@pytest.mark.parametrize(("folder", "words"), [("somewhere", "once on this computer"), (None, "NUMBA_CACHE_DIR names")])
+@pytest.mark.parametrize(
+    ("folder", "words"), [("somewhere", "once on this computer"), (None, "BEAMFEM_CACHE_DIR names")]
+)
 def test_the_first_solve_says_once_that_kernels_are_compiled(solve, folder, words, monkeypatch):
     terminal = a_terminal(monkeypatch)
     monkeypatch.setattr("beamfem.progress._held", ContextVar("held", default=True))  # no bars
-    monkeypatch.setattr("beamfem.assembly.compiled.cached", lambda: 0)
+    monkeypatch.setattr("beamfem.assembly.compiled.kept", lambda: 0)
     monkeypatch.setattr("beamfem.assembly.compiled.cache_folder", lambda: folder)
     tell_of_compilation.cache_clear()
     solve(CANTILEVER)

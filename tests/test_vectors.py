@@ -4,10 +4,9 @@ import platform
 import re
 
 import pytest
-from numba.core.ccallback import CFunc
 
 from beamfem.kernels import field, inertia, linear_law, stiffness
-from beamfem.kernels.compiling import KINDS
+from beamfem.kernels.compiler.machine import assembly_code
 from beamfem.kernels.generated import elastic_line, green_lagrange, structural
 
 PASSES = [
@@ -27,10 +26,7 @@ pytestmark = pytest.mark.skipif(platform.machine() not in PACKED, reason="instru
 
 def packed(routine, operations):
     """How many packed instructions of some operations there are in a pass, compiled anew."""
-    types = tuple(KINDS[kind] for kind in routine.kinds)
-    compiled = CFunc(routine.function, (types, routine.returns), {}, {"error_model": "numpy", **routine.options})
-    compiled.compile()
-    return len(re.findall(PACKED[platform.machine()].format(operations), compiled._library.get_asm_str()))
+    return len(re.findall(PACKED[platform.machine()].format(operations), assembly_code(routine.module())))
 
 
 @pytest.mark.parametrize("routine", PASSES, ids=lambda routine: routine.name.removeprefix("beamfem.kernels."))

@@ -31,7 +31,7 @@ class MotionSpace:
                 record.STEP: (max(size, unknown) + 1,),
                 record.BEFORE: (4, size),
                 record.DIFFERENCES: (difference_rows(size),),
-                record.INVERSE_SCALE: (padded.py_func(size),),
+                record.INVERSE_SCALE: (padded(size),),
                 record.KEPT: (nodes, 2),
                 record.TURNS: (nodes, 2),
                 record.RULE: (5,),

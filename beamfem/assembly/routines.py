@@ -117,7 +117,7 @@ class Routines:
             name, step = _OF_KINDS[task]
             found[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
         for number, routine in found.items():
-            self.addresses[number] = routine.entry
+            self.addresses[number] = routine.address
 
 
 @cache

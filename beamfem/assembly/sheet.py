@@ -99,7 +99,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     table[record.APART] = not block.mass.reshape(classes, nodes, vectors, nodes, vectors)[..., :-1, :, -1].any()
     table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
     table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
-    used = rows_of.py_func(nodes, vectors, points, gathered, tables.shape[1])[-1]
+    used = rows_of(nodes, vectors, points, gathered, tables.shape[1])[-1]
     batch = LANES
     while batch > _SMALLEST and used * batch > _CACHE * LANES:
         batch //= 2

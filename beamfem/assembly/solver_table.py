@@ -60,7 +60,7 @@ def _driver_routines(half_width: int, moving: bool) -> np.ndarray:
     found |= _of_motions(own) if moving else _OF_STATICS
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
     for number, routine in found.items():
-        table[number] = routine.entry
+        table[number] = routine.address
     return table
 
 

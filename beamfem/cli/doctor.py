@@ -24,9 +24,8 @@ def doctor(as_json: AsJson = False) -> None:
     """Show versions, compiled kernels, a first solve, whether pictures of bodies work and which extras are missing."""
     with reported(as_json):
         begun = time.perf_counter()
-        from beamfem.assembly import compiled
         from beamfem.cli import targets
-        from beamfem.kernels.cache import cache_folder
+        from beamfem.kernels.cache import cache_folder, kept
 
         cache = cache_folder()
         found: dict[str, Any] = {
@@ -34,7 +33,7 @@ def doctor(as_json: AsJson = False) -> None:
             "cache": {
                 "folder": cache,
                 "writable": cache is not None and targets.writable(cache),
-                "compiled_kernels": compiled.cached(),
+                "compiled_kernels": kept(),
                 "import_seconds": time.perf_counter() - begun,
             },
             "first_solve": first_solve(),
@@ -154,7 +153,7 @@ def _print(found: dict[str, Any]) -> None:
     print("versions")
     for name, version in found["versions"].items():
         print(f"  {name:14s} {version}")
-    where = cache["folder"] or "nowhere: set NUMBA_CACHE_DIR to a folder that can be written to"
+    where = cache["folder"] or "nowhere: set BEAMFEM_CACHE_DIR to a folder that can be written to"
     print(f"\nkernels kept in {where}{'' if cache['writable'] else ', which cannot be written to'}")
     print(f"  {cache['compiled_kernels']} were compiled before, {solve['kernels_compiled_now']} just now")
     verdict = "right" if solve["right"] else f"WRONG: tip deflection {solve['deflection']:.8f} instead of 0.71385896"

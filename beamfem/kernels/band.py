@@ -6,12 +6,14 @@ stay in registers: each value then waits for one multiplication, not for memory.
 """
 
 from functools import cache
+from itertools import pairwise
 from typing import NamedTuple
 
-from numba import njit, types
-
+from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.callables import operation
+from beamfem.kernels.compiler.kinds import WHOLE, Value
 from beamfem.kernels.compiling import Routine, routine
-from beamfem.kernels.pointers import at
+from beamfem.kernels.pointers import at, room
 
 FAST = {"contract", "reassoc", "nsz"}
 _KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
@@ -34,17 +36,21 @@ def band(half_width: int) -> Band:
     return _band(half_width if half_width in _KNOWN else 0)
 
 
-@njit(forceinline=True, _nrt=False)
-def _push(window, value):
-    return window[1:] + (value,)  # noqa: RUF005 (numba does not unpack)
+@operation
+def _push(build: Build, window: Value, count: Value, value: Value) -> None:
+    """Move the numbers of a window one place down, and put a value at its end."""
+    places = [build.place(window, Value(WHOLE, WHOLE.llvm(place))) for place in range(count.llvm.constant)]
+    for to, source in pairwise(places):
+        build.builder.store(build.builder.load(source), to)
+    build.builder.store(value.llvm, places[-1])
 
 
 @cache
 def _band(known: int) -> Band:
     """Return functions that know a half width; 0: any."""
-    window, case = (0.0,) * known if known else (0.0,), f"half_width_{known or 'any'}"
+    case = f"half_width_{known or 'any'}"
 
-    @routine("iiiirrr", types.float64, case, fastmath=FAST)
+    @routine("iiiirrr", "d", case, fastmath=FAST)
     def factor(n, count, half, eliminates, ab, right, original):
         """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
@@ -52,7 +58,7 @@ def _band(known: int) -> Band:
         original (count,): space; so many pivots are taken, and the rows below keep what is left of the matrix, their
         Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often.
         """
-        w = len(window) if len(window) > 1 else half
+        w = known if known != 0 else half
         width, worst = 2 * w + 1, 1.0
         for i in range(min(count, w)):
             original[i] = abs(ab[i * width + w])
@@ -117,39 +123,58 @@ def _band(known: int) -> Band:
                 below[w + j] *= inverse_below
         return worst
 
+    return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
+
+
+def _solves(known: int, case: str) -> tuple[Routine, Routine]:
     @routine("iiirr", case=case, fastmath={"contract"})
     def solve_lower(rows, n, half, lu, x):
         """Replace the right-hand side x (n,) by that of the upper triangle."""
-        last, w = window, len(window) if len(window) > 1 else half
+        last = room(known)
+        for j in range(known):
+            last[j] = 0.0
         for i in range(rows):
-            row, total = at(lu, i * (2 * w + 1)), x[i]
-            if len(window) > 1:
-                for j in range(len(window)):
-                    total -= row[j] * last[j]
-                last = _push(last, total)
-            else:
-                for k in range(max(0, i - w), i):
-                    total -= row[w + k - i] * x[k]
+            row, total = at(lu, i * (2 * known + 1)), x[i]
+            for j in range(known):
+                total -= row[j] * last[j]
+            _push(last, known, total)
             x[i] = total
 
     @routine("iiirr", case=case, fastmath={"contract"})
     def solve_upper(rows, n, half, lu, x):
         """Replace what `solve_lower` left in x (n,) by the solution; what it holds beyond the rows is known already."""
-        last, w = window, len(window) if len(window) > 1 else half
-        if len(window) > 1:
-            for i in range(n - 1, rows - 1, -1):
-                last = _push(last, x[i])
+        last = room(known)
+        for j in range(known):
+            last[j] = 0.0
+        for i in range(n - 1, rows - 1, -1):
+            _push(last, known, x[i])
         for i in range(rows - 1, -1, -1):
-            row = at(lu, i * (2 * w + 1))
-            if len(window) > 1:
-                total = x[i] * row[len(window)]
-                for j in range(len(window)):
-                    total -= row[2 * len(window) - j] * last[j]
-                last = _push(last, total)
-            else:
-                total = x[i] * row[w]
-                for k in range(min(n, i + w + 1) - 1, i, -1):
-                    total -= row[w + k - i] * x[k]
+            row = at(lu, i * (2 * known + 1))
+            total = x[i] * row[known]
+            for j in range(known):
+                total -= row[2 * known - j] * last[j]
+            _push(last, known, total)
             x[i] = total
 
-    return Band(factor, solve_lower, solve_upper)
+    return solve_lower, solve_upper
+
+
+@routine("iiirr", fastmath={"contract"})
+def _solve_lower(rows, n, half, lu, x):
+    """The same for any half width."""
+    for i in range(rows):
+        row, total = at(lu, i * (2 * half + 1)), x[i]
+        for k in range(max(0, i - half), i):
+            total -= row[half + k - i] * x[k]
+        x[i] = total
+
+
+@routine("iiirr", fastmath={"contract"})
+def _solve_upper(rows, n, half, lu, x):
+    """The same for any half width."""
+    for i in range(rows - 1, -1, -1):
+        row = at(lu, i * (2 * half + 1))
+        total = x[i] * row[half]
+        for k in range(min(n, i + half + 1) - 1, i, -1):
+            total -= row[half + k - i] * x[k]
+        x[i] = total

@@ -1,14 +1,13 @@
 """Rows of the work space of a batch, one after the other: where each begins is counted from the sizes of a group."""
 
-from numba import njit
-
+from beamfem.kernels.compiling import inlined
 from beamfem.kernels.point import POINT_ROWS
 
 BODY_ROWS = 4
 SPARE_ROWS = 40  # for a node's coordinates and what comes of them, and for reductions
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def rows_of(nodes, vectors, points, gathered, table_rows):
     """Return the first rows of each part of the work space, and their end.
 

@@ -1,20 +1,19 @@
 """Machine code on disk, in a folder that is named by the content of all kernels and by what it was compiled for."""
 
 import hashlib
+import os
 import shutil
-import sys
 import tempfile
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-import numba
-from numba import config
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
-from numba.core.registry import cpu_target
-from numba.misc.appdirs import AppDirs
+from platformdirs import user_cache_path
+
+from beamfem.kernels.compiler import machine
 
 _HERE = Path(__file__).parent
+_ENDING = ".code"
 
 
 @cache
@@ -23,8 +22,7 @@ def cache_folder() -> Path | None:
 
     Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code
     of other sources is never found, whatever their times and whoever else writes. Each kind of processor has a folder
-    of its own in it: Numba's index of a function is read, extended and written without a lock, so that machines which
-    share a home could each take the other's code for their own.
+    of its own in it, since machines may share a home.
     """
     sources = sorted(_HERE.rglob("*.py"))
     if not sources:  # imported from an archive
@@ -32,7 +30,7 @@ def cache_folder() -> Path | None:
     digest = hashlib.sha256(b"".join(source.name.encode() + source.read_bytes() for source in sources))
     for parent in _parents():
         of_sources = parent / f"beamfem-{digest.hexdigest()[:16]}"
-        folder = of_sources / _target()
+        folder = of_sources / hashlib.sha256(machine.description().encode()).hexdigest()[:8]
         try:
             _clear_others(of_sources)
             folder.mkdir(parents=True, exist_ok=True)
@@ -43,20 +41,14 @@ def cache_folder() -> Path | None:
     return None
 
 
-def _target() -> str:
-    """Return a name of what machine code is for: the versions of Python and Numba, the processor and its features."""
-    machine = cpu_target.target_context.codegen().magic_tuple()
-    target = repr((sys.implementation.cache_tag, numba.__version__, machine))
-    return hashlib.sha256(target.encode()).hexdigest()[:8]
-
-
 def _parents() -> Iterator[Path]:
-    """Yield where machine code may be kept, the first that can be written is taken: as Numba does."""
-    if config.CACHE_DIR:
-        yield Path(config.CACHE_DIR)
+    """Yield where machine code may be kept, the first that can be written is taken."""
+    named = os.environ.get("BEAMFEM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # which names it for others too
+    if named:
+        yield Path(named)
         return
     yield _HERE / "__pycache__"
-    of_the_user = Path(AppDirs(appname="beamfem", appauthor=False).user_cache_dir)
+    of_the_user = user_cache_path("beamfem", appauthor=False)
     if of_the_user.is_absolute():  # it is not where the user has no home
         yield of_the_user
 
@@ -69,50 +61,34 @@ def _clear_others(folder: Path) -> None:
         shutil.rmtree(other, ignore_errors=True)
 
 
-class _Locator(_CacheLocator):
-    """Where the machine code of one kernel lies."""
-
-    def __init__(self, function, file):
-        self._py_file = file
-        self._line = function.__code__.co_firstlineno
-
-    @classmethod
-    def from_function(cls, py_func, py_file):
-        return cls(py_func, py_file)
-
-    def get_cache_path(self):
-        return str(cache_folder())
-
-    def get_source_stamp(self):
-        return cache_folder().name
-
-    def get_disambiguator(self):
-        return str(self._line)
+def kept() -> int:
+    """Return how many kernels are found compiled on disk."""
+    folder = cache_folder()
+    return len(list(folder.glob(f"*{_ENDING}"))) if folder else 0
 
 
-class _Implementation(CompileResultCacheImpl):
-    _locator_classes = (_Locator,)
+def found(name: str) -> bytes | None:
+    """Return the machine code of a kernel, None where there is none or its file is damaged."""
+    folder = cache_folder()
+    try:
+        content = (folder / (name + _ENDING)).read_bytes() if folder else b""
+    except OSError:
+        return None
+    digest, code = content[:32], content[32:]
+    return code if code and hashlib.sha256(code).digest() == digest else None
 
 
-class KernelCache(FunctionCache):
-    """A cache that never stands in the way of a solve: what cannot be read or written is compiled."""
-
-    _impl_class = _Implementation
-
-    def load_overload(self, sig, target_context):
-        try:
-            return super().load_overload(sig, target_context)
-        except Exception:  # a damaged file raises whatever unpickling it leads to
-            return None
-
-    def save_overload(self, sig, data):
-        try:
-            try:
-                super().save_overload(sig, data)
-            except OSError:
-                raise
-            except Exception:  # a damaged index is written anew
-                self.flush()
-                super().save_overload(sig, data)
-        except Exception:  # of the disk, or of a compilation that was interrupted
-            self.disable()
+def keep(name: str, code: bytes) -> None:
+    """Write the machine code of a kernel, at once or not at all; where that is not possible work goes on."""
+    folder = cache_folder()
+    if folder is None:
+        return
+    part = ""
+    try:
+        handle, part = tempfile.mkstemp(dir=folder)
+        with os.fdopen(handle, "wb") as file:
+            file.write(hashlib.sha256(code).digest() + code)
+        os.replace(part, folder / (name + _ENDING))
+    except OSError:  # of a disk that is full, or a folder that has been removed
+        if part:
+            Path(part).unlink(missing_ok=True)

@@ -1,7 +1,5 @@
 """All elements of a group, in batches: elastic, inertia and body forces, and their tangents."""
 
-from numba import types
-
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
@@ -11,9 +9,9 @@ from beamfem.kernels.point import RATE, RESULTANT
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
-_collect, _scatter = caller("iiiiii", types.int64), caller("iiiiiniirr")
+_collect, _scatter = caller("iiiiii", "i"), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
-_measure, _law = caller("ir"), caller("iirrrr", of_c=True)
+_measure, _law = caller("ir"), caller("iirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
 _release = caller("iiiiirr")
@@ -38,7 +36,7 @@ def add_elements(group, system):
     body, e, f, g, table, point, h, _, _, k, _ = rows_of(nodes, vectors, b[r.POINTS], gathered, b[r.TABLE_ROWS])
     chunks, director = reals(b[r.CHUNKS]), reals(b[r.DIRECTOR])
     place, ordered = wholes(b[r.PLACE]), b[r.ORDERED]
-    own, f, g, t, q, k = (
+    copied, f, g, t, q, k = (
         at(x, e * ROW),
         at(x, f * ROW),
         at(x, g * ROW),
@@ -52,7 +50,8 @@ def add_elements(group, system):
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         apart = _collect(call[r.COLLECT], group, system, first, count, rows, tangent)
-        e, stride = (own, rows * ROW) if apart == 0 else (at(chunks, place[first]), apart)
+        given = copied if apart == 0 else at(chunks, place[first])
+        stride = rows * ROW if apart == 0 else apart
         _add_inertia(
             call[r.ADD_INERTIA],
             nodes,
@@ -66,7 +65,7 @@ def add_elements(group, system):
             at(t, b[r.GRAVITY] * ROW),
             at(t, b[r.LENGTH] * ROW),
             body,
-            e,
+            given,
             f,
         )
         if predicted != 0:
@@ -76,7 +75,7 @@ def add_elements(group, system):
             second = at(t, (b[r.SECOND] + number * slots_ * bends) * ROW)
             factor = at(director, number * nodes)
             weight = at(t, (b[r.WEIGHT] + number) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, e, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, given, q)
             _measure(call[r.STRAINS], count, q)
             if b[r.NATURAL] != 0:
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
@@ -90,7 +89,7 @@ def add_elements(group, system):
                 q,
             )
             if damped:
-                rate, velocity = at(q, RATE * ROW), at(e, b[r.VELOCITY] * ROW)
+                rate, velocity = at(q, RATE * ROW), at(given, b[r.VELOCITY] * ROW)
                 _interpolate(
                     call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, velocity, rate
                 )

@@ -1,16 +1,14 @@
 """Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
 
-from numba import njit, types
-
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
     """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`.
 
@@ -19,10 +17,10 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
     for n in range(nodes):
         own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
         if ordered != 0 and own[count - 1] - own[0] == count - 1:
-            source, to = as_rows(at(chunks, own[0])), as_rows(whole)
+            lanes, filled = as_rows(at(chunks, own[0])), as_rows(whole)
             for i in range(0, count, WIDTH):
                 for row in range(i, i + rows * ROW, ROW):
-                    to[row] = source[row]
+                    filled[row] = lanes[row]
         else:
             for row in range(rows):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
@@ -30,7 +28,7 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
                     to[i] = source[own[i]]
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def _fill_tables(b, first, count, part):
     """Copy rows of the tables of each element's class to those of a batch that begin at `part`, if they are not there.
 
@@ -58,7 +56,7 @@ def _fill_tables(b, first, count, part):
             t[row * ROW + i] = table[row]
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def _fill_body(count, beams, body, rows):
     """Copy acceleration of gravity and load per length (beams, 4) of each element's beam to rows (4, ROW)."""
     if beams[count - 1] == beams[0]:  # elements of a beam follow one another
@@ -73,7 +71,7 @@ def _fill_body(count, beams, body, rows):
             rows[part * ROW + i] = body[beam + part]
 
 
-@routine("iiiiii", types.int64)
+@routine("iiiiii", "i")
 def collect(group, system, first, count, rows, copied):
     """Fill the work space of a batch: tables, what acts on its beams, and the first rows of its nodes.
 
@@ -108,10 +106,10 @@ def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     for n in range(nodes):
         own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
         if ordered != 0 and own[count - 1] - own[0] == count - 1:
-            source, to = as_rows(forces), as_rows(at(sums, own[0]))
+            lanes, added = as_rows(forces), as_rows(at(sums, own[0]))
             for part in range(size):
                 for i in range(0, count, WIDTH):
-                    to[part * ROW + i] += merged(source[part * ROW + i], zeros(), count - i)
+                    added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), count - i)
         else:
             for part in range(size):
                 source, to = at(forces, part * ROW), at(sums, part * ROW)

@@ -1,7 +1,5 @@
 """Time steps of the generalized-alpha method, many in one compiled call."""
 
-from numba import njit, types
-
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
@@ -11,9 +9,9 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
-_balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iiiirrr", types.float64), caller("iiirr")
+_balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iiiirrr", "d"), caller("iiirr")
 _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
-_predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", types.float64)
+_predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", "d")
 _count, _all = caller("inrrr"), caller("iiii")
 _keep = caller("iir")
 _correct, _judge = inlined(motion_steps.correct), inlined(motion_steps.judge)
@@ -32,7 +30,7 @@ def turn_all(system, solver, calls, keep):
         first += wholes(groups[group])[r.NODES]
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def _solve_turned(s, b, call):
     """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
     unknown, half, rollers, residual, right = (
@@ -60,7 +58,7 @@ def _solve_turned(s, b, call):
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
 
 
-@routine("iii", types.int64)
+@routine("iii", "i")
 def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.
 
@@ -90,7 +88,7 @@ def march(system, solver, calls):
         reals(b[r.DIFFERENCES]),
         reals(b[r.INVERSE_SCALE]),
     )
-    rule, limits, statistics, factors, room = (
+    rule, limits, statistics, factors, space = (
         reals(b[r.RULE]),
         reals(b[r.LIMITS]),
         reals(b[r.STATISTICS]),
@@ -116,13 +114,14 @@ def march(system, solver, calls):
             loads = wholes(groups[group])[r.LOADS]
             values[group] = given[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
             if b[r.NATURALS_VARY] != 0 and naturals[group] != 0:
-                own = wholes(groups[group])
-                own[r.NATURAL] = naturals[group] + 8 * step * own[r.ELEMENTS] * own[r.POINTS] * own[r.MEASURES]
+                record = wholes(groups[group])
+                strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
+                record[r.NATURAL] = naturals[group] + 8 * step * strains
         prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * held * step)
         _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule)
         size, first_size, iteration = 0.0, 0.0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
-        rate = at(room, n)
+        rate = at(space, n)
         rate[0] = max(statistics[4], 1e-4) ** 0.8 if not fresh else 1.0
         while iteration < limits[1]:
             renew = full != 0 or fresh
@@ -133,7 +132,7 @@ def march(system, solver, calls):
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
                 statistics[3] = min(
-                    statistics[3], _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, room)
+                    statistics[3], _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, space)
                 )
                 statistics[5] += 1.0
             if iteration == 0 or renew:

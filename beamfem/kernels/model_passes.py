@@ -1,7 +1,5 @@
 """Residual and tangent of a whole model, and what a step does to the resultants of its points."""
 
-from numba import types
-
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
@@ -9,8 +7,8 @@ from beamfem.kernels.point import RATE, RESULTANT, STRAIN
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
 
-_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", types.int64)
-_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr", of_c=True)
+_two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", "i")
+_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
@@ -160,7 +158,7 @@ def predict_resultants(group, system):
         first += count
 
 
-@routine("i", types.float64)
+@routine("i", "d")
 def smallest_jacobian(group):
     """Return the smallest r0' x d of all quadrature points, at the nodal vectors in the chunks; negative inside out."""
     b = wholes(group)

@@ -2,9 +2,7 @@
 
 import math
 
-from numba import njit, types
-
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
@@ -19,7 +17,7 @@ MOST = 3  # differences of the acceleration that extrapolate it: more than these
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def padded(n):
     """Return the length of a row of n numbers that lanes fill."""
     return (n + WIDTH - 1) // WIDTH * WIDTH
@@ -67,7 +65,7 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
             state[k * n + dofs[i]] = values[k * prescribed + i]
 
 
-@routine("iirrnrr", types.float64, fastmath=FAST)
+@routine("iirrnrr", "d", fastmath=FAST)
 def correct(n, unknown, state, right, free, inverse_scale, coefficients):
     """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
     largest = 0.0
@@ -83,7 +81,7 @@ def correct(n, unknown, state, right, free, inverse_scale, coefficients):
     return largest
 
 
-@routine("iiiddddrr", types.int64)
+@routine("iiiddddrr", "i")
 def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
     """Return 1 if a step is done after a correction, -1 if it is lost, 2 if a new tangent has to tell.
 
@@ -109,7 +107,7 @@ def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
     return 1 if rate[0] < 1.0 and small else 0
 
 
-@routine("iirrrrnrr", types.float64, fastmath=FAST)
+@routine("iirrrrnrr", "d", fastmath=FAST)
 def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
     """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
 

@@ -1,17 +1,15 @@
 """Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
 
-from numba import types
-
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import caller, reals, wholes
 
-_balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", types.float64)
-_factor, _solve = caller("iiiirrr", types.float64), caller("iiirr")
-_hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", types.float64)
+_balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", "d")
+_factor, _solve = caller("iiiirrr", "d"), caller("iiirr")
+_hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
-@routine("irrr", types.float64, fastmath={"contract", "reassoc", "nsz"})
+@routine("irrr", "d", fastmath={"contract", "reassoc", "nsz"})
 def take_step(n, step, p, scale):
     """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
     size = 0.0
@@ -23,7 +21,7 @@ def take_step(n, step, p, scale):
     return size
 
 
-@routine("iii", types.int64)
+@routine("iii", "i")
 def iterate(system, solver, calls):
     """Iterate from p (n,), changed in place; return 1 if every tangent could be factorised without pivots, else 0.
 
@@ -115,7 +113,7 @@ def iterate(system, solver, calls):
     return 1
 
 
-@routine("iii", types.int64)
+@routine("iii", "i")
 def count_after_step(system, solver, calls):
     """Return the negative pivots of the tangent in p (n,) with the resultants that the linear `STEP` (n,) leads to.
 

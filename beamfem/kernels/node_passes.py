@@ -1,10 +1,8 @@
 """All nodes of a group: from the coordinates of the model to nodal vectors, and from nodal forces to the residual."""
 
-from numba import njit
-
 from beamfem.kernels import record as r
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.nodes import put, take
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
@@ -16,7 +14,7 @@ _clear, _place, _convect = caller("iir"), caller("ir"), caller("iddr")
 _add_curvature = caller("iiiiiiiinnnisrrd")
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def _clear_forces(b, chunks):
     last = (b[r.NODES] - 1) // LANES
     for chunk in range(last + 1):

@@ -1,9 +1,8 @@
 """The nodes of a chunk: coordinates in, nodal vectors out; `record` has the rows of a chunk."""
 
 import numpy as np
-from numba import njit
 
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, gathered
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
@@ -12,7 +11,7 @@ from beamfem.kernels.record import ROW
 _PART_1, _PART_2, _PART_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21
 
 
-@njit(forceinline=True, _nrt=False, error_model="numpy", fastmath={"contract"})
+@inlined
 def _cosine_sine(angle):
     """Return cosine and sine without a branch, so that a loop of them becomes vectors; Cody and Waite 1980."""
     quarters = np.floor(angle * 0.63661977236758134308 + 0.5)
@@ -40,7 +39,7 @@ def _cosine_sine(angle):
     return minus * (even * cosine - odd * sine), minus * (even * sine + odd * cosine)
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def take(first, count, coordinates, stride, source, values, last, rows):
     """Copy values (n,) of coordinates of nodes to rows; source (coordinates, stride): see `record`.
 
@@ -57,7 +56,7 @@ def take(first, count, coordinates, stride, source, values, last, rows):
                 to[i] = values[own[i]]
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def put(rows, count, last, source, to):
     """Copy rows to lanes of a chunk; last: no lanes of other nodes follow these."""
     if last:

@@ -2,8 +2,6 @@
 
 import math
 
-from numba import types
-
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
@@ -12,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, wholes
 from beamfem.kernels.record import ROW
 
 _scatter, _clear = caller("iiiiiniirr"), caller("iir")
-_reduced, _forces = caller("iiiir"), caller("iiidrrrr", types.int64)
+_reduced, _forces = caller("iiiir"), caller("iiidrrrr", "i")
 
 
 @routine("iii")
@@ -64,7 +62,7 @@ def add_loads(group, system, values):
         first += count
 
 
-@routine("iiidrrrr", types.int64)
+@routine("iiidrrrr", "i")
 def load_forces(group, load, stride, ck, values, e, f, k):
     """Fill the nodal forces f of a load and subtract ck times their derivative from k; tell whether there is one.
 

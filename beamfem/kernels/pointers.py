@@ -7,54 +7,41 @@ twice. Addresses stand in tables of whole numbers that Python owns.
 from collections.abc import Callable
 from ctypes import addressof, c_char
 from functools import cache
-from inspect import Parameter, Signature
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import types
-from numba.core.typing import signature
-from numba.extending import intrinsic
 
-from beamfem.kernels.lanes import ROWS
-
-REALS = types.CPointer(types.float64)
-WHOLES = types.CPointer(types.int64)
-SLOTS = types.CPointer(types.int32)
-# One letter an argument: pointers to numbers, to rows of lanes, whole numbers and 32-bit whole numbers; a whole number,
-# a number.
-KINDS = {"r": REALS, "v": ROWS, "n": WHOLES, "s": SLOTS, "i": types.int64, "d": types.float64}
+from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.callables import RESULTS, operation
+from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
 
-@intrinsic
-def at(context, pointer, count):
+@operation
+def at(build: Build, pointer: Value, count: Value) -> Value:
     """Return the pointer `count` entries further on."""
-
-    def generate(context, builder, outer, given):
-        return builder.gep(given[0], [given[1]], inbounds=True)
-
-    return signature(pointer, pointer, types.intp), generate
+    return Value(pointer.kind, build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
 
 
-@intrinsic
-def small_code(context):
+@operation
+def small_code(build: Build) -> None:
     """Keep the code of the function that says so small: no loop of it is unrolled, or compiled once for each case."""
-
-    def generate(context, builder, outer, given):
-        builder.function.attributes.add("optsize")
-        return context.get_dummy_value()
-
-    return signature(types.none), generate
+    build.builder.function.attributes.add("optsize")
 
 
-def _pointer(kind: types.Type) -> Callable[..., Any]:
-    def pointer(context, address):
-        def generate(context, builder, outer, given):
-            return builder.inttoptr(given[0], context.get_value_type(kind))
+@operation
+def room(build: Build, count: Value) -> Value:
+    """Return a pointer to so many numbers of the function's own; their count is written as a number."""
+    numbers = build.space(ir.ArrayType(REALS.llvm.pointee, count.llvm.constant))
+    return Value(REALS, build.builder.bitcast(numbers, REALS.llvm))
 
-        return signature(kind, types.int64), generate
 
-    return intrinsic(pointer)
+def _pointer(kind: Kind) -> Callable[..., Any]:
+    @operation
+    def pointer(build: Build, address: Value) -> Value:
+        return Value(kind, build.builder.inttoptr(address.llvm, kind.llvm))
+
+    return pointer
 
 
 reals = _pointer(REALS)
@@ -63,32 +50,19 @@ slots = _pointer(SLOTS)
 
 
 @cache
-def caller(kinds: str, returns: types.Type = types.void, of_c: bool = False) -> Callable[..., Any]:
-    """Return call(address, *arguments) for compiled functions of these kinds of arguments.
+def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
+    """Return call(address, *arguments) for functions of these kinds of arguments, called as C does."""
+    wanted, result = [KINDS[kind] for kind in kinds], RESULTS[returns]
+    outer = ir.VoidType() if result is None else result.llvm
+    own = ir.FunctionType(outer, [kind.llvm for kind in wanted]).as_pointer()
 
-    The address is a `Routine.entry`, called as Numba's functions call one another; of_c: that of any function, which
-    is called as C does.
-    """
-    wanted = tuple(KINDS["r" if kind == "v" else kind] for kind in kinds)  # drivers have pointers to single numbers
+    @operation
+    def call(build: Build, address: Value, *arguments: Value) -> Value | None:
+        values = [build.converted(value, kind) for value, kind in zip(arguments, wanted, strict=True)]
+        found = build.builder.call(build.builder.inttoptr(address.llvm, own), values)
+        return None if result is None else Value(result, found)
 
-    def call(context, address, *arguments):
-        def generate(context, builder, outer, given):
-            values = [context.cast(builder, *each) for each in zip(given[1:], outer.args[1:], wanted, strict=True)]
-            if of_c:
-                kept = [context.get_value_type(kind) for kind in wanted]
-                own = ir.FunctionType(context.get_value_type(returns), kept)
-                value = builder.call(builder.inttoptr(given[0], own.as_pointer()), values)
-            else:
-                own = context.call_conv.get_function_type(returns, wanted)
-                target = builder.inttoptr(given[0], own.as_pointer())
-                value = context.call_conv.call_function(builder, target, returns, wanted, values)[1]
-            return context.get_dummy_value() if returns is types.void else value
-
-        return signature(returns, address, *wanted), generate
-
-    names = ("context", "address", *(f"argument_{number}" for number in range(len(wanted))))
-    vars(call)["__signature__"] = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names])
-    return intrinsic(call)
+    return call
 
 
 def address_of(values: np.ndarray) -> int:

@@ -4,9 +4,7 @@ Coordinates of a node are components of nodal vectors, then those that turn the 
 b), b (turned, turning) a node. What a node has no coordinate for is numbered -1.
 """
 
-from numba import njit
-
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at
 from beamfem.kernels.record import ROW
@@ -95,7 +93,7 @@ def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
                             matrix[slot] += k[(rows * (m * size + its) + n * size + own) * ROW + i]
 
 
-@njit(forceinline=True, _nrt=False)
+@inlined
 def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, space, residual):
     """Add B^T f of nodes of a chunk to the residual (n,).
 

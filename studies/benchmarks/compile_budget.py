@@ -18,7 +18,7 @@ from beamfem.tabulate import as_text, write_csv
 
 OUT = Path("out/bench")
 HEADER = ("kernel", "s")
-_IMPORTS = "import time; a = time.process_time(); import numpy, skfem, numba; "
+_IMPORTS = "import time; a = time.process_time(); import numpy, skfem, llvmlite.binding; "
 _IMPORTS += "b = time.process_time(); import beamfem; c = time.process_time(); print(b - a, c - b)"
 
 
@@ -50,7 +50,7 @@ def first_solves() -> dict[str, Any]:
 
 
 def import_times(rounds: int = 5) -> tuple[float, float]:
-    """Return seconds to import NumPy, scikit-fem and numba, and beamfem after them; least of some processes."""
+    """Return seconds to import NumPy, scikit-fem and llvmlite, and beamfem after them; least of some processes."""
     both = [[float(x) for x in _run("-c", _IMPORTS).split()] for _ in range(rounds)]
     return min(first for first, _ in both), min(second for _, second in both)
 
@@ -63,15 +63,15 @@ def _run(*arguments: str, **environment: str) -> str:
 def main(folder: Path = OUT) -> list[tuple[str, float]]:
     """Measure, print the table and write it as CSV."""
     with tempfile.TemporaryDirectory() as cache:
-        cold = json.loads(_run(__file__, "child", NUMBA_CACHE_DIR=cache))
-        warm = json.loads(_run(__file__, "child", NUMBA_CACHE_DIR=cache))
+        cold = json.loads(_run(__file__, "child", BEAMFEM_CACHE_DIR=cache))
+        warm = json.loads(_run(__file__, "child", BEAMFEM_CACHE_DIR=cache))
     rows = [tuple(row) for row in cold["kernels"]]
     print(as_text(HEADER, rows, "compiled for first problems of different kinds"))
     print(f"{len(rows)} kernels, {sum(row[1] for row in rows):.1f} s")
     for name, spent in cold["seconds"].items():
         print(f"first {name}: {spent:.1f} s with an empty cache, {warm['seconds'][name]:.2f} s in the next process")
     others, own = import_times()
-    print(f"import of NumPy, scikit-fem and numba {others:.2f} s, of beamfem over them {own:.2f} s")
+    print(f"import of NumPy, scikit-fem and llvmlite {others:.2f} s, of beamfem over them {own:.2f} s")
     write_csv(folder / "compile_budget.csv", HEADER, rows)
     return rows
 

@@ -13,11 +13,10 @@ from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numba.core.dispatcher import Dispatcher
-from numba.core.extending import _Intrinsic
 
 import beamfem.kernels
 from beamfem.kernels import lanes, nodes, pointers
+from beamfem.kernels.compiler.callables import Inlined, Operation
 from beamfem.kernels.compiling import Routine
 
 
@@ -55,8 +54,7 @@ class Memory:
 @contextmanager
 def uncompiled(memory: Memory) -> Iterator[None]:
     """Let functions of all kernel modules call each other as Python, on this memory."""
-    compiled = [routine for routine in Routine.made if "compiled" in vars(routine)]
-    functions = {at: routine.function for routine in compiled for at in (routine.address, routine.entry)}
+    functions = {routine.address: routine.function for routine in Routine.made if routine.loaded}
     replaced: list[tuple[ModuleType, str, Any]] = []
 
     def call(address: int, *arguments: Any) -> Any:
@@ -64,6 +62,9 @@ def uncompiled(memory: Memory) -> Iterator[None]:
 
     def at(pointer: Pointer, count: int) -> Pointer:
         return Pointer(pointer.values, pointer.first + int(count))
+
+    def push(window: Pointer, count: int, value: Any) -> None:
+        window.values[:] = [*window.values[1:], value]
 
     plain = {
         "at": at,
@@ -75,6 +76,8 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         "gathered": lambda values, places: values[places[0]],
         "small_code": lambda: None,
         "merged": lambda value, other, count: value,
+        "room": lambda count: Pointer([0.0] * count, 0),
+        "_push": push,
     }
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
     try:
@@ -83,12 +86,12 @@ def uncompiled(memory: Memory) -> Iterator[None]:
                 if name == "WIDTH":
                     replaced.append((module, name, value))
                     setattr(module, name, 1)
-                elif isinstance(value, _Intrinsic) and module not in (lanes, pointers):
+                elif isinstance(value, Operation) and module not in (lanes, pointers):
                     replaced.append((module, name, value))
                     setattr(module, name, plain.get(name, call))
-                elif isinstance(value, Dispatcher):
+                elif isinstance(value, Inlined):
                     replaced.append((module, name, value))
-                    setattr(module, name, value.py_func)
+                    setattr(module, name, value.function)
         replaced.append((nodes, "np", np))
         nodes.np = numbers
         yield

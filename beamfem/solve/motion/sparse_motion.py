@@ -31,7 +31,7 @@ class SparseMotion:
         self.coefficients = 1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))
         self._weights = np.array(self.coefficients)
         size = system.model.size
-        self._inverse_scale = np.zeros(padded.py_func(size))
+        self._inverse_scale = np.zeros(padded(size))
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(1)
         self._multipliers = system.connectors.multipliers

@@ -1,0 +1,1 @@
+"""From the Python that kernels are written in to machine code, by LLVM: `translation` says which Python that is."""

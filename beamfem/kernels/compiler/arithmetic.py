@@ -1,0 +1,126 @@
+"""What operators and functions of Python are in compiled code."""
+
+import ast
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+
+from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, WHOLE, WIDTH, Kind, Value
+
+_OF_WHOLES = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
+_OF_NUMBERS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+_COMPARISONS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+
+
+def _common(a: Value, b: Value, least: Kind) -> Kind:
+    if min(a.kind.rank, b.kind.rank) < 0:
+        raise TypeError(f"a {a.kind.name} and a {b.kind.name} cannot be added, multiplied or compared")
+    return max(a.kind, b.kind, least, key=lambda kind: kind.rank)
+
+
+def combined(build: Build, operation: ast.operator, a: Value, b: Value) -> Value:
+    """Return a + b, a - b, a * b, a / b, a // b, a % b or a ** b, as Python has them."""
+    kind = _common(a, b, NUMBER if isinstance(operation, ast.Div | ast.Pow) else WHOLE)
+    both = [Value(kind, build.converted(each, kind)) for each in (a, b)]
+    first, second = both[0].llvm, both[1].llvm
+    if isinstance(operation, ast.Pow):
+        return build.call("llvm.pow.f64", *both)
+    if kind is not WHOLE and type(operation) in _OF_NUMBERS:
+        instruction = getattr(build.builder, _OF_NUMBERS[type(operation)])
+        return Value(kind, instruction(first, second, flags=build.flags))
+    if kind is WHOLE and type(operation) in _OF_WHOLES:
+        return Value(kind, getattr(build.builder, _OF_WHOLES[type(operation)])(first, second, flags=("nsw",)))
+    if kind is WHOLE and isinstance(operation, ast.FloorDiv | ast.Mod):
+        return Value(kind, _floored(build.builder, operation, first, second))
+    raise TypeError(f"{type(operation).__name__} of a {kind.name} is not known to compiled code")
+
+
+def _floored(builder: ir.IRBuilder, operation: ast.operator, a: ir.Value, b: ir.Value) -> ir.Value:
+    """Return quotient or remainder of whole numbers rounded down; LLVM rounds towards zero."""
+    left, zero = builder.srem(a, b), WHOLE.llvm(0)
+    signs_differ = builder.icmp_signed("<", builder.xor(left, b), zero)
+    rounded_up = builder.and_(builder.icmp_signed("!=", left, zero), signs_differ)
+    if isinstance(operation, ast.Mod):
+        return builder.add(left, builder.select(rounded_up, b, zero))
+    return builder.sub(builder.sdiv(a, b), builder.zext(rounded_up, WHOLE.llvm))
+
+
+def compared(build: Build, operation: ast.cmpop, a: Value, b: Value) -> Value:
+    """Return whether a < b, and so on; a number that is none is unequal to all and neither smaller nor larger."""
+    kind, sign = _common(a, b, WHOLE), _COMPARISONS[type(operation)]
+    first, second = build.converted(a, kind), build.converted(b, kind)
+    if kind is WHOLE:
+        return Value(FLAG, build.builder.icmp_signed(sign, first, second))
+    if kind is LANES:
+        raise TypeError("lanes are not compared: each may have another answer")
+    ask = build.builder.fcmp_unordered if sign == "!=" else build.builder.fcmp_ordered
+    return Value(FLAG, ask(sign, first, second, flags=build.flags))
+
+
+def negative(build: Build, value: Value) -> Value:
+    """Return -value."""
+    if value.kind is WHOLE:
+        return Value(WHOLE, build.builder.sub(WHOLE.llvm(0), value.llvm, flags=("nsw",)))
+    if value.kind in (NUMBER, LANES):
+        return Value(value.kind, build.builder.fneg(value.llvm))
+    raise TypeError(f"a {value.kind.name} has no sign")
+
+
+def chosen(build: Build, condition: Value, a: Value, b: Value) -> Value:
+    """Return a if a condition holds, else b; both have been computed."""
+    kind = _common(a, b, WHOLE)
+    both = [build.converted(each, kind) for each in (a, b)]
+    return Value(kind, build.builder.select(condition.llvm, *both))
+
+
+def _least(build: Build, first: Value, *others: Value) -> Value:
+    for other in others:
+        first = chosen(build, compared(build, ast.Lt(), other, first), other, first)
+    return first
+
+
+def _largest(build: Build, first: Value, *others: Value) -> Value:
+    for other in others:
+        first = chosen(build, compared(build, ast.Gt(), other, first), other, first)
+    return first
+
+
+def _absolute(build: Build, value: Value) -> Value:
+    if value.kind is NUMBER:
+        return build.call("llvm.fabs.f64", value)
+    return _largest(build, value, negative(build, value))
+
+
+def _whole(build: Build, value: Value) -> Value:
+    if value.kind is NUMBER:
+        return Value(WHOLE, build.builder.fptosi(value.llvm, WHOLE.llvm))
+    return Value(WHOLE, build.converted(value, WHOLE))
+
+
+def _of_llvm(name: str) -> Callable[..., Value]:
+    def call(build: Build, value: Value) -> Value:
+        if value.kind is LANES:
+            return build.call(f"llvm.{name}.v{WIDTH}f64", value)
+        return build.call(f"llvm.{name}.f64", Value(NUMBER, build.converted(value, NUMBER)))
+
+    return call
+
+
+def _arctangent(build: Build, y: Value, x: Value) -> Value:
+    return build.call("atan2", *(Value(NUMBER, build.converted(each, NUMBER)) for each in (y, x)))
+
+
+# what functions of Python are
+FUNCTIONS: dict[Any, Callable[..., Value]] = {
+    min: _least,
+    max: _largest,
+    abs: _absolute,
+    int: _whole,
+    math.sqrt: _of_llvm("sqrt"),
+    np.floor: _of_llvm("floor"),
+    math.atan2: _arctangent,
+}

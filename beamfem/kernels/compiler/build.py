@@ -1,0 +1,84 @@
+"""A function of LLVM that is being built, and how values of one kind become another in it."""
+
+from dataclasses import dataclass
+
+from llvmlite import ir
+
+from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, REALS, ROWS, WHOLE, WIDTH, Kind, Value
+
+
+@dataclass
+class Build:
+    """Where instructions go; flags: liberties that LLVM may take with sums and products of numbers."""
+
+    builder: ir.IRBuilder
+    flags: tuple[str, ...] = ()
+
+    def space(self, llvm: ir.Type) -> ir.Value:
+        """Return room for a value on the stack of the function."""
+        with self.builder.goto_entry_block():
+            return self.builder.alloca(llvm)
+
+    def call(self, name: str, value: Value, *others: Value) -> Value:
+        """Call a function of LLVM or of the C library for values of one kind."""
+        types = [each.kind.llvm for each in (value, *others)]
+        functions = self.builder.module.globals
+        own = functions.get(name) or ir.Function(self.builder.module, ir.FunctionType(types[0], types), name)
+        arguments = [each.llvm for each in (value, *others)]
+        return Value(value.kind, self.builder.call(own, arguments, fastmath=self.flags))
+
+    def same(self, number: ir.Value) -> ir.Value:
+        """Return lanes that all hold one number, or its like for whole numbers."""
+        undefined = ir.Constant(ir.VectorType(number.type, WIDTH), ir.Undefined)
+        first = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
+        inserted = self.builder.insert_element(undefined, number, ir.IntType(32)(0))
+        return self.builder.shuffle_vector(inserted, undefined, first)
+
+    def converted(self, value: Value, kind: Kind) -> ir.Value:
+        """Return a value as one of another kind; raise TypeError where that loses something."""
+        if value.kind is kind or {value.kind, kind} == {REALS, ROWS}:
+            return value.llvm
+        if value.kind is FLAG and kind is WHOLE:
+            return self.builder.zext(value.llvm, WHOLE.llvm)
+        if value.kind in (FLAG, WHOLE) and kind in (NUMBER, LANES):
+            number = self.builder.sitofp(self.converted(value, WHOLE), NUMBER.llvm)
+            return number if kind is NUMBER else self.same(number)
+        if value.kind is NUMBER and kind is LANES:
+            return self.same(value.llvm)
+        raise TypeError(f"a {value.kind.name} is no {kind.name}")
+
+    def truth(self, value: Value) -> ir.Value:
+        """Return whether a value is not zero."""
+        if value.kind is FLAG:
+            return value.llvm
+        if value.kind is WHOLE:
+            return self.builder.icmp_signed("!=", value.llvm, WHOLE.llvm(0))
+        raise TypeError(f"a {value.kind.name} is neither true nor false")
+
+    def place(self, pointer: Value, index: Value) -> ir.Value:
+        """Return where an entry of a pointer is."""
+        if index.kind is not WHOLE:
+            raise TypeError(f"a {index.kind.name} is no place in memory")
+        place = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)
+        return self.builder.bitcast(place, LANES.llvm.as_pointer()) if pointer.kind is ROWS else place
+
+    def read(self, pointer: Value, index: Value) -> Value:
+        """Return an entry of a pointer."""
+        kind = _entry(pointer)
+        align = 8 if kind is LANES else None
+        found = self.builder.load(self.place(pointer, index), align=align)
+        return Value(kind, self.builder.sext(found, WHOLE.llvm) if pointer.kind.stored != kind.llvm else found)
+
+    def write(self, pointer: Value, index: Value, value: Value) -> None:
+        """Set an entry of a pointer."""
+        kind = _entry(pointer)
+        if pointer.kind.stored != kind.llvm:
+            raise TypeError(f"a {pointer.kind.name} is only read")
+        align = 8 if kind is LANES else None
+        self.builder.store(self.converted(value, kind), self.place(pointer, index), align=align)
+
+
+def _entry(pointer: Value) -> Kind:
+    if pointer.kind.entry is None:
+        raise TypeError(f"a {pointer.kind.name} has no entries")
+    return pointer.kind.entry

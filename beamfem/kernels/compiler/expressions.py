@@ -1,0 +1,146 @@
+"""Values of expressions."""
+
+import ast
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from llvmlite import ir
+
+from beamfem.kernels.compiler.arithmetic import FUNCTIONS, combined, compared, negative
+from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.callables import Inlined, Operation
+from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Kind, Value
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What names stand for in a function.
+
+    inline(function, values): writes the instructions of another function here and returns what it returns.
+    """
+
+    build: Build
+    outside: dict[str, Any]
+    inline: Callable[[Inlined, Sequence[Value]], list[Value]]
+    variables: dict[str, tuple[Kind, ir.Value]] = field(default_factory=dict)
+
+
+def object_of(scope: Scope, node: ast.expr) -> Any:
+    """Return an object of Python."""
+    match node:
+        case ast.Constant(value=value):
+            return value
+        case ast.Name(id=name) if name in scope.outside:
+            return scope.outside[name]
+        case ast.Attribute(value=value, attr=name):
+            return getattr(object_of(scope, value), name)
+    raise TypeError(f"{ast.unparse(node)} is not known to compiled code")
+
+
+def one_value(scope: Scope, node: ast.expr) -> Value:
+    """Return the value of an expression that has one."""
+    found = values(scope, node)
+    if isinstance(found, Value):
+        return found
+    raise TypeError(f"{ast.unparse(node)} is not one value")
+
+
+def truth(scope: Scope, node: ast.expr) -> ir.Value:
+    """Return whether a condition holds."""
+    return scope.build.truth(one_value(scope, node))
+
+
+def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
+    """Return the value of an expression, or those of several."""
+    build = scope.build
+    match node:
+        case ast.Tuple(elts=parts):
+            return [one_value(scope, each) for each in parts]
+        case ast.Name(id=name) if name in scope.variables:
+            kind, place = scope.variables[name]
+            return Value(kind, build.builder.load(place))
+        case ast.Constant() | ast.Name() | ast.Attribute():
+            return _constant(object_of(scope, node))
+        case ast.Subscript(value=pointer, slice=index):
+            return build.read(one_value(scope, pointer), one_value(scope, index))
+        case ast.BinOp(left=a, op=operation, right=b):
+            return combined(build, operation, one_value(scope, a), one_value(scope, b))
+        case ast.UnaryOp(op=ast.USub(), operand=value):
+            return negative(build, one_value(scope, value))
+        case ast.UnaryOp(op=ast.Not(), operand=value):
+            return Value(FLAG, build.builder.not_(truth(scope, value)))
+        case ast.BoolOp(op=operation, values=[first, *others]):
+            return _joined(scope, isinstance(operation, ast.And), first, others)
+        case ast.Compare(left=a, ops=operations, comparators=others):
+            return _compared(scope, a, operations, others)
+        case ast.IfExp(test=test, body=body, orelse=other):
+            return _either(build, truth(scope, test), lambda: one_value(scope, body), lambda: one_value(scope, other))
+        case ast.Call(func=function, args=arguments, keywords=[]):
+            return _called(scope, object_of(scope, function), [one_value(scope, each) for each in arguments])
+    raise TypeError(f"{ast.unparse(node)} is not known to compiled code")
+
+
+def _constant(found: Any) -> Value:
+    for kind, own in ((FLAG, bool), (WHOLE, int), (NUMBER, float)):
+        if isinstance(found, own):
+            return Value(kind, ir.Constant(kind.llvm, found))
+    raise TypeError(f"{found!r} is no number")
+
+
+def _called(scope: Scope, function: Any, arguments: list[Value]) -> Value | list[Value]:
+    if isinstance(function, Operation):
+        return function.emit(scope.build, *arguments) or []
+    if isinstance(function, Inlined):
+        found = scope.inline(function, arguments)
+        return found[0] if len(found) == 1 else found
+    if function in FUNCTIONS:
+        return FUNCTIONS[function](scope.build, *arguments)
+    raise TypeError(f"{function!r} cannot be called in compiled code")
+
+
+def _either(build: Build, condition: ir.Value, first: Callable[[], Value], second: Callable[[], Value]) -> Value:
+    """Return one of two values, of which only that one is computed."""
+    builder, found = build.builder, list[tuple[Value, ir.Block]]()
+    then, otherwise, after = (builder.append_basic_block(name) for name in ("then", "else", "after"))
+    builder.cbranch(condition, then, otherwise)
+    for block, computed in ((then, first), (otherwise, second)):
+        builder.position_at_end(block)
+        found.append((computed(), builder.block))
+    kind = max((value.kind for value, _ in found), key=lambda kind: kind.rank)
+    builder.position_at_end(after)
+    chosen = builder.phi(kind.llvm)
+    for value, block in found:
+        builder.position_at_end(block)
+        chosen.add_incoming(build.converted(value, kind), block)
+        builder.branch(after)
+    builder.position_at_end(after)
+    return Value(kind, chosen)
+
+
+def _joined(scope: Scope, all_hold: bool, first: ast.expr, others: list[ast.expr]) -> Value:
+    """Return whether all conditions hold, or any; none is computed that does not matter."""
+    here = Value(FLAG, truth(scope, first))
+    if not others:
+        return here
+
+    def rest() -> Value:
+        return _joined(scope, all_hold, others[0], others[1:])
+
+    both = (rest, lambda: here) if all_hold else (lambda: here, rest)
+    return _either(scope.build, here.llvm, *both)
+
+
+def _compared(scope: Scope, a: ast.expr, operations: list[ast.cmpop], others: list[ast.expr]) -> Value:
+    build, first, result = scope.build, one_value(scope, a), None
+    for operation, other in zip(operations, others, strict=True):
+        if isinstance(operation, ast.In) and isinstance(other, ast.Tuple) and len(operations) == 1:
+            equal = [compared(build, ast.Eq(), first, one_value(scope, each)).llvm for each in other.elts]
+            holds = equal[0]
+            for each in equal[1:]:
+                holds = build.builder.or_(holds, each)
+            return Value(FLAG, holds)
+        second = one_value(scope, other)
+        holds = compared(build, operation, first, second).llvm
+        result, first = holds if result is None else build.builder.and_(result, holds), second
+    return Value(FLAG, result)

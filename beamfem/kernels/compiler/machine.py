@@ -1,0 +1,67 @@
+"""Machine code of this computer: LLVM makes it of a module and links it into the process."""
+
+from contextlib import suppress
+from functools import cache
+
+from llvmlite import binding as llvm
+from llvmlite import ir
+
+SYMBOL = "kernel"  # what the one function of a module is called
+_engines: list[llvm.ExecutionEngine] = []  # machine code lives as long as what linked it
+
+
+@cache
+def _target() -> llvm.Target:
+    with suppress(RuntimeError):  # newer versions do it by themselves, and refuse it
+        llvm.initialize()
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_triple(llvm.get_process_triple())
+
+
+def _processor() -> tuple[str, str]:
+    """Return the name and the features of the processor."""
+    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+
+
+def description() -> str:
+    """Return what machine code is for: system, processor and version of LLVM."""
+    _target()
+    return repr((llvm.get_process_triple(), *_processor(), llvm.llvm_version_info))
+
+
+def _new_machine() -> llvm.TargetMachine:
+    processor, features = _processor()
+    return _target().create_target_machine(processor, features, opt=3, jit=True)
+
+
+_machine = cache(_new_machine)
+
+
+def object_code(module: ir.Module) -> bytes:
+    """Return the machine code of a module."""
+    return _machine().emit_object(_optimised(module))
+
+
+def assembly_code(module: ir.Module) -> str:
+    """Return the machine code of a module as text."""
+    return _machine().emit_assembly(_optimised(module))
+
+
+def _optimised(module: ir.Module) -> llvm.ModuleRef:
+    machine = _machine()
+    module.triple, module.data_layout = llvm.get_process_triple(), str(machine.target_data)
+    parsed = llvm.parse_assembly(str(module))
+    parsed.verify()
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(parsed, builder)
+    return parsed
+
+
+def linked(code: bytes) -> int:
+    """Link machine code into the process; return the address of its function."""
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    _engines.append(engine)
+    return engine.get_function_address(SYMBOL)

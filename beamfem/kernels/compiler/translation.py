@@ -1,0 +1,232 @@
+"""The Python that kernels are written in, and how it becomes instructions of LLVM.
+
+Kernels are functions of whole numbers, numbers and pointers. A variable has one kind of value, that of its first
+assignment; a number takes whole numbers too, and outside of loops and branches a name may begin anew with another kind.
+There are `for` over `range` with a step that is written as a number, `while`, `if`, conditional expressions, `break`,
+`continue`, `return`, and assignments to names and entries of pointers, several at once as well. What is called is an
+`Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function are numbers,
+modules or what is called. Anything else raises TypeError with the line.
+"""
+
+import ast
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from llvmlite import ir
+
+from beamfem.kernels.compiler.arithmetic import combined
+from beamfem.kernels.compiler.build import Build
+from beamfem.kernels.compiler.callables import RESULTS, Inlined
+from beamfem.kernels.compiler.expressions import Scope, object_of, one_value, truth, values
+from beamfem.kernels.compiler.kinds import KINDS, WHOLE, Kind, Value
+from beamfem.kernels.compiler.source import definition, outside
+
+
+def translate(function: Callable[..., Any], kinds: str, returns: str, flags: Sequence[str], name: str) -> ir.Module:
+    """Return a module with one function that is called as C does.
+
+    kinds: letters of `kinds.KINDS`, one an argument; returns: a letter of `callables.RESULTS`; flags: see `Build`.
+    """
+    module, result = ir.Module(name), RESULTS[returns]
+    outer = ir.VoidType() if result is None else result.llvm
+    own = ir.Function(module, ir.FunctionType(outer, [KINDS[kind].llvm for kind in kinds]), name)
+    own.attributes.add("nounwind")
+    builder = ir.IRBuilder(own.append_basic_block("entry"))
+    given = [Value(KINDS[kind], argument) for kind, argument in zip(kinds, own.args, strict=True)]
+    found = _Body(Build(builder, tuple(flags)), function, given).run()
+    if result is None:
+        builder.ret_void()
+    elif len(found) == 1:
+        builder.ret(Build(builder).converted(found[0], result))
+    else:
+        raise TypeError(f"{function.__qualname__} returns {len(found)} values, not one {result.name}")
+    return module
+
+
+class _Body:
+    """The body of a function that is written where a builder stands."""
+
+    def __init__(self, build: Build, function: Callable[..., Any], arguments: Sequence[Value]) -> None:
+        self._build, self._builder, self._function = build, build.builder, function
+        self._scope = Scope(build, outside(function), self._inline)
+        self._end = self._builder.append_basic_block("end")
+        self._depth = 0  # of loops and branches around a statement
+        self._loops: list[tuple[ir.Block, ir.Block]] = []  # where `continue` and `break` lead
+        self._results: list[tuple[Kind, ir.Value]] = []
+        self._definition = definition(function)
+        for argument, value in zip(self._definition.args.args, arguments, strict=True):
+            self._assign(ast.Name(argument.arg), value)
+
+    def run(self) -> list[Value]:
+        """Write all instructions; return what the function returns."""
+        self._suite(self._definition.body)
+        self._branch(self._end)
+        self._builder.position_at_end(self._end)
+        return [Value(kind, self._builder.load(place)) for kind, place in self._results]
+
+    def _inline(self, inlined: Inlined, arguments: Sequence[Value]) -> list[Value]:
+        flags = self._build.flags if inlined.flags is None else inlined.flags
+        return _Body(Build(self._builder, flags), inlined.function, arguments).run()
+
+    def _branch(self, block: ir.Block) -> None:
+        if not self._builder.block.is_terminated:
+            self._builder.branch(block)
+
+    def _suite(self, statements: Sequence[ast.stmt]) -> None:
+        for statement in statements:
+            if self._builder.block.is_terminated:
+                return
+            try:
+                self._statement(statement)
+            except TypeError as error:
+                if not hasattr(error, "__notes__"):
+                    error.add_note(f"in compiled code: {self._function.__code__.co_filename}, line {statement.lineno}")
+                raise
+
+    def _inner(self, statements: Sequence[ast.stmt]) -> None:
+        self._depth += 1
+        self._suite(statements)
+        self._depth -= 1
+
+    def _statement(self, statement: ast.stmt) -> None:
+        scope = self._scope
+        match statement:
+            case ast.Assign(targets=targets, value=value):
+                found = values(scope, value)
+                for target in targets:
+                    self._assign(target, found)
+            case ast.AugAssign(target=target, op=operation, value=value):
+                self._change(target, operation, one_value(scope, value))
+            case ast.Expr(value=ast.Constant()) | ast.Pass():
+                pass  # a docstring
+            case ast.Expr(value=value):
+                values(scope, value)
+            case ast.If(test=test, body=body, orelse=other):
+                self._fork(truth(scope, test), body, other)
+            case ast.For(
+                target=ast.Name() as target,
+                iter=ast.Call(func=ast.Name("range"), args=limits, keywords=[]),
+                body=body,
+                orelse=[],
+            ):
+                self._count(target, limits, body)
+            case ast.While(test=test, body=body, orelse=[]):
+                self._loop(lambda: truth(scope, test), body)
+            case ast.Break():
+                self._builder.branch(self._loops[-1][1])
+            case ast.Continue():
+                self._builder.branch(self._loops[-1][0])
+            case ast.Return(value=value):
+                found = [] if value is None else values(scope, value)
+                self._return([found] if isinstance(found, Value) else found)
+            case _:
+                raise TypeError(f"{ast.unparse(statement).splitlines()[0]} is not known to compiled code")
+
+    def _assign(self, target: ast.expr, value: Value | list[Value]) -> None:
+        match target, value:
+            case ast.Tuple(elts=targets), list():
+                if len(targets) != len(value):
+                    raise TypeError(f"{len(value)} values for {len(targets)} names")
+                for own, each in zip(targets, value, strict=True):
+                    self._assign(own, each)
+            case ast.Name(id=name), Value():
+                self._set(name, value)
+            case ast.Subscript(value=pointer, slice=index), Value():
+                self._build.write(one_value(self._scope, pointer), one_value(self._scope, index), value)
+            case _:
+                raise TypeError(f"{ast.unparse(target)} cannot be assigned this in compiled code")
+
+    def _set(self, name: str, value: Value) -> None:
+        variables = self._scope.variables
+        if name in variables:
+            kind, place = variables[name]
+            if kind is value.kind or kind.rank > value.kind.rank > 0:
+                self._builder.store(self._build.converted(value, kind), place)
+                return
+            if self._depth > 0:
+                raise TypeError(f"{name} is a {kind.name} and cannot become a {value.kind.name} in a loop or branch")
+        variables[name] = value.kind, self._build.space(value.kind.llvm)
+        self._builder.store(value.llvm, variables[name][1])
+
+    def _change(self, target: ast.expr, operation: ast.operator, value: Value) -> None:
+        if isinstance(target, ast.Subscript):
+            pointer, index = one_value(self._scope, target.value), one_value(self._scope, target.slice)
+            self._build.write(pointer, index, combined(self._build, operation, self._build.read(pointer, index), value))
+        else:
+            self._assign(target, combined(self._build, operation, one_value(self._scope, target), value))
+
+    def _return(self, found: list[Value]) -> None:
+        if not self._results:
+            self._results = [(each.kind, self._build.space(each.kind.llvm)) for each in found]
+        if len(self._results) != len(found):
+            raise TypeError("a function returns as many values everywhere")
+        for (kind, place), value in zip(self._results, found, strict=True):
+            self._builder.store(self._build.converted(value, kind), place)
+        self._builder.branch(self._end)
+
+    def _fork(self, condition: ir.Value, body: Sequence[ast.stmt], other: Sequence[ast.stmt]) -> None:
+        then, otherwise, after = (self._builder.append_basic_block(name) for name in ("then", "else", "after"))
+        self._builder.cbranch(condition, then, otherwise)
+        for block, statements in ((then, body), (otherwise, other)):
+            self._builder.position_at_end(block)
+            self._inner(statements)
+            self._branch(after)
+        self._builder.position_at_end(after)
+
+    def _loop(
+        self,
+        condition: Callable[[], ir.Value],
+        body: Sequence[ast.stmt],
+        begin: Callable[[], None] = lambda: None,
+        advance: Callable[[], None] = lambda: None,
+    ) -> None:
+        ask, inside, onwards, after = (
+            self._builder.append_basic_block(name) for name in ("ask", "inside", "onwards", "after")
+        )
+        self._builder.branch(ask)
+        self._builder.position_at_end(ask)
+        self._builder.cbranch(condition(), inside, after)
+        self._builder.position_at_end(inside)
+        self._loops.append((onwards, after))
+        begin()
+        self._inner(body)
+        self._loops.pop()
+        self._branch(onwards)
+        self._builder.position_at_end(onwards)
+        advance()
+        self._builder.branch(ask)
+        self._builder.position_at_end(after)
+
+    def _count(self, target: ast.Name, limits: list[ast.expr], body: Sequence[ast.stmt]) -> None:
+        found = [one_value(self._scope, each) for each in limits]
+        if any(each.kind is not WHOLE for each in found):
+            raise TypeError("a range counts whole numbers")
+        start, stop = found[:2] if len(found) > 1 else (Value(WHOLE, WHOLE.llvm(0)), found[0])
+        step = self._step(limits[2]) if len(found) > 2 else 1
+        counter = self._build.space(WHOLE.llvm)
+        self._builder.store(start.llvm, counter)
+
+        def condition() -> ir.Value:
+            return self._builder.icmp_signed("<" if step > 0 else ">", self._builder.load(counter), stop.llvm)
+
+        def begin() -> None:
+            self._set(target.id, Value(WHOLE, self._builder.load(counter)))
+
+        def advance() -> None:
+            here = self._builder.load(counter)
+            self._builder.store(self._builder.add(here, WHOLE.llvm(step), flags=("nsw",)), counter)
+
+        self._loop(condition, body, begin, advance)
+
+    def _step(self, node: ast.expr) -> int:
+        """Return the step of a range, which is known here."""
+        match node:
+            case ast.UnaryOp(op=ast.USub(), operand=value):
+                return -self._step(value)
+            case ast.Name(id=name) if name in self._scope.variables:
+                found = None
+            case _:
+                found = object_of(self._scope, node)
+        if type(found) is not int or found == 0:
+            raise TypeError("the step of a range is a number that is known when it is compiled")
+        return found

@@ -1,0 +1,240 @@
+"""The Python that kernels are written in: compiled, it does what Python does; what it does not know is named."""
+
+import math
+
+import numpy as np
+import pytest
+
+from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.pointers import at, caller, reals, room, wholes
+
+
+@routine("iin")
+def whole_numbers(a, b, result):
+    result[0], result[1], result[2] = a + b, a - b, a * b
+    result[3], result[4] = a // b, a % b
+    result[5], result[6], result[7] = min(a, b), max(a, b, 3), abs(a)
+    result[8], result[9] = -a, int(a / b)
+
+
+@pytest.mark.parametrize(("a", "b"), [(7, 3), (-7, 3), (7, -3), (-7, -3), (6, 3), (-6, 3), (0, 5), (2**40, 7)])
+def test_whole_numbers_are_those_of_python(a, b):
+    found, wanted = np.zeros(10, dtype=np.int64), np.zeros(10, dtype=np.int64)
+    whole_numbers(a, b, found)
+    whole_numbers.function(a, b, wanted)
+    assert np.array_equal(found, wanted)
+
+
+@routine("ddr")
+def numbers(a, b, result):
+    result[0], result[1], result[2], result[3] = a + b, a - b, a * b, a / b
+    result[4], result[5], result[6] = abs(a) ** 0.8, math.sqrt(abs(a)), math.atan2(a, b)
+    result[7], result[8], result[9] = min(a, b), max(a, 1), np.floor(a)
+    result[10], result[11], result[12] = 2 * a, 1 / b, int(a)
+    result[13] = a if a > b else 0
+
+
+@pytest.mark.parametrize(("a", "b"), [(1.5, 0.3), (-1.5, 0.3), (1e-300, -1e300), (-0.0, 1.0), (3.0, 3.0)])
+def test_numbers_are_those_of_python(a, b):
+    found, wanted = np.zeros(14), np.zeros(14)
+    numbers(a, b, found)
+    numbers.function(a, b, wanted)
+    assert np.all(np.abs(found - wanted) <= np.spacing(np.abs(wanted)))
+    assert np.array_equal(np.delete(found, [4, 6]), np.delete(wanted, [4, 6]))  # all but those of the C library
+
+
+@routine("ddn")
+def conditions(a, b, result):
+    result[0], result[1], result[2] = a < b, a <= b, a == b
+    result[3], result[4], result[5] = a > b, a >= b, a != b
+    result[6], result[7] = not a < b, 0.0 < a <= b
+    result[8] = 1 if a > 0.0 and b > 0.0 else 0
+    result[9] = 1 if a > 0.0 or b > 0.0 else 0
+    flag = a > 0.0 and b > 0.0 and a < b
+    result[10], result[11] = flag, int(a) in (1, 2, 5)
+    result[12] += a < b
+
+
+@pytest.mark.parametrize("a", [-1.0, 0.0, 1.0, 2.5, 5.0, math.nan, math.inf])
+@pytest.mark.parametrize("b", [-1.0, 1.0, math.nan])
+def test_conditions_are_those_of_python(a, b):
+    """Of numbers that are none as well: residuals become such, and what follows must see it."""
+    if not math.isfinite(a):
+        conditions_of = [(a < b), (a <= b), (a == b), (a > b), (a >= b), (a != b), (not a < b), (0.0 < a <= b)]
+    else:
+        wanted = np.zeros(13, dtype=np.int64)
+        conditions.function(a, b, wanted)
+        conditions_of = wanted
+    found = np.zeros(13, dtype=np.int64)
+    conditions(a, b, found)
+    assert np.array_equal(found[: len(conditions_of)], conditions_of)
+
+
+@routine("in", "i")
+def loops(n, result):
+    """Loops that end early, go down, count in steps and are nested."""
+    total = count = 0
+    for i in range(n):
+        if i % 2 == 0:
+            continue
+        for j in range(i, 0, -2):
+            if j == 5:
+                break
+            total += j
+        if total > 60:
+            result[0] = i
+            return total
+    while True:
+        count += 1
+        if count * count > n:
+            break
+    for i in range(3, n, 4):
+        total -= i
+        n -= 1
+    result[0], result[1] = count, n
+    if n < 4:
+        return -1
+    elif n < 6:
+        total = 0
+    else:
+        pass
+    return total
+
+
+@pytest.mark.parametrize("n", range(24))
+def test_loops_are_those_of_python(n):
+    found, wanted = np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
+    assert loops(n, found) == loops.function(n, wanted)
+    assert np.array_equal(found, wanted)
+
+
+@inlined
+def swapped(a, b):
+    if a > b:
+        return b, a
+    return a, b
+
+
+@inlined
+def set_all(values, count, value):
+    for i in range(count):
+        values[i] = value
+
+
+FACTOR = 2.5
+
+
+@routine("nrd", "d")
+def calls(table, values, x):
+    """Calls by address and in place, memory of its own, names that begin anew with another kind."""
+    a, b = swapped(values[0], values[1])
+    set_all(values, 2, x)
+    values[2], values[3] = a, b
+    own = room(3)
+    for i in range(3):
+        own[i] = FACTOR * i
+    values, first = at(values, 4), values
+    values[0] = own[1] + own[2] + first[2]
+    x = wholes(table[1])
+    x[0] += 4
+    return add(table[0], x[0], reals(table[2]))
+
+
+@routine("ir", "d")
+def added(n, values):
+    total = 0.0
+    for i in range(n):
+        total += values[i]
+    return total
+
+
+add = caller("ir", "d")
+
+
+def test_calls_by_address_and_in_place():
+    count, numbers, values = np.array([-1]), np.array([1.0, 10.0, 100.0]), np.array([7.0, 3.0, 0.0, 0.0, 0.0])
+    table = np.array([added.address, count.ctypes.data, numbers.ctypes.data])
+    assert calls(table, values, 9.0) == 111.0
+    assert count[0] == 3
+    assert np.array_equal(values, [9.0, 9.0, 3.0, 7.0, 2.5 + 5.0 + 3.0])
+
+
+def unknown_function(n, x):
+    return sorted(x)
+
+
+def not_a_name(n, x):
+    return missing + n  # noqa: F821
+
+
+def kind_in_a_loop(n, x):
+    total = 0
+    for i in range(n):
+        total = total + x[i]
+    return total
+
+
+def number_as_place(n, x):
+    return x[0.5]
+
+
+def entries_of_a_number(n, x):
+    return n[0]
+
+
+def step_of_unknown_size(n, x):
+    for i in range(0, 8, n):
+        x[i] = 0.0
+    return 0
+
+
+def too_few(n, x):
+    a, b, c = n, n
+    return a + b + c
+
+
+def chained(n, x):
+    with x:
+        return n
+
+
+def other_counts(n, x):
+    if n > 0:
+        return n, n
+    return n
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (unknown_function, "sorted.* cannot be called"),
+        (not_a_name, "missing is not known"),
+        (kind_in_a_loop, "total is a whole number and cannot become a number"),
+        (number_as_place, "a number is no place"),
+        (entries_of_a_number, "a whole number has no entries"),
+        (step_of_unknown_size, "the step of a range"),
+        (too_few, "2 values for 3 names"),
+        (chained, "with x: is not known"),
+        (other_counts, "as many values"),
+    ],
+)
+def test_what_is_not_known_is_named_with_its_line(function, words):
+    with pytest.raises(TypeError, match=words) as caught:
+        _ = routine("ir", "i")(function).address
+    assert any(f"{__file__}, line " in note for note in caught.value.__notes__)
+    line = int(caught.value.__notes__[0].rsplit(" ", 1)[1])
+    assert function.__code__.co_firstlineno < line <= function.__code__.co_firstlineno + 3
+
+
+def test_a_function_without_a_text_is_named():
+    space = {"__name__": "somewhere"}
+    exec("def nowhere(n):\n    return n\n", space)
+    with pytest.raises(TypeError, match="the text of nowhere is not in"):
+        _ = routine("i", "i")(space["nowhere"]).address
+
+
+def test_arrays_of_other_numbers_are_refused():
+    with pytest.raises(TypeError, match="contiguous float64, got float32"):
+        added(2, np.ones(2, dtype=np.float32))
+    with pytest.raises(TypeError, match="contiguous float64"):
+        added(2, np.ones((2, 2))[:, 0])

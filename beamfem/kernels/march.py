@@ -70,8 +70,8 @@ def march(system, solver, calls):
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
-    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, from the acceleration of before and then
-    from the positions of before.
+    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, from the acceleration of before or from
+    the positions of before: first from what was nearer in the last step.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
@@ -161,7 +161,8 @@ def march(system, solver, calls):
             if fails:
                 for i in range(4 * n):
                     state[i] = before[i]
-                low = -1.0 * full
+                stays = statistics[6] < 0.0 or statistics[7] == 0.0  # of the first step nothing is known
+                low = -1.0 if stays == (full == 0) else 0.0
                 _predict(call[r.PREDICT], n, held, low, state, before, differences, prescribed_dofs, prescribed, rule)
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)

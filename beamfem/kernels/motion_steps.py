@@ -15,6 +15,7 @@ _REMAINDER = 1e-5
 _NEGLECTED = 1e-8
 MOST = 3  # differences of the acceleration that extrapolate it: more than these pass on noise from step to step
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
+_GROWTH = 2.0  # of corrections with a tangent each: more leads to another motion too
 
 
 @inlined
@@ -102,7 +103,9 @@ def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
                 return 1 if size <= noise[0] else 2
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
-        return 1 if size <= tolerance else 0
+        if size <= tolerance:
+            return 1
+        return -1 if iteration > 1 and size > _GROWTH * last else 0
     small = rate[0] * size <= (1.0 - rate[0]) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
     return 1 if rate[0] < 1.0 and small else 0
 
@@ -112,7 +115,7 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
     """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
 
     inverse_scale (padded(n),): zero beyond n; extrapolation (2,): the order that would have been best, one more than
-    the last one at most, and how many differences are known.
+    the last one at most (see `predict`), and how many differences are known.
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
@@ -143,6 +146,15 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
             error += differences[errors + k * WIDTH + i]
         if error < least:
             order, least = k, error
+    if order == 0:  # unless positions have changed less than the acceleration would have changed them
+        h, beta = rule[0], rule[4]
+        changed = 0.0
+        for i in range(n):
+            moved = (state[i] - before[i]) * inverse_scale[i]
+            changed += moved * moved
+        to_acceleration = 1.0 / (h * h * beta * new)
+        if to_acceleration * to_acceleration * changed < least:
+            order = -1
     extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
     return largest
 

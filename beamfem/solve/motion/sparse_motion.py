@@ -63,15 +63,16 @@ class SparseMotion:
     def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:
         """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate.
 
-        These start from the acceleration of before, and then from the positions of before.
+        These start from the acceleration of before or from the positions of before, first from what was nearer.
         """
         order = float(self.statistics[6])
         kept = self.statistics[4] >= 0.0 and self._factors is not None
         if kept and self._iterate(state, before, held, time, order, full=False, fresh=False):
             return True
         solved = self._iterate(state, before, held, time, order, full=False, fresh=True)
+        near = -1.0 if order < 0.0 or self.statistics[7] == 0.0 else 0.0  # of the first step nothing is known
         return solved or any(
-            self._iterate(state, before, held, time, low, full=True, fresh=True) for low in (0.0, -1.0)
+            self._iterate(state, before, held, time, low, full=True, fresh=True) for low in (near, -1.0 - near)
         )
 
     def _iterate(

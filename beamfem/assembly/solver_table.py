@@ -74,6 +74,8 @@ _OF_STATICS = {
 def _of_motions(own: Band) -> dict[int, Routine]:
     return {
         record.SOLVE_LOWER: own.solve_lower,
+        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
+        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
         record.PREDICT: motion_steps.predict,
         record.COMPLETE: motion_steps.complete,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,

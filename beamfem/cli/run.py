@@ -1,5 +1,6 @@
 """`beamfem run`: solve what a model file describes."""
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -114,6 +115,7 @@ def _result(file: Path, job: "Job", found: "Found", seconds: float, written: lis
         **summary(found.solution),
         "seconds": seconds,
         **found.values,
+        "warnings": list(found.solution.warnings),
         "outputs": outputs,
         "written": written,
     }
@@ -137,6 +139,8 @@ def _print(result: dict[str, Any]) -> None:
         for critical in ("limit_points", "bifurcations"):
             if output.get(critical):
                 print_table(f"{output['name']}, at {critical.replace('_', ' ')}", output[critical])
+    for warning in result["warnings"]:
+        print(f"warning: {warning}", file=sys.stderr)
     if result["written"]:
         print()
     for path in result["written"]:

@@ -14,6 +14,7 @@ _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
 _predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", "d")
 _count, _all = caller("inrrr"), caller("iiii")
 _keep = caller("iir")
+_two, _jacobian = caller("ii"), caller("i", "d")
 _correct, _judge = inlined(motion_steps.correct), inlined(motion_steps.judge)
 
 
@@ -58,6 +59,30 @@ def _solve_turned(s, b, call):
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
 
 
+@inlined
+def _predict_resultants(s, b, call, system):
+    """Keep the resultants that a correction leads to, for the geometric part of the next tangent."""
+    groups, free, right, step = wholes(s[r.GROUP_RECORDS]), wholes(b[r.FREE_DOFS]), reals(b[r.RIGHT]), b[r.STEP]
+    change, velocity = reals(step), s[r.COORDINATES_V]
+    for i in range(s[r.SIZE]):
+        change[i] = 0.0
+    for i in range(b[r.UNKNOWN]):
+        change[free[i]] = right[i]
+    s[r.COORDINATES_V] = step
+    for group in range(s[r.GROUPS]):
+        _two(call[r.PREDICT_RESULTANTS], groups[group], system)
+    s[r.COORDINATES_V] = velocity
+
+
+@inlined
+def _is_inside_out(s, call):
+    """Tell whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
+    groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
+    for group in range(s[r.GROUPS]):
+        smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
+    return not smallest > 0.0
+
+
 @routine("iii", "i")
 def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.
@@ -70,8 +95,9 @@ def march(system, solver, calls):
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
-    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, from the acceleration of before or from
-    the positions of before: first from what was nearer in the last step.
+    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, with independent stresses (see
+    `model_passes.predict_resultants`), from the acceleration of before or from the positions of before: first from what
+    was nearer in the last step.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
@@ -125,7 +151,7 @@ def march(system, solver, calls):
         rate[0] = max(statistics[4], 1e-4) ** 0.8 if not fresh else 1.0
         while iteration < limits[1]:
             renew = full != 0 or fresh
-            s[r.TANGENT] = 1 if renew else 0
+            s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
             _balance(call[r.BALANCE], system)
             if renew:
                 if b[r.ROLLERS] > 0:
@@ -138,6 +164,8 @@ def march(system, solver, calls):
             if iteration == 0 or renew:
                 _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
             _solve_turned(s, b, call)
+            if full != 0:
+                _predict_resultants(s, b, call, system)
             last, size = size, _correct(n, unknown, state, right, free, scale, factors)
             iteration += 1
             statistics[0] += 1.0
@@ -146,6 +174,8 @@ def march(system, solver, calls):
                 first_size = max(size, statistics[8])
             own = 1 if renew else 0
             done = _judge(iteration, full, own, size, last, first_size, limits[0], rate, at(statistics, 9))
+            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call):
+                done = -1
             fresh = done == 2
             if done == 1:
                 break

@@ -13,6 +13,7 @@ _REMAINDER = 1e-5
 # Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
 # behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
 _NEGLECTED = 1e-8
+FAR = 0.01  # of the model: after such a correction it is asked whether elements are inside out
 MOST = 3  # differences of the acceleration that extrapolate it: more than these pass on noise from step to step
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
 _GROWTH = 2.0  # of corrections with a tangent each: more leads to another motion too
@@ -146,14 +147,14 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
             error += differences[errors + k * WIDTH + i]
         if error < least:
             order, least = k, error
-    if order == 0:  # unless positions have changed less than the acceleration would have changed them
+    if order == 0:  # unless positions have changed by half or less of what the acceleration would have moved them
         h, beta = rule[0], rule[4]
         changed = 0.0
         for i in range(n):
             moved = (state[i] - before[i]) * inverse_scale[i]
             changed += moved * moved
         to_acceleration = 1.0 / (h * h * beta * new)
-        if to_acceleration * to_acceleration * changed < least:
+        if 4.0 * to_acceleration * to_acceleration * changed < least:
             order = -1
     extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
     return largest

@@ -12,6 +12,7 @@ from beamfem.results.turns import start_rotations
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
+_MUCH = 0.1  # of the energy that a motion exchanges: its numbers are not those of the beam then
 _ROWS = 100  # at which energies are looked at, for what they are measured by
 
 
@@ -46,6 +47,17 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
     energy = some.energy()
     total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
     return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
+
+
+def drift_warnings(solution: "Solution") -> tuple[str, ...]:
+    """Return what to know of a motion whose energy rises though nothing adds any."""
+    drift = solution.energy_drift
+    if drift is None or not drift.change > _MUCH * drift.exchanged:
+        return ()
+    return (
+        f"the energy rises by {drift.change:.3g} J, where {drift.exchanged:.3g} J are exchanged at most, though nothing "
+        "drives the motion: its steps are too long for what rings in it. Take shorter ones",
+    )
 
 
 def _conservative(solution: "Solution") -> bool:

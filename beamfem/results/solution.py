@@ -22,7 +22,7 @@ from beamfem.results.beam_stress import BeamStress, beam_stress
 from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.drawing_options import FilmOptions, PageOptions, PictureOptions, ShapeOptions, WindowOptions
 from beamfem.results.energies import Energy, potential
-from beamfem.results.energy_drift import EnergyDrift, energy_drift
+from beamfem.results.energy_drift import EnergyDrift, drift_warnings, energy_drift
 from beamfem.results.fitting import require_rows, require_state
 from beamfem.results.imposed import imposed_measures
 from beamfem.results.last_digits import remainders
@@ -131,7 +131,7 @@ class Solution:
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what to know before using the numbers, of locking too; empty where there is nothing to say."""
-        return (*self.statistics.warnings, *locking_warnings(self))
+        return (*self.statistics.warnings, *locking_warnings(self), *drift_warnings(self))
 
     @cached_property
     def stable(self) -> np.ndarray:

@@ -49,7 +49,7 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     if len(solution):
         name, value = largest_displacement(solution)
         rows.append((name, value))
-    return rows
+    return rows + [("warning", sentence) for sentence in solution.warnings]
 
 
 def largest_displacement(solution: "Solution") -> tuple[str, str]:

@@ -25,7 +25,7 @@ class BandMotion:
         h, alpha_m, alpha_f, gamma, beta = rule
         space.arrays[record.RULE][:], space.arrays[record.LIMITS][:] = rule, limits
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
-        space.assembler.require("tangent")
+        space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
 
     def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:

@@ -6,9 +6,18 @@ A step is solved to the same tolerances. Only a factorisation is kept longer, fo
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.equations import linearise, residual
+from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
-from beamfem.kernels.motion_steps import complete, correct, count_turns, difference_rows, judge, padded, predict
+from beamfem.kernels.motion_steps import (
+    FAR,
+    complete,
+    correct,
+    count_turns,
+    difference_rows,
+    judge,
+    padded,
+    predict,
+)
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
 
@@ -93,6 +102,7 @@ class SparseMotion:
         free = self.system.free_dofs
         rate = 1.0 if fresh else max(statistics[4], 1e-4) ** 0.8
         size, first_size, done, iteration = 0.0, 0.0, False, 0
+        stresses: tuple[np.ndarray, ...] | None = None
         state[:] = before
         dofs = self.system.prescribed_dofs
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
@@ -100,9 +110,13 @@ class SparseMotion:
         while iteration < most and not done:
             own = fresh or full or self._factors is None
             try:
-                right = self._correction(state, time, own)
+                right = self._correction(state, time, own, stresses)
             except LinAlgError:
                 break
+            if full:
+                step = np.zeros(self._size)
+                step[free] = right
+                stresses = predicted_stresses(self.system, state[0], step, time)
             scale = self._inverse_scale
             last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
             state[1:, self._multipliers] = 0.0  # they have no rates
@@ -115,6 +129,12 @@ class SparseMotion:
             judged = judge(
                 *(iteration, int(full), int(own), size, last, first_size, self.tolerance, self._number, statistics[9:])
             )
+            if (
+                judged == 1
+                and (full or first_size > FAR)
+                and not self.system.assembler().smallest_jacobian(state[0]) > 0.0
+            ):
+                judged = -1  # inside out: no motion leads there
             done, fresh, rate = judged == 1, judged == 2, float(self._number[0])
             if not fresh and (judged < 0 or (not full and iteration > 1 and rate >= 0.5)):
                 break
@@ -122,12 +142,17 @@ class SparseMotion:
         statistics[4] = -1.0 if not done or iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate
         return done
 
-    def _correction(self, state: np.ndarray, time: float, renew: bool) -> np.ndarray:
-        """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError."""
+    def _correction(
+        self, state: np.ndarray, time: float, renew: bool, stresses: tuple[np.ndarray, ...] | None
+    ) -> np.ndarray:
+        """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError.
+
+        stresses: of a new tangent, see `linearise`.
+        """
         p, v, a, _ = state
         if renew or self._factors is None:
             self._factors = None  # room for the new ones
-            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients)
+            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1
         else:

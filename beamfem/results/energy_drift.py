@@ -55,8 +55,8 @@ def drift_warnings(solution: "Solution") -> tuple[str, ...]:
     if drift is None or not drift.change > _MUCH * drift.exchanged:
         return ()
     return (
-        f"the energy rises by {drift.change:.3g} J, where {drift.exchanged:.3g} J are exchanged at most, though nothing "
-        "drives the motion: its steps are too long for what rings in it. Take shorter ones",
+        f"the energy rises by {drift.change:.3g} J, where {drift.exchanged:.3g} J are exchanged at most, though "
+        "nothing drives the motion: its steps are too long for what rings in it. Take shorter ones",
     )
 
 

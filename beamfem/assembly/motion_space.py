@@ -29,6 +29,7 @@ class MotionSpace:
                 record.ROWS: (unknown, 2 * half + 1),
                 record.RIGHT: (unknown,),
                 record.STEP: (max(size, unknown) + 1,),
+                record.CHANGE: (padded(size),),
                 record.BEFORE: (4, size),
                 record.DIFFERENCES: (difference_rows(size),),
                 record.INVERSE_SCALE: (padded(size),),

@@ -10,9 +10,11 @@ from llvmlite import ir
 
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.kinds import LANES, ROWS, WIDTH, Value
+from beamfem.kernels.compiler.kinds import LANES, NUMBER, ROWS, WHOLE, WIDTH, Value
 
-__all__ = ["WIDTH", "as_rows", "gathered", "merged", "zeros"]
+__all__ = ["WIDTH", "as_rows", "gathered", "larger", "largest", "merged", "zeros"]
+
+_BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 
 
 @operation
@@ -25,6 +27,25 @@ def as_rows(build: Build, pointer: Value) -> Value:
 def zeros(build: Build) -> Value:
     """Return lanes that are all zero."""
     return Value(LANES, ir.Constant(LANES.llvm, None))
+
+
+@operation
+def larger(build: Build, a: Value, b: Value) -> Value:
+    """Return the size of the larger of two, lane by lane; what is no number is larger than all."""
+    # sizes are ordered as their bits are, and the bits of what is no number come after those of infinity
+    sizes = [build.call(f"llvm.fabs.v{WIDTH}f64", Value(LANES, build.converted(each, LANES))).llvm for each in (a, b)]
+    bits = [build.builder.bitcast(size, _BITS) for size in sizes]
+    return Value(LANES, build.builder.select(build.builder.icmp_signed(">", *bits), *sizes))
+
+
+@operation
+def largest(build: Build, value: Value) -> Value:
+    """Return the largest of lanes that are not negative, or what is no number."""
+    name = f"llvm.vector.reduce.smax.v{WIDTH}i64"
+    functions, kind = build.builder.module.globals, ir.FunctionType(WHOLE.llvm, [_BITS])
+    reduce = functions.get(name) or ir.Function(build.builder.module, kind, name)
+    found = build.builder.call(reduce, [build.builder.bitcast(value.llvm, _BITS)])
+    return Value(NUMBER, build.builder.bitcast(found, NUMBER.llvm))
 
 
 @operation

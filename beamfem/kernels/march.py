@@ -62,13 +62,11 @@ def _solve_turned(s, b, call):
 @inlined
 def _predict_resultants(s, b, call, system):
     """Keep the resultants that a correction leads to, for the geometric part of the next tangent."""
-    groups, free, right, step = wholes(s[r.GROUP_RECORDS]), wholes(b[r.FREE_DOFS]), reals(b[r.RIGHT]), b[r.STEP]
-    change, velocity = reals(step), s[r.COORDINATES_V]
-    for i in range(s[r.SIZE]):
-        change[i] = 0.0
+    groups, free, right = wholes(s[r.GROUP_RECORDS]), wholes(b[r.FREE_DOFS]), reals(b[r.RIGHT])
+    change, velocity = reals(b[r.CHANGE]), s[r.COORDINATES_V]
     for i in range(b[r.UNKNOWN]):
         change[free[i]] = right[i]
-    s[r.COORDINATES_V] = step
+    s[r.COORDINATES_V] = b[r.CHANGE]
     for group in range(s[r.GROUPS]):
         _two(call[r.PREDICT_RESULTANTS], groups[group], system)
     s[r.COORDINATES_V] = velocity
@@ -128,7 +126,8 @@ def march(system, solver, calls):
         wholes(b[r.LOAD_VALUES]),
         wholes(b[r.NATURALS]),
     )
-    saved, every, turned_by, saved_turns = (
+    corrections, saved, every, turned_by, saved_turns = (
+        reals(b[r.CHANGE]),
         reals(b[r.SAVED]),
         b[r.EVERY],
         reals(b[r.TURNED_BY]),
@@ -166,7 +165,7 @@ def march(system, solver, calls):
             _solve_turned(s, b, call)
             if full != 0:
                 _predict_resultants(s, b, call, system)
-            last, size = size, _correct(n, unknown, state, right, free, scale, factors)
+            last, size = size, _correct(n, unknown, state, right, free, scale, factors, corrections)
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size

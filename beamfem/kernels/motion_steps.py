@@ -3,7 +3,7 @@
 import math
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
@@ -67,20 +67,23 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
             state[k * n + dofs[i]] = values[k * prescribed + i]
 
 
-@routine("iirrnrr", "d", fastmath=FAST)
-def correct(n, unknown, state, right, free, inverse_scale, coefficients):
-    """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale."""
-    largest = 0.0
+@routine("iirrnrrr", "d", fastmath=FAST)
+def correct(n, unknown, state, right, free, inverse_scale, coefficients, change):
+    """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale.
+
+    change (padded(n),): takes the corrections, zero elsewhere.
+    """
     to_velocity, to_acceleration = coefficients[1], coefficients[2]
     for i in range(unknown):
-        dof, change = free[i], right[i]
-        state[dof] += change
-        state[n + dof] += to_velocity * change
-        state[2 * n + dof] += to_acceleration * change
-        size = abs(change) * inverse_scale[dof]
-        if not size <= largest:
-            largest = size
-    return largest
+        change[free[i]] = right[i]
+    for i in range(n):
+        state[i] += change[i]
+        state[n + i] += to_velocity * change[i]
+        state[2 * n + i] += to_acceleration * change[i]
+    lanes, weight, size = as_rows(change), as_rows(inverse_scale), zeros()
+    for i in range(0, n, WIDTH):
+        size = larger(size, lanes[i] * weight[i])
+    return largest(size)
 
 
 @routine("iiiddddrr", "i")
@@ -120,21 +123,19 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    largest = 0.0
     for i in range(n):
-        a, a0 = state[2 * n + i], before[2 * n + i]
-        state[3 * n + i] = new * a + old * a0 - mean * before[3 * n + i]
-        largest = max(largest, abs(a - a0) * inverse_scale[i])
+        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
     for i in range(prescribed):
         state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
     top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
     length = padded(n)
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
-    errors = (MOST + 1) * length
+    errors, first = (MOST + 1) * length, zeros()
     for k in range(top + 1):
         lanes[errors + k * WIDTH] = 0.0
     for i in range(0, n, WIDTH):
         change, own = now[2 * n + i] - then[2 * n + i], weight[i]
+        first = larger(first, change * own)
         for k in range(top + 1):
             size, kept = change * own, lanes[k * length + i]
             lanes[errors + k * WIDTH] += size * size
@@ -157,7 +158,7 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
         if 4.0 * to_acceleration * to_acceleration * changed < least:
             order = -1
     extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
-    return largest
+    return largest(first)
 
 
 @routine("inrrr")

@@ -193,7 +193,8 @@ SAVED_TURNS = 38
 LINEAR = 39  # address (n,)
 NATURALS = 40  # address of addresses, of each group (steps or 1, elements, points, measures), 0 where there are none
 NATURALS_VARY = 41
-SOLVER_FIELDS = 42
+CHANGE = 42  # address (padded(n),): corrections, zero where there are none
+SOLVER_FIELDS = 43
 
 (
     BALANCE,

@@ -43,6 +43,7 @@ class SparseMotion:
         self._inverse_scale = np.zeros(padded(size))
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(1)
+        self._change = np.zeros(padded(size))
         self._multipliers = system.connectors.multipliers
         self._factors: Factorised | None = None
 
@@ -114,11 +115,10 @@ class SparseMotion:
             except LinAlgError:
                 break
             if full:
-                step = np.zeros(self._size)
-                step[free] = right
-                stresses = predicted_stresses(self.system, state[0], step, time)
+                self._change[free] = right
+                stresses = predicted_stresses(self.system, state[0], self._change[: self._size], time)
             scale = self._inverse_scale
-            last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights)
+            last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights, self._change)
             state[1:, self._multipliers] = 0.0  # they have no rates
             iteration += 1
             statistics[0] += 1

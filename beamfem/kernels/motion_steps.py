@@ -76,13 +76,19 @@ def correct(n, unknown, state, right, free, inverse_scale, coefficients, change)
     to_velocity, to_acceleration = coefficients[1], coefficients[2]
     for i in range(unknown):
         change[free[i]] = right[i]
-    for i in range(n):
+    lanes, weight, rows, size = as_rows(change), as_rows(inverse_scale), as_rows(state), zeros()
+    for i in range(0, n, WIDTH):
+        size = larger(size, lanes[i] * weight[i])
+    whole = n // WIDTH * WIDTH
+    for i in range(0, whole, WIDTH):
+        by = lanes[i]
+        rows[i] += by
+        rows[n + i] += to_velocity * by
+        rows[2 * n + i] += to_acceleration * by
+    for i in range(whole, n):
         state[i] += change[i]
         state[n + i] += to_velocity * change[i]
         state[2 * n + i] += to_acceleration * change[i]
-    lanes, weight, size = as_rows(change), as_rows(inverse_scale), zeros()
-    for i in range(0, n, WIDTH):
-        size = larger(size, lanes[i] * weight[i])
     return largest(size)
 
 

@@ -151,6 +151,14 @@ def added(n, values):
 add = caller("ir", "d")
 
 
+def test_arguments_that_are_fixed_are_not_asked_for():
+    numbers = np.array([1.0, 10.0, 100.0])
+    two = added.fixed(n=2, others=5)
+    assert two is added.fixed(n=2)
+    assert (two(3, numbers), added(3, numbers)) == (11.0, 111.0)
+    assert added.fixed(others=5) is added
+
+
 def test_calls_by_address_and_in_place():
     count, numbers, values = np.array([-1]), np.array([1.0, 10.0, 100.0]), np.array([7.0, 3.0, 0.0, 0.0, 0.0])
     table = np.array([added.address, count.ctypes.data, numbers.ctypes.data])

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 import beamfem
-from beamfem.kernels import cache, compiling
+from beamfem.kernels import cache, compiling, inertia
 from beamfem.kernels.band import band
+from beamfem.kernels.two_sided import two_sided
 
 KERNELS = Path(beamfem.__file__).parent / "kernels"
 PLAIN = set(sys.stdlib_module_names) | {"numpy", "llvmlite", "platformdirs"}
@@ -156,8 +157,12 @@ def test_no_two_kernels_share_a_name():
     """Machine code on disk is found by name. The functions of a band had one name for all half widths: of two processes
     that compiled different ones at once, one wrote its code in the place that the index of the other named, and models
     got the factors of another width."""
+    found = {routine.name for half_width in range(20) for routine in band(half_width)}
     for half_width in range(20):
-        band(half_width)
+        found |= {routine.name for short in (True, False) for routine in two_sided(half_width, short)}
+    assert len(found) == 3 * 7 + 2 * (7 + 6)
+    for nodes in (2, 3):
+        inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]
-    assert len({name for name in names if ".band." in name}) == 3 * 7
+    assert {f"beamfem.kernels.inertia.add_inertia_nodes_{nodes}_vectors_2" for nodes in (2, 3)} <= set(names)
     assert len(set(names)) == len(names)

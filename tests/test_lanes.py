@@ -7,7 +7,7 @@ import pytest
 
 from beamfem.kernels import nodes
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, merged, zeros
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import ROW
 
@@ -62,12 +62,34 @@ def test_lanes_of_others_stay_as_they_are(count, rng):
     assert np.array_equal(to[count:], before[count:])
 
 
-@pytest.mark.parametrize("largest", [1.0, 10.0, 1e3, 1e6])
-def test_sections_turn_by_any_angle(largest, rng):
+@routine("iv", "d")
+def size(count, x):
+    """Return the largest size of numbers."""
+    found = zeros()
+    for i in range(0, count, WIDTH):
+        found = larger(x[i], found)
+    return largest(found)
+
+
+@pytest.mark.parametrize("count", [WIDTH, 3 * WIDTH])
+def test_the_largest_size_is_that_of_numpy_and_what_is_no_number_is_larger(count, rng):
+    x = rows(1)[0]
+    x[:count] = rng.standard_normal(count)
+    assert size(count, x) == np.abs(x[:count]).max()
+    for place in range(count):
+        for special in (np.inf, -np.inf, np.nan, -np.nan):
+            y = x.copy()
+            y[place] = special
+            assert np.isnan(size(count, y)) if np.isnan(special) else size(count, y) == np.inf
+    assert size(WIDTH, np.zeros(ROW)) == 0.0
+
+
+@pytest.mark.parametrize("most", [1.0, 10.0, 1e3, 1e6])
+def test_sections_turn_by_any_angle(most, rng):
     """Cosine and sine in all quarters, of multiples of a right angle and of angles beside them, to the last digits."""
     near = 0.5 * np.pi * np.arange(-4, 5)
     angle, frame, result = rows(1), rows(3), rows(3)
-    given = np.concatenate([near, near + 1e-9, near - 1e-9, rng.uniform(-largest, largest, 29)])
+    given = np.concatenate([near, near + 1e-9, near - 1e-9, rng.uniform(-most, most, 29)])
     angle[0, : given.size], frame[:, : given.size] = given, [[1.0], [0.0], [2.5]]
     nodes.turn(given.size, angle, frame[0], frame[1], frame[2], result)
     for found, wanted in zip(result, (np.cos(given), np.sin(given), 2.5), strict=True):

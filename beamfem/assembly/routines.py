@@ -86,14 +86,17 @@ _PASSES: dict[str, dict[int, str]] = {
 # what kinds of nodes add to a task: the number of their pass
 _OF_KINDS = {"forces": ("place", 0), "mass": ("convect", 1), "tangent": ("curve", 2)}
 
+Sizes = tuple[tuple[str, int], ...]  # arguments of kernels by their names
+
 
 class Routines:
     """A table of addresses for a strain measure; entries are filled when a task first needs them.
 
-    law: address of what takes the place of the linear law, if anything does.
+    law: address of what takes the place of the linear law, if anything does; sizes: what the compiler knows of them.
     """
 
-    def __init__(self, measures: int, law: int = 0) -> None:
+    def __init__(self, measures: int, sizes: Sizes, law: int = 0) -> None:
+        self._sizes = dict(sizes)
         self.addresses = np.zeros(record.ROUTINE_COUNT, dtype=np.int64)
         self._measures, self._law, self._ready = measures, law, set[tuple[str, int]]()
 
@@ -117,10 +120,10 @@ class Routines:
             name, step = _OF_KINDS[task]
             found[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
         for number, routine in found.items():
-            self.addresses[number] = routine.address
+            self.addresses[number] = routine.fixed(**self._sizes).address
 
 
 @cache
-def routines(measures: int) -> Routines:
-    """Return the table for a strain measure, given by its number in `physics.measures.MEASURES`."""
-    return Routines(measures)
+def routines(measures: int, sizes: Sizes) -> Routines:
+    """Return the table for a strain measure, given by its number in `physics.measures.MEASURES`, and some sizes."""
+    return Routines(measures, sizes)

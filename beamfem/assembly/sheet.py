@@ -157,7 +157,10 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
 
 
 def _routines(block: Block) -> Routines:
-    return routines(block.measures) if block.law is None else Routines(block.measures, block.law.address)
+    nodes = block.node.shape[1]
+    vectors, bends = block.scale.shape[1] // nodes, int(block.measures == ELASTIC_LINE)
+    sizes = (("nodes", nodes), ("vectors", vectors), ("bends", bends))
+    return routines(block.measures, sizes) if block.law is None else Routines(block.measures, sizes, block.law.address)
 
 
 def _needs(

@@ -9,6 +9,7 @@ from beamfem.kernels import march, model_passes, motion_steps, newton, record, r
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
+from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
 
 
 class SolverTable:
@@ -42,38 +43,39 @@ class SolverTable:
 
     def routines(self, moving: bool) -> np.ndarray:
         """Return the addresses of what the driver of statics, or of motions, calls."""
-        return _driver_routines(self.half_width, moving)
+        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT)
 
 
 @cache
-def _driver_routines(half_width: int, moving: bool) -> np.ndarray:
+def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
     """Return the addresses of what the driver of statics, or of motions, calls for a band of this half width."""
-    own = band(half_width)
     found = {
         record.BALANCE: model_passes.balance,
-        record.FACTOR: own.factor,
-        record.SOLVE_UPPER: own.solve_upper,
         record.HOLD_NORMALS: rollers.hold_normals,
         record.ROTATE_IN: rollers.rotate_in,
         record.ROTATE_BACK: rollers.rotate_back,
     }
-    found |= _of_motions(own) if moving else _OF_STATICS
+    found |= _of_motions(two_sided(half_width, short)) if moving else _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
     for number, routine in found.items():
         table[number] = routine.address
     return table
 
 
-_OF_STATICS = {
-    record.PREDICT_RESULTANTS: model_passes.predict_resultants,
-    record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
-    record.TAKE_STEP: newton.take_step,
-}
-
-
-def _of_motions(own: Band) -> dict[int, Routine]:
+def _of_statics(own: Band) -> dict[int, Routine]:
     return {
-        record.SOLVE_LOWER: own.solve_lower,
+        record.FACTOR: own.factor,
+        record.SOLVE_UPPER: own.solve_upper,
+        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
+        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
+        record.TAKE_STEP: newton.take_step,
+    }
+
+
+def _of_motions(own: TwoSided) -> dict[int, Routine]:
+    return {
+        record.FACTOR_BOTH: own.factor,
+        record.SOLVE_BOTH: own.solve,
         record.PREDICT_RESULTANTS: model_passes.predict_resultants,
         record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
         record.PREDICT: motion_steps.predict,

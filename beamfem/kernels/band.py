@@ -16,7 +16,7 @@ from beamfem.kernels.compiling import Routine, routine
 from beamfem.kernels.pointers import at, room
 
 FAST = {"contract", "reassoc", "nsz"}
-_KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
+KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
 
 
 class Band(NamedTuple):
@@ -33,11 +33,11 @@ class Band(NamedTuple):
 
 def band(half_width: int) -> Band:
     """Return the compiled functions for a half width: of its own where it is a usual one."""
-    return _band(half_width if half_width in _KNOWN else 0)
+    return _band(half_width if half_width in KNOWN else 0)
 
 
 @operation
-def _push(build: Build, window: Value, count: Value, value: Value) -> None:
+def push(build: Build, window: Value, count: Value, value: Value) -> None:
     """Move the numbers of a window one place down, and put a value at its end."""
     places = [build.place(window, Value(WHOLE, WHOLE.llvm(place))) for place in range(count.llvm.constant)]
     for to, source in pairwise(places):
@@ -49,6 +49,13 @@ def _push(build: Build, window: Value, count: Value, value: Value) -> None:
 def _band(known: int) -> Band:
     """Return functions that know a half width; 0: any."""
     case = f"half_width_{known or 'any'}"
+    solves = _solves(known, case) if known else (_solve_lower, _solve_upper)
+    return Band(elimination(known, case, backwards=False), *solves)
+
+
+def elimination(known: int, case: str, backwards: bool) -> Routine:
+    """Return the factorisation for a half width, 0: any; backwards: from the last row to the first."""
+    way = -1 if backwards else 1
 
     @routine("iiiirrr", "d", case, fastmath=FAST)
     def factor(n, count, half, eliminates, ab, right, original):
@@ -56,74 +63,75 @@ def _band(known: int) -> Band:
 
         The diagonal holds the inverse pivots then. right (n,): eliminated on the way, `solve_upper` does the rest.
         original (count,): space; so many pivots are taken, and the rows below keep what is left of the matrix, their
-        Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often.
+        Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab and
+        right are the last entries, and rows the last ones first.
         """
         w = known if known != 0 else half
         width, worst = 2 * w + 1, 1.0
         for i in range(min(count, w)):
-            original[i] = abs(ab[i * width + w])
+            original[i] = abs(ab[way * (i * width + w)])
         for k in range(0, count, 2):
-            top = at(ab, k * width)
+            top = at(ab, way * k * width)
             if k + w < count:
-                original[k + w] = abs(ab[(k + w) * width + w])
-            if top[w] == 0.0 or original[k] == 0.0:
+                original[k + w] = abs(ab[way * ((k + w) * width + w)])
+            if top[way * w] == 0.0 or original[k] == 0.0:
                 return 0.0
-            worst = min(worst, abs(top[w]) / original[k])
-            inverse = 1.0 / top[w]
-            top[w] = inverse
+            worst = min(worst, abs(top[way * w]) / original[k])
+            inverse = 1.0 / top[way * w]
+            top[way * w] = inverse
             if k + 1 == count:
                 for i in range(k + 1, min(n, k + w + 1)):
-                    row = at(ab, i * width + w + k - i)
+                    row = at(ab, way * (i * width + w + k - i))
                     first = row[0] * inverse
                     row[0] = first
                     for j in range(1, w + 1):
-                        row[j] -= first * top[w + j]
+                        row[way * j] -= first * top[way * (w + j)]
                     if eliminates != 0:
-                        right[i] -= first * right[k]
+                        right[way * i] -= first * right[way * k]
                 for j in range(1, w + 1):
-                    top[w + j] *= inverse
+                    top[way * (w + j)] *= inverse
                 break
-            below = at(ab, (k + 1) * width)
+            below = at(ab, way * (k + 1) * width)
             if k + 1 + w < count:
-                original[k + 1 + w] = abs(ab[(k + 1 + w) * width + w])
-            first = below[w - 1] * inverse
-            below[w - 1] = first
+                original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
+            first = below[way * (w - 1)] * inverse
+            below[way * (w - 1)] = first
             for j in range(1, w + 1):
-                below[w - 1 + j] -= first * top[w + j]
-            if below[w] == 0.0 or original[k + 1] == 0.0:
+                below[way * (w - 1 + j)] -= first * top[way * (w + j)]
+            if below[way * w] == 0.0 or original[k + 1] == 0.0:
                 return 0.0
-            worst = min(worst, abs(below[w]) / original[k + 1])
-            inverse_below = 1.0 / below[w]
-            below[w] = inverse_below
+            worst = min(worst, abs(below[way * w]) / original[k + 1])
+            inverse_below = 1.0 / below[way * w]
+            below[way * w] = inverse_below
             upper, lower = 0.0, 0.0
             if eliminates != 0:
-                right[k + 1] -= first * right[k]
-                upper, lower = right[k], right[k + 1]
-            beside = top[w + 1]
+                right[way * (k + 1)] -= first * right[way * k]
+                upper, lower = right[way * k], right[way * (k + 1)]
+            beside = top[way * (w + 1)]
             for i in range(k + 2, min(n, k + w + 1)):
-                row = at(ab, i * width + w + k - i)
+                row = at(ab, way * (i * width + w + k - i))
                 first = row[0] * inverse
-                second = (row[1] - first * beside) * inverse_below
-                row[0], row[1] = first, second
+                second = (row[way] - first * beside) * inverse_below
+                row[0], row[way] = first, second
                 for j in range(2, w + 1):
-                    row[j] -= first * top[w + j] + second * below[w + j - 1]
-                row[w + 1] -= second * below[2 * w]
+                    row[way * j] -= first * top[way * (w + j)] + second * below[way * (w + j - 1)]
+                row[way * (w + 1)] -= second * below[way * 2 * w]
                 if eliminates != 0:
-                    right[i] -= first * upper + second * lower
+                    right[way * i] -= first * upper + second * lower
             if k + w + 1 < n:
-                row = at(ab, (k + w + 1) * width)
+                row = at(ab, way * (k + w + 1) * width)
                 second = row[0] * inverse_below
                 row[0] = second
                 for j in range(1, w + 1):
-                    row[j] -= second * below[w + j]
+                    row[way * j] -= second * below[way * (w + j)]
                 if eliminates != 0:
-                    right[k + w + 1] -= second * lower
+                    right[way * (k + w + 1)] -= second * lower
             for j in range(1, w + 1):
-                top[w + j] *= inverse
-                below[w + j] *= inverse_below
+                top[way * (w + j)] *= inverse
+                below[way * (w + j)] *= inverse_below
         return worst
 
-    return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
+    return factor
 
 
 def _solves(known: int, case: str) -> tuple[Routine, Routine]:
@@ -137,7 +145,7 @@ def _solves(known: int, case: str) -> tuple[Routine, Routine]:
             row, total = at(lu, i * (2 * known + 1)), x[i]
             for j in range(known):
                 total -= row[j] * last[j]
-            _push(last, known, total)
+            push(last, known, total)
             x[i] = total
 
     @routine("iiirr", case=case, fastmath={"contract"})
@@ -147,13 +155,13 @@ def _solves(known: int, case: str) -> tuple[Routine, Routine]:
         for j in range(known):
             last[j] = 0.0
         for i in range(n - 1, rows - 1, -1):
-            _push(last, known, x[i])
+            push(last, known, x[i])
         for i in range(rows - 1, -1, -1):
             row = at(lu, i * (2 * known + 1))
             total = x[i] * row[known]
             for j in range(known):
                 total -= row[2 * known - j] * last[j]
-            _push(last, known, total)
+            push(last, known, total)
             x[i] = total
 
     return solve_lower, solve_upper

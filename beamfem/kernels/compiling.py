@@ -31,20 +31,38 @@ class Routine:
     Machine code is kept on disk where a folder can be written; where none can, or the disk is full, it is compiled for
     each process. kinds: one letter an argument, see `compiler.kinds.KINDS`; returns: "i" a whole number, "d" a number;
     seconds: CPU time of compiling or loading it; compiled_here: whether this process had to compile it, and did not
-    find it on disk; made: all there are in this process.
+    find it on disk; made: all there are in this process; fixed: arguments that the compiler knows, whatever is passed.
     """
 
     made: ClassVar[list["Routine"]] = []
 
-    def __init__(self, function: Callable[..., Any], kinds: str, returns: str, fastmath: Iterable[str]) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        kinds: str,
+        returns: str,
+        fastmath: Iterable[str],
+        fixed: tuple[tuple[str, int], ...] = (),
+    ) -> None:
         self.function, self.kinds, self.returns, self.fastmath = function, kinds, returns, tuple(sorted(fastmath))
+        self._fixed, self._others = fixed, dict[tuple[tuple[str, int], ...], Routine]()
         self.__doc__, self.__module__ = function.__doc__, function.__module__
         self.seconds, self.compiled_here = 0.0, False
         self.made.append(self)
 
     @property
     def name(self) -> str:
-        return f"{self.__module__}.{self.function.__name__}"
+        return "_".join([f"{self.__module__}.{self.function.__name__}", *(f"{n}_{v}" for n, v in self._fixed)])
+
+    def fixed(self, **values: int) -> "Routine":
+        """Return the routine whose arguments of these names, if it has such, are known to the compiler."""
+        code = self.function.__code__
+        own = tuple((name, values[name]) for name in code.co_varnames[: code.co_argcount] if name in values)
+        if not own:
+            return self
+        if own not in self._others:
+            self._others[own] = Routine(self.function, self.kinds, self.returns, self.fastmath, own)
+        return self._others[own]
 
     @property
     def loaded(self) -> bool:
@@ -71,7 +89,7 @@ class Routine:
 
     def module(self) -> Any:
         """Return the instructions that LLVM makes machine code of."""
-        return translate(self.function, self.kinds, self.returns, self.fastmath, machine.SYMBOL)
+        return translate(self.function, self.kinds, self.returns, self.fastmath, dict(self._fixed), machine.SYMBOL)
 
     @cached_property
     def _callable(self) -> Callable[..., Any]:

@@ -9,7 +9,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
-_balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iiiirrr", "d"), caller("iiirr")
+_balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iirr", "d"), caller("iirr")
 _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
 _predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", "d")
 _count, _all = caller("inrrr"), caller("iiii")
@@ -52,8 +52,7 @@ def _solve_turned(s, b, call):
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
     _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], -1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
-    _solve(call[r.SOLVE_LOWER], unknown, unknown, half, rows, right)
-    _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
+    _solve(call[r.SOLVE_BOTH], unknown, half, rows, right)
     _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], 1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
     if rollers > 0:
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
@@ -156,9 +155,7 @@ def march(system, solver, calls):
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
-                statistics[3] = min(
-                    statistics[3], _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, space)
-                )
+                statistics[3] = min(statistics[3], _factor(call[r.FACTOR_BOTH], unknown, half, rows, space))
                 statistics[5] += 1.0
             if iteration == 0 or renew:
                 _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)

@@ -199,8 +199,9 @@ SOLVER_FIELDS = 43
 (
     BALANCE,
     FACTOR,
-    SOLVE_LOWER,
     SOLVE_UPPER,
+    FACTOR_BOTH,  # from both ends, see `two_sided`
+    SOLVE_BOTH,
     PREDICT_RESULTANTS,
     SMALLEST_JACOBIAN,
     HOLD_NORMALS,
@@ -214,5 +215,5 @@ SOLVER_FIELDS = 43
     TURN_PAIRS,
     COUNT_TURNS,
     TURN_ALL,
-) = range(17)
-SOLVER_ROUTINES = 17
+) = range(18)
+SOLVER_ROUTINES = 18

@@ -77,7 +77,7 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         "small_code": lambda: None,
         "merged": lambda value, other, count: value,
         "room": lambda count: Pointer([0.0] * count, 0),
-        "_push": push,
+        "push": push,
     }
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
     try:

@@ -9,7 +9,7 @@ modules or what is called. Anything else raises TypeError with the line.
 """
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from llvmlite import ir
@@ -22,10 +22,13 @@ from beamfem.kernels.compiler.kinds import KINDS, WHOLE, Kind, Value
 from beamfem.kernels.compiler.source import definition, outside
 
 
-def translate(function: Callable[..., Any], kinds: str, returns: str, flags: Sequence[str], name: str) -> ir.Module:
+def translate(
+    function: Callable[..., Any], kinds: str, returns: str, flags: Sequence[str], fixed: Mapping[str, int], name: str
+) -> ir.Module:
     """Return a module with one function that is called as C does.
 
-    kinds: letters of `kinds.KINDS`, one an argument; returns: a letter of `callables.RESULTS`; flags: see `Build`.
+    kinds: letters of `kinds.KINDS`, one an argument; returns: a letter of `callables.RESULTS`; flags: see `Build`;
+    fixed: whole numbers that take the place of arguments.
     """
     module, result = ir.Module(name), RESULTS[returns]
     outer = ir.VoidType() if result is None else result.llvm
@@ -33,6 +36,9 @@ def translate(function: Callable[..., Any], kinds: str, returns: str, flags: Seq
     own.attributes.add("nounwind")
     builder = ir.IRBuilder(own.append_basic_block("entry"))
     given = [Value(KINDS[kind], argument) for kind, argument in zip(kinds, own.args, strict=True)]
+    for place, argument in enumerate(definition(function).args.args):
+        if argument.arg in fixed:
+            given[place] = Value(WHOLE, WHOLE.llvm(fixed[argument.arg]))
     found = _Body(Build(builder, tuple(flags)), function, given).run()
     if result is None:
         builder.ret_void()

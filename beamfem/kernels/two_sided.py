@@ -1,0 +1,131 @@
+"""LU factorisation of a band matrix from both ends to the middle, for solutions with the same factors time and again.
+
+Each unknown of a solution waits for the one before: from both ends at once, half as long. Rows 0 to m - 1 are
+eliminated downwards, as many at the end upwards, and what is left between them is a block of w or w + 1 rows.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+from beamfem.kernels.band import FAST, KNOWN, band, elimination, push
+from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.pointers import at, room
+
+
+class TwoSided(NamedTuple):
+    """Compiled functions for a half width.
+
+    factor(n, w, ab, original): smallest ratio of a pivot to the row's original diagonal entry; solve(n, w, lu, x).
+    """
+
+    factor: Routine
+    solve: Routine
+
+
+SHORT = 50  # unknowns: fewer are solved for as fast from one end
+
+
+@cache
+def two_sided(half_width: int, short: bool) -> TwoSided:
+    """Return the compiled functions for a half width: of its own where it is a usual one; short: from one end."""
+    if half_width not in KNOWN:
+        return _one_sided(0)
+    return _one_sided(half_width) if short else _two_sided(half_width)
+
+
+def _two_sided(w: int) -> TwoSided:
+    case, width = f"half_width_{w}", 2 * w + 1
+    _down = inlined(elimination(w, f"{case}_down", backwards=False))
+    _up = inlined(elimination(w, f"{case}_up", backwards=True))
+
+    @routine("iirr", "d", case, fastmath=FAST)
+    def factor(n, half, ab, original):
+        """Factor ab (n, 2 w + 1) in place; original (n,): space. See `band.Band` for what is left in it."""
+        m = max(0, (n - w) // 2)
+        end = n - m
+        for i in range(m, end):
+            original[i] = abs(ab[i * width + w])
+        worst = _down(end, m, w, 0, ab, ab, original)
+        worst = min(worst, _up(end, m, w, 0, at(ab, n * width - 1), ab, at(original, end)))
+        for k in range(m, end):
+            pivot = at(ab, k * width + w - k)
+            if pivot[k] == 0.0 or original[k] == 0.0:
+                return 0.0
+            worst = min(worst, abs(pivot[k]) / original[k])
+            inverse = 1.0 / pivot[k]
+            pivot[k] = inverse
+            for i in range(k + 1, end):
+                row = at(ab, i * width + w - i)
+                multiplier = row[k] * inverse
+                row[k] = multiplier
+                for j in range(k + 1, end):
+                    row[j] -= multiplier * pivot[j]
+            for j in range(k + 1, end):
+                pivot[j] *= inverse
+        return worst
+
+    @routine("iirr", case=case, fastmath={"contract"})
+    def solve(n, half, lu, x):
+        """Replace the right-hand side x (n,) by the solution."""
+        m = max(0, (n - w) // 2)
+        end, above, below = n - m, room(w), room(w)
+        for j in range(w):
+            above[j] = 0.0
+            below[j] = 0.0
+        for i in range(m):
+            row, other = at(lu, i * width), at(lu, (n - i) * width - 1)
+            total, sum_below = x[i], x[n - 1 - i]
+            for j in range(w):
+                total -= row[j] * above[j]
+                sum_below -= other[-j] * below[j]
+            push(above, w, total)
+            push(below, w, sum_below)
+            x[i], x[n - 1 - i] = total, sum_below
+        for i in range(m, end):
+            row, total = at(lu, i * width + w - i), x[i]
+            for j in range(max(0, i - w), i):
+                total -= row[j] * x[j]
+            for j in range(end, min(n, i + w + 1)):
+                total -= row[j] * x[j]
+            x[i] = total
+        for i in range(end - 1, m - 1, -1):
+            row = at(lu, i * width + w - i)
+            total = x[i] * row[i]
+            for j in range(i + 1, end):
+                total -= row[j] * x[j]
+            x[i] = total
+        if m == 0:
+            return
+        for j in range(w):
+            push(above, w, x[m + w - 1 - j])
+            push(below, w, x[end - w + j])
+        for i in range(m - 1, -1, -1):
+            row, other = at(lu, i * width), at(lu, (n - i) * width - 1)
+            total, sum_below = x[i] * row[w], x[n - 1 - i] * other[-w]
+            for j in range(w):
+                total -= row[2 * w - j] * above[j]
+                sum_below -= other[j - 2 * w] * below[j]
+            push(above, w, total)
+            push(below, w, sum_below)
+            x[i], x[n - 1 - i] = total, sum_below
+
+    return TwoSided(factor, solve)
+
+
+@cache
+def _one_sided(known: int) -> TwoSided:
+    case = f"one_sided_half_width_{known or 'any'}"
+    _factor, _solve_lower, _solve_upper = (inlined(own) for own in band(known))
+
+    @routine("iirr", "d", case, fastmath=FAST)
+    def factor(n, half, ab, original):
+        """The same from one end."""
+        return _factor(n, n, half, 0, ab, ab, original)
+
+    @routine("iirr", case=case, fastmath={"contract"})
+    def solve(n, half, lu, x):
+        """The same from one end."""
+        _solve_lower(n, n, half, lu, x)
+        _solve_upper(n, n, half, lu, x)
+
+    return TwoSided(factor, solve)

@@ -1,0 +1,61 @@
+"""Factors of a band from both ends: solutions, pivots and refusals as those from one end, against NumPy."""
+
+import numpy as np
+import pytest
+
+from beamfem.kernels.band import KNOWN, band
+from beamfem.kernels.two_sided import two_sided
+
+
+def matrix(n, w, rng, sign=1.0):
+    """Return an unsymmetric band matrix (n, n) with strong diagonals and its rows (n, 2 w + 1)."""
+    whole = np.zeros((n, n))
+    for i in range(n):
+        for j in range(max(0, i - w), min(n, i + w + 1)):
+            whole[i, j] = rng.standard_normal()
+        whole[i, i] = sign * (3.0 * w + rng.uniform())
+    rows = np.zeros((n, 2 * w + 1))
+    for i in range(n):
+        for j in range(max(0, i - w), min(n, i + w + 1)):
+            rows[i, w + j - i] = whole[i, j]
+    return whole, rows
+
+
+@pytest.mark.parametrize("w", [1, 3, *KNOWN])
+@pytest.mark.parametrize("short", [False, True])
+def test_solutions_are_those_of_dense_matrices(w, short, rng):
+    """Whatever is left between both ends: w or w + 1 rows, or all where there are fewer."""
+    own = two_sided(w, short)
+    for n in (1, 2, w, w + 1, w + 2, w + 3, 2 * w + 1, 3 * w, 3 * w + 1, 4 * w + 7, 101):
+        whole, rows = matrix(n, w, rng)
+        right = rng.standard_normal(n)
+        x = right.copy()
+        ratio = own.factor(n, w, rows, np.empty(n))
+        own.solve(n, w, rows, x)
+        np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-12, atol=1e-14)
+        assert 0.2 < ratio <= 1.0
+
+
+@pytest.mark.parametrize("w", KNOWN)
+def test_a_pivot_that_is_zero_is_seen_wherever_it_is(w, rng):
+    n = 5 * w + 4
+    for where in (2, n // 2, n - 3):
+        _, rows = matrix(n, w, rng)
+        pieces = [band(w).factor(n, n, w, 0, rows.copy(), np.empty(n), np.empty(n))]
+        pieces.append(two_sided(w, False).factor(n, w, rows.copy(), np.empty(n)))
+        assert min(pieces) > 0.2
+        rows[where] = 0.0
+        assert two_sided(w, False).factor(n, w, rows, np.empty(n)) == 0.0
+
+
+@pytest.mark.parametrize("w", KNOWN)
+def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
+    n = 6 * w + 1
+    for signs in (-np.ones(n), np.where(np.arange(n) % 3 == 0, -1.0, 1.0)):
+        whole, rows = matrix(n, w, rng)
+        whole, rows = signs[:, None] * whole, signs[:, None] * rows
+        right = rng.standard_normal(n)
+        x = right.copy()
+        assert two_sided(w, False).factor(n, w, rows, np.empty(n)) > 0.1
+        two_sided(w, False).solve(n, w, rows, x)
+        np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)

@@ -10,6 +10,7 @@ from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, require_beam
 from beamfem.model.load import Amplitude, check_along, check_common
+from beamfem.model.shapes import LoadShape, Placed, Strains
 from beamfem.section.thermal import expands_evenly, thermal_strain
 from beamfem.validation import called, convert, finite, squared
 
@@ -42,6 +43,10 @@ class Actuation:
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
         """Return curvature, stretch or shear at arc lengths (n,) [m]. Raises InputError where a function gives none."""
         return _along(self, name, arc_length)
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        return (_strains(self, weight),)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
@@ -88,6 +93,10 @@ class Temperature:
         """Return change or gradient at arc lengths (n,) [m]. Raises InputError where a function gives none."""
         return _along(self, name, arc_length)
 
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        return (_strains(self, weight),)
+
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
         beam, heat = self.beam, np.column_stack([self.values_of(name, arc_length) for name in self.along])
@@ -129,3 +138,14 @@ def _along(load: Actuation | Temperature, name: str, arc_length: np.ndarray) -> 
     if not callable(given):
         return np.full(len(arc_length), given)
     return np.array([finite(f"{what} at arc length {s:g} m", called(what, given, s)) for s in arc_length.tolist()])
+
+
+def _strains(load: Actuation | Temperature, weight: float) -> Strains:
+    values: dict[str, tuple[float | None, str]] = {}
+    for name, unit in zip(load.along, load.units, strict=True):
+        value = getattr(load, name)
+        if callable(value):
+            values[name] = None, unit
+        elif value:
+            values[name] = weight * value, unit
+    return Strains(load.beam, type(load).__name__.lower(), values)

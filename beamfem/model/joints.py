@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from beamfem.model.beam import Point, require_point
+from beamfem.model.shapes import Ring
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +17,10 @@ class Rigid:
         require_point("Rigid", self.a, "a")
         require_point("Rigid", self.b, "b")
 
+    def shapes(self) -> tuple[Ring, ...]:
+        """Return what it looks like: nothing beside the beams."""
+        return ()
+
 
 @dataclass(frozen=True, slots=True)
 class Hinge:
@@ -27,6 +32,10 @@ class Hinge:
     def __post_init__(self) -> None:
         require_point("Hinge", self.a, "a")
         require_point("Hinge", self.b, "b")
+
+    def shapes(self) -> tuple[Ring, ...]:
+        """Return what it looks like."""
+        return (Ring(self.a),)
 
 
 Joint = Rigid | Hinge

@@ -6,9 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from beamfem.element.coordinates import across
 from beamfem.model.beam import Beam, Point, require_beam, require_point
 from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.load import Amplitude, check_along, check_common
+from beamfem.model.shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Placed, arrows_along, turned
 from beamfem.validation import called, convert, finite, squared, vector
 
 Varying = Callable[[float], Sequence[float]]
@@ -25,6 +27,10 @@ class Gravity:
     def __post_init__(self) -> None:
         convert(self, squared(vector), "vector")
         check_common(self)
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        return (Acceleration(weight * np.array(self.vector)),)
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,15 @@ class DistributedLoad:
         """Return the values at arc lengths (n,) [m]."""
         return self.values(arc_length)
 
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        at = arrows_along(self, placed)
+        vectors = weight * self.values(at)
+        if self.follower:
+            points = [self.beam.at(share) for share in at / self.beam.curve.length]
+            vectors = turned(vectors, np.array([placed.rotation(point) for point in points]))
+        return (ForcesAlong(self.beam, at, vectors, even=not self.follower and not callable(self.vector)),)
+
 
 @dataclass(frozen=True)
 class Pressure:
@@ -101,6 +116,12 @@ class Pressure:
         """Return the values at arc lengths (n,) [m]."""
         return self.values(arc_length)
 
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state: p (-y', x')."""
+        at = arrows_along(self, placed)
+        slope = np.array([placed.slope(self.beam.at(share)) for share in at / self.beam.curve.length])
+        return (ForcesAlong(self.beam, at, weight * self.values(at)[:, None] * across(slope), even=False),)
+
 
 @dataclass(frozen=True)
 class PointForce:
@@ -121,6 +142,13 @@ class PointForce:
     def value(self) -> tuple[float, float, float]:
         """fx, fy [N] and moment [N m]."""
         return (*self.vector, 0.0)
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        vector = weight * np.array([self.vector])
+        if self.follower:
+            vector = turned(vector, np.array([placed.rotation(self.point)]))
+        return (Force(self.point, vector[0]),)
 
 
 @dataclass(frozen=True)
@@ -145,6 +173,10 @@ class PointMoment:
     def value(self) -> tuple[float, float, float]:
         """fx, fy [N] and moment [N m]."""
         return (0.0, 0.0, self.moment)
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        return (Moment(self.point, weight * self.moment),)
 
 
 PointLoad = PointForce | PointMoment

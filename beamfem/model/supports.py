@@ -7,6 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.shapes import Held, Springs, SpringsAlong, SupportShape
 from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 Value = float | Callable[[float], float]
@@ -24,6 +25,10 @@ class Clamp:
     def held(self) -> dict[str, Value]:
         return {"ux": 0.0, "uy": 0.0, "rotation": 0.0}
 
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (Held(self.point, self.held()),)
+
 
 @dataclass(frozen=True)
 class Pin:
@@ -36,6 +41,10 @@ class Pin:
 
     def held(self) -> dict[str, Value]:
         return {"ux": 0.0, "uy": 0.0}
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (Held(self.point, self.held()),)
 
 
 @dataclass(frozen=True)
@@ -53,6 +62,10 @@ class Roller:
 
     def held(self) -> dict[str, Value]:
         return {"normal": 0.0}
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (Held(self.point, self.held(), self.direction),)
 
     @property
     def direction(self) -> np.ndarray:
@@ -87,6 +100,10 @@ class Prescribed:
         given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
         return {name: value for name, value in given.items() if value is not None}
 
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (Held(self.point, self.held()),)
+
 
 @dataclass(frozen=True)
 class Spring:
@@ -115,6 +132,10 @@ class Spring:
     def held(self) -> dict[str, Value]:
         return {}
 
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (Springs(self.point, self.stiffness, self.rotational),)
+
 
 @dataclass(frozen=True)
 class Foundation:
@@ -131,6 +152,10 @@ class Foundation:
         convert(self, squared(vector), "stiffness")
         if min(self.stiffness) < 0.0 or max(self.stiffness) == 0.0:
             raise InputError(f"the stiffness of a Foundation must not be negative, and somewhere positive: {self}")
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (SpringsAlong(self.beam, self.stiffness),)
 
 
 PointSupport = Clamp | Pin | Roller | Prescribed | Spring

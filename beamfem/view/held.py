@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.model.joints import Hinge
-from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
+from beamfem.model.shapes import Held, Springs, SpringsAlong
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -78,20 +77,16 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
     only = one_row(solution, row)
     stamps = Stamps()
     for support in solution.model.supports:
-        if isinstance(support, Foundation):
-            _foundation(stamps, support)
-            continue
-        at = support.point.reference
-        if isinstance(support, Clamp):
-            _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)
-        elif isinstance(support, Pin):
-            _stamp(stamps, symbols.PIN, at, _ground(at, centre))
-        elif isinstance(support, Roller):
-            _stamp(stamps, symbols.ROLLER, only.position(support.point)[0], -support.direction)
-        elif isinstance(support, Spring):
-            _spring(stamps, support, at)
-        elif isinstance(support, Prescribed):
-            _prescribed(stamps, support, at, only.position(support.point)[0], centre)
+        for shape in support.shapes():
+            match shape:
+                case SpringsAlong():
+                    _springs_along(stamps, shape)
+                case Springs():
+                    _springs(stamps, shape)
+                case Held(normal=None):
+                    _held(stamps, shape, only.position(shape.point)[0], centre)
+                case Held():
+                    _stamp(stamps, symbols.ROLLER, only.position(shape.point)[0], -np.asarray(shape.normal))
     return stamps
 
 
@@ -114,11 +109,11 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
 def joints_of(solution: "Solution", row: int) -> Stamps:
     """Return the hinges of a model as circles where they are in a row."""
     stamps = Stamps()
-    hinges = [joint for joint in solution.model.joints if isinstance(joint, Hinge)]
-    if hinges:
+    rings = [shape for joint in solution.model.joints for shape in joint.shapes()]
+    if rings:
         only = one_row(solution, row)
-        for hinge in hinges:
-            stamps.add(only.position(hinge.a)[0], symbols.HINGE, INK, 1.1, "white")
+        for ring in rings:
+            stamps.add(only.position(ring.point)[0], symbols.HINGE, INK, 1.1, "white")
     return stamps
 
 
@@ -143,8 +138,8 @@ def _ground(at: np.ndarray, centre: np.ndarray) -> np.ndarray:
     return np.array([0.0, 1.0 if y < 0.0 and -y > abs(x) else -1.0])
 
 
-def _spring(stamps: Stamps, spring: Spring, at: np.ndarray) -> None:
-    kx, ky = spring.stiffness
+def _springs(stamps: Stamps, spring: Springs) -> None:
+    (kx, ky), at = spring.stiffness, spring.point.reference
     if kx:
         side = 1.0 if spring.point.fraction > 0.5 else -1.0
         _stamp(stamps, symbols.SPRING, at, np.array([side, 0.0]))
@@ -154,7 +149,7 @@ def _spring(stamps: Stamps, spring: Spring, at: np.ndarray) -> None:
         _stamp(stamps, symbols.ROTATIONAL_SPRING, at, np.array([0.0, -1.0]))
 
 
-def _foundation(stamps: Stamps, foundation: Foundation) -> None:
+def _springs_along(stamps: Stamps, foundation: SpringsAlong) -> None:
     curve = foundation.beam.curve
     kx, ky = foundation.stiffness
     for at in curve.position(np.linspace(0.0, curve.length, _SPRINGS_OF_FOUNDATION)):
@@ -163,9 +158,9 @@ def _foundation(stamps: Stamps, foundation: Foundation) -> None:
                 _stamp(stamps, symbols.SPRING, at, np.array(down), 0.7)
 
 
-def _prescribed(stamps: Stamps, support: Prescribed, at: np.ndarray, now: np.ndarray, centre: np.ndarray) -> None:
-    """Draw what is held at zero as a support and what moves as an arrow."""
-    held = support.held()
+def _held(stamps: Stamps, support: Held, now: np.ndarray, centre: np.ndarray) -> None:
+    """Draw what is prescribed as zero as a support and what moves as an arrow."""
+    held, at = support.held, support.point.reference
     still = {name for name, value in held.items() if not callable(value) and value == 0.0}
     if still == {"ux", "uy", "rotation"}:
         _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)

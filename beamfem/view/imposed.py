@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.model.loads import ImposedStrain
+from beamfem.model.shapes import Strains
 from beamfem.view.frames import one_row
 
 if TYPE_CHECKING:
@@ -16,19 +16,19 @@ _BENT = 0.02  # of the length: a beam that is bent has its words on its outer si
 _SLOPED = 0.3  # of a unit normal
 
 
-def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[ImposedStrain, float, int]], colour: str) -> Any:
-    """Write what loads impose, each times its factor, in a row of a solution; yield what was drawn."""
+def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int]], colour: str) -> Any:
+    """Write what loads impose in a row of a solution; yield what was drawn."""
     beside: dict[int, int] = {}
-    for load, weight, row in items:
-        only, beam = one_row(solution, row), load.beam
+    for strains, row in items:
+        only, beam = one_row(solution, row), strains.beam
         at, along = only.position(beam.at(0.5))[0], only.fields(beam.at(0.5)).r_x[0]
         chord = only.position(beam.at(0.25))[0] + only.position(beam.at(0.75))[0] - 2.0 * at
         outward = np.array([-along[1], along[0]]) / np.linalg.norm(along)
         if chord @ outward > _BENT * beam.curve.length:
             outward = -outward
-        lines = beside[id(load.beam)] = beside.get(id(load.beam), 0) + 1
+        lines = beside[id(beam)] = beside.get(id(beam), 0) + 1
         yield axes.annotate(
-            _words(load, weight, solution.model.unit),
+            _words(strains, solution.model.unit),
             at,
             lines * _APART * outward,
             textcoords="offset points",
@@ -40,12 +40,9 @@ def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[ImposedStrai
         )
 
 
-def _words(load: ImposedStrain, weight: float, named: Callable[[str], str]) -> str:
-    parts = []
-    for name, unit in zip(load.along, load.units, strict=True):
-        value = getattr(load, name)
-        if callable(value):
-            parts.append(f"{name} varies")
-        elif value:
-            parts.append(f"{name} {weight * value:.4g} {named(unit)}".rstrip())
-    return f"{type(load).__name__.lower()}: {', '.join(parts)}"
+def _words(strains: Strains, named: Callable[[str], str]) -> str:
+    parts = [
+        f"{name} varies" if value is None else f"{name} {value:.4g} {named(unit)}".rstrip()
+        for name, (value, unit) in strains.values.items()
+    ]
+    return f"{strains.name}: {', '.join(parts)}"

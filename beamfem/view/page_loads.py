@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.model.load import factor
-from beamfem.model.loads import Gravity, LineLoad, PointForce, PointMoment
+from beamfem.model.load import AlongBeam, factor
+from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment
 from beamfem.results.loading import loading
-from beamfem.view.acting import force_at, forces_along
-from beamfem.view.frames import one_row
+from beamfem.view.placed import PlacedRow
 from beamfem.view.shapes import Shapes
 
 _LONGEST, _SHORTEST, _SPREAD = 40.0, 18.0, 26.0  # [pixels]: the largest force, a small one, loads along beams
@@ -47,23 +46,24 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
 
 def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
     loads = shapes.solution.model.loads
-    arrows = sum(55 if isinstance(load, LineLoad) else 5 for load in loads)
+    arrows = sum(55 if isinstance(load, AlongBeam) else 5 for load in loads)
     return rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
 
 
 def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:
-    only = one_row(shapes.solution, row)
+    placed = PlacedRow(shapes.solution, row)
     found: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
     for load in shapes.solution.model.loads:
-        weight = factor(load, at, static)
-        if isinstance(load, PointForce):
-            found["points"].append(force_at(only, load, weight))
-        elif isinstance(load, LineLoad):
-            found["lines"].append(forces_along(only, load, weight))
-        elif isinstance(load, PointMoment) and weight * load.moment != 0.0:
-            found["moments"].append([*_short(only.position(load.point)[0]), float(np.sign(weight * load.moment))])
-        elif isinstance(load, Gravity) and weight != 0.0 and any(load.vector):
-            found["gravity"] = _short(np.sign(weight) * np.array(load.vector) / np.linalg.norm(load.vector) * _LONGEST)
+        for shape in placed.shapes(load, factor(load, at, static)):
+            match shape:
+                case Force():
+                    found["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
+                case ForcesAlong():
+                    found["lines"].append((placed.along(shape), shape.vectors))
+                case Moment() if shape.moment != 0.0:
+                    found["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
+                case Acceleration() if shape.vector.any():
+                    found["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
     return found
 
 

@@ -1,0 +1,125 @@
+"""What loads, supports and joints look like: plain shapes, which pictures and files draw each in their own way."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from beamfem.element.coordinates import across
+from beamfem.model.beam import Beam, Point
+from beamfem.model.load import AlongBeam, functions_along
+
+_ARROWS = 11  # along a beam
+
+
+class Placed(Protocol):
+    """A state of a model, as far as shapes ask for it."""
+
+    def rotation(self, point: Point) -> float:
+        """Return the rotation of a section from the reference [rad]."""
+        ...
+
+    def slope(self, point: Point) -> np.ndarray:
+        """Return r0' (2,) [-] at a point."""
+        ...
+
+    def stations(self, beam: Beam) -> np.ndarray:
+        """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Force:
+    """A force (2,) [N] at a point."""
+
+    point: Point
+    vector: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """A moment [N m] at a point, counter-clockwise."""
+
+    point: Point
+    moment: float
+
+
+@dataclass(frozen=True, eq=False)
+class ForcesAlong:
+    """Forces (n, 2) [N/m] at arc lengths (n,) [m] of a beam; even: they are the same all along it."""
+
+    beam: Beam
+    arc_length: np.ndarray
+    vectors: np.ndarray
+    even: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Acceleration:
+    """An acceleration (2,) [m/s^2] of all that has mass."""
+
+    vector: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Strains:
+    """Strains that a load imposes on a beam: its name; values by their names with their units, None where they vary."""
+
+    beam: Beam
+    name: str
+    values: Mapping[str, tuple[float | None, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What is prescribed at a point, zero or not, as `supports.Prescribed` names it; normal (2,): the one direction."""
+
+    point: Point
+    held: Mapping[str, float | Callable[[float], float]]
+    normal: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Springs:
+    """Springs to the ground (kx, ky) [N/m] and against rotation [N m/rad] at a point."""
+
+    point: Point
+    stiffness: tuple[float, float]
+    rotational: float
+
+
+@dataclass(frozen=True, eq=False)
+class SpringsAlong:
+    """Springs to the ground (kx, ky) [N/m^2] along a beam."""
+
+    beam: Beam
+    stiffness: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """A hinge at a point."""
+
+    point: Point
+
+
+LoadShape = Force | Moment | ForcesAlong | Acceleration | Strains
+SupportShape = Held | Springs | SpringsAlong
+
+
+def arrows_along(load: AlongBeam, placed: Placed) -> np.ndarray:
+    """Return the arc lengths [m] at which a load along a beam is drawn: spread evenly, and where it is largest."""
+    length = load.beam.curve.length
+    even = np.linspace(0.0, length, _ARROWS)
+    if not functions_along(load):
+        return even
+    (name,) = load.along
+    at = placed.stations(load.beam)
+    sizes = [np.abs(load.values_of(name, own)).reshape(len(own), -1).max(axis=1) for own in (at, even)]
+    return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even
+
+
+def turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 2) turned by angles (n,) [rad]."""
+    return np.asarray(np.cos(angles)[:, None] * vectors + np.sin(angles)[:, None] * across(vectors))

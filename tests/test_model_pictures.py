@@ -49,3 +49,17 @@ def test_actuation_and_heat_are_named_beside_their_beams():
     for figure in (model.plot(), bf.solve_static(model).plot()):
         words = {text.get_text() for text in figure.axes[0].texts}
         assert {"actuation: curvature 1.5 1/m", "temperature: change varies, gradient 2000 K/m"} <= words
+
+
+@pytest.mark.parametrize("height", [0.2, 5.0])
+def test_what_names_the_shapes_fits_into_the_picture(height):
+    """Of a tall model the names of three load factors ran out of the picture on both sides: a bar tells them then."""
+    column = bf.Beam(bf.Line((0.0, 0.0), (1.0, height)), 4, bf.CRBF(2), SECTION, STEEL)
+    model = bf.Model([column], [bf.Clamp(column.start)], [bf.PointForce(column.end, (5.0, 0.0))])
+    figure = bf.solve_static(model, steps=2).plot()
+    figure.canvas.draw()
+    whole = figure.bbox
+    shown = [legend.get_window_extent() for legend in figure.legends]
+    assert len(shown) == (1 if height < 1.0 else 0)
+    assert all(whole.x0 <= box.x0 and box.x1 <= whole.x1 for box in shown)
+    assert len(figure.axes) == (1 if height < 1.0 else 2)

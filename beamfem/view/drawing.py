@@ -18,6 +18,7 @@ _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]
 _LEAST = np.array([3.2, 1.3])  # of the axes [inch]
 _LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
+_NAME = 1.6  # of a shape in the legend [inch]
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 
 
@@ -47,7 +48,8 @@ def plot_shapes(
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
-    figure, axes = equal_axes(drawn.box, colour is not None or len(rows) > _NAMED, solution.model.unit("m"))
+    barred = colour is not None or len(rows) > _NAMED or len(rows) * _NAME > _inches(drawn.box)[0] + _LEFT + _RIGHT
+    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"))
     if undeformed:
         draw_undeformed(axes, drawn.points)
     for order in range(len(rows)):
@@ -59,7 +61,7 @@ def plot_shapes(
         draw_loads(axes, solution, rows)
     if drawn.quantity is not None:
         bar(figure, axes, drawn)
-    elif len(rows) > _NAMED:
+    elif barred and len(rows) > 1:
         _bar_of_rows(figure, axes, solution, rows)
     elif len(rows) > 1:
         _names_of_rows(figure, solution, rows)
@@ -72,14 +74,18 @@ def plot_shapes(
 
 def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m") -> tuple[Any, Any]:
     """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it."""
-    scale = _LONGER_SIDE / _extent(box)
-    inches = np.maximum((box[1] - box[0]) * scale + 2.0 * _ROOM, _LEAST)
+    scale, inches = _LONGER_SIDE / _extent(box), _inches(box)
     right = _BAR if with_bar else _RIGHT
     figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP, layout=None)
     width, height = figure.get_size_inches()
     axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
     frame(axes, box.mean(axis=0), inches / scale, inches, unit)
     return figure, axes
+
+
+def _inches(box: np.ndarray) -> np.ndarray:
+    """Width and height (2,) [inch] of the axes around a box (2, 2) [m]."""
+    return np.maximum((box[1] - box[0]) * _LONGER_SIDE / _extent(box) + 2.0 * _ROOM, _LEAST)
 
 
 def _extent(box: np.ndarray) -> float:

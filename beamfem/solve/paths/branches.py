@@ -8,6 +8,7 @@ from beamfem.solve.continuation.continuation import Continuation, PathPoint
 
 _FIRST_MODE = 0.02  # how far along the mode the branch is looked for first: lengths of the model, radians
 _TRIES = 12
+_ALIKE = 0.1  # [rad]: ways that are the same, as branches bend
 _ALONG = 1e-3  # of a mode: what is left of it across a path that goes along it
 
 
@@ -15,7 +16,9 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
     """Return a point of the branch close to a bifurcation, or why there is none.
 
     It is the equilibrium in the plane across the mode at a small distance along it, which the path that was followed
-    to the bifurcation does not meet: the part of the mode along that path is taken out.
+    to the bifurcation does not meet: the part of the mode along that path is taken out. Where several modes become soft
+    at once, branches leave along some of their combinations only. One that is met in the same direction at two
+    distances leaves here too, however far from the mode that is.
     """
     start = np.append(bifurcation.p, bifurcation.at)
     try:
@@ -23,6 +26,7 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
     except LinAlgError:
         return "the tangent is singular"
     distance, reason = _FIRST_MODE, ""
+    others: list[np.ndarray] = []  # equilibria beside those that were looked for
     for _ in range(_TRIES):
         step = distance * way
         corrected = line.correct(start + step, line.stresses(start, step), way)
@@ -30,14 +34,24 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
         if corrected.ended.good:
             moved = corrected.y - start
             if line.length(moved) < 2.0 * distance:
-                try:
-                    return line.linearised(corrected.y, moved)
-                except LinAlgError:
-                    reason = "the tangent is singular"
+                found = [corrected.y]
             else:
                 reason = "the equilibrium beside it is far away"
+                found = [y for y in others if _same_way(line, y - start, moved)]
+                others.append(corrected.y)
+            try:
+                if found:
+                    return line.linearised(found[0], found[0] - start)
+            except LinAlgError:
+                reason = "the tangent is singular"
         distance *= 0.5
     return reason
+
+
+def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
+    """Tell whether two changes of y (n + 1,) go the same way."""
+    apart = one / line.length(one) - other / line.length(other)
+    return line.length(apart) < _ALIKE
 
 
 def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:

@@ -173,6 +173,12 @@ def test_rotation_counts_full_turns_over_chunks(element, tmp_path, monkeypatch):
     np.testing.assert_allclose(rotation[1:3], expected, atol=1e-12)
 
 
+def test_a_path_without_a_suffix_becomes_one_file_of_all_steps(solution, tmp_path):
+    pytest.importorskip("h5py")
+    solution.to_vtk(tmp_path / "folder" / "fall")
+    assert sorted(file.name for file in (tmp_path / "folder").iterdir()) == ["fall.vtkhdf", "fall_centreline.vtkhdf"]
+
+
 def test_other_suffixes_are_refused(solution, tmp_path):
     with pytest.raises(bf.InputError, match=r'swing\.pvd" would be right'):
         solution.to_vtk(tmp_path / "swing.vtu")

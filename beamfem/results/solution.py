@@ -281,7 +281,7 @@ class Solution:
         fields: Sequence[str] | None = None,
         single: bool = False,
     ) -> None:
-        """Write body and centreline for ParaView, all fields or some; `path` ends in .pvd or .vtkhdf."""
+        """Write body and centreline for ParaView, all fields or some; `path` ends in .pvd or .vtkhdf, its default."""
         offered(Solution.to_vtk)(self, path, geometry=geometry, fields=fields, single=single)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:

@@ -1,12 +1,16 @@
 """Machine code of this computer: LLVM makes it of a module and links it into the process."""
 
+import os
 from contextlib import suppress
+from ctypes import CDLL, c_void_p, cast
 from functools import cache
 
 from llvmlite import binding as llvm
 from llvmlite import ir
 
 SYMBOL = "kernel"  # what the one function of a module is called
+# functions of the C library that LLVM calls where the processor has no instruction, and for loops that copy
+_OF_C = ("atan2", "pow", "floor", "sqrt", "memcpy", "memmove", "memset")
 _engines: list[llvm.ExecutionEngine] = []  # machine code lives as long as what linked it
 
 
@@ -16,6 +20,10 @@ def _target() -> llvm.Target:
         llvm.initialize()
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
+    library = CDLL("ucrtbase" if os.name == "nt" else None)
+    for name in _OF_C:
+        with suppress(AttributeError):
+            llvm.add_symbol(name, cast(getattr(library, name), c_void_p).value)
     return llvm.Target.from_triple(llvm.get_process_triple())
 
 

@@ -16,7 +16,7 @@ _NEGLECTED = 1e-8
 FAR = 0.01  # of the model: after such a correction it is asked whether elements are inside out
 MOST = 3  # differences of the acceleration that extrapolate it: more than these pass on noise from step to step
 _LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
-_GROWTH = 2.0  # of corrections with a tangent each: more leads to another motion too
+_GROWTH = 2.0  # of corrections with a tangent each, from the second on: more leads to another motion too
 
 
 @inlined
@@ -115,7 +115,7 @@ def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
     if full != 0:
         if size <= tolerance:
             return 1
-        return -1 if iteration > 1 and size > _GROWTH * last else 0
+        return -1 if iteration > 2 and size > _GROWTH * last else 0
     small = rate[0] * size <= (1.0 - rate[0]) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
     return 1 if rate[0] < 1.0 and small else 0
 

@@ -36,11 +36,12 @@ def write_vtk(
 ) -> None:
     """Write the body into `path` and the centrelines into <stem>_centreline beside it; folders are made.
 
-    .vtkhdf, also where `path` has no suffix: all steps in one file, for ParaView 5.12 or newer; .pvd: a collection of
-    .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be warped
-    by `displacement`. fields: names of those to write, all by default; single: numbers of four bytes, half the size, seven digits. Names and
-    units: docs/paraview.md. Raises InputError for another suffix and for unknown fields; BeamfemError where .vtkhdf is
-    asked for without h5py. Warns where the shape of a section, and so its stress, is not known.
+    .vtkhdf, also where `path` has no suffix: all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
+    of .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be
+    warped by `displacement`. fields: names of those to write, all by default; single: numbers of four bytes, half
+    the size, seven digits. Names and units: docs/paraview.md. Raises InputError for another suffix and for unknown
+    fields; BeamfemError where .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
+    stress, is not known.
     """
     path = path_of(path)
     if path.name and not path.suffix:

@@ -111,3 +111,45 @@ def test_an_axis_may_come_from_a_drawing_or_be_an_ellipse(written, tmp_path):
     with pytest.raises(ModelFileError, match=r"there is no file .*none\.dxf") as caught:
         axis('kind = "dxf", file = "none.dxf"')
     assert caught.value.key == "beams.arm.curve.file"
+
+
+COLUMN = """
+[beams.column]
+curve = { kind = "line", start = [0, 0], end = [0, 1] }
+elements = 8
+element = { kind = "CRBF", order = 3 }
+section = { kind = "rectangle", width = 0.02, height = 0.01 }
+material = { youngs_modulus = 2e11, poisson_ratio = 0.3, density = 7800.0 }
+[[supports]]
+kind = "clamp"
+point = "column.start"
+[[loads]]
+kind = "force"
+point = "column.end"
+vector = [0, -600]
+[imperfection]
+size = 1e-5
+[[outputs]]
+name = "top"
+point = "column.end"
+quantities = ["x", "ux"]
+"""
+
+
+def test_an_imperfection_is_that_of_python_and_grows_as_it_should(tmp_path):
+    """An axis that is out of line by the first mode bends on by 1 / (1 - P / P_cr); a cantilever, P_cr = pi^2 EI / 4."""
+    (row,) = found_by(COLUMN, tmp_path)["outputs"][0]["rows"]
+    critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
+    assert abs(row["x"]) == pytest.approx(1e-5 / (1.0 - 600.0 / critical), rel=2e-4)
+    assert abs(row["x"] - row["ux"]) == pytest.approx(1e-5, rel=1e-9)
+    job = read_model_file(tmp_path / "model.toml")
+    crooked = job.model.with_imperfection(bf.solve_buckling(job.model, 1), 1e-5)
+    tip = bf.solve_static(crooked).position(crooked.beams[0].end)[-1, 0]
+    assert tip == pytest.approx(row["x"], rel=1e-9)
+
+
+def test_an_imperfection_takes_part_in_sweeps(tmp_path):
+    text = COLUMN + '[[sweep]]\nkey = "imperfection.size"\nvalues = [1e-5, 2e-5]\n'
+    (tmp_path / "swept.toml").write_text(text)
+    rows = json.loads(run(tmp_path / "swept.toml", "--json").stdout)["points"]
+    assert rows[1]["top ux"] == pytest.approx(2.0 * rows[0]["top ux"], rel=1e-3)

@@ -117,6 +117,21 @@ MISTAKES = {
     ),
     "force of three": ("[0, 833.3333333333334]", "[0, 1, 2]", 29, "loads[1].vector", "two finite numbers"),
     "scale as number": ("vector = [0, 833", "scale = 1\nvector = [0, 833", 29, "loads[1].scale", "true or false"),
+    "imperfection without size": ("[[loads]]", "[imperfection]\nmode = 1\n[[loads]]", 26, "imperfection", "size is missing"),
+    "imperfection of no mode": (
+        "[[loads]]",
+        "[imperfection]\nsize = 0.001\nmode = 0\n[[loads]]",
+        28,
+        "imperfection.mode",
+        "at least 1, got 0",
+    ),
+    "imperfection of words": (
+        "[[loads]]",
+        '[imperfection]\nsize = 0.001\nof = "bucking"\n[[loads]]',
+        28,
+        "imperfection.of",
+        "buckling",
+    ),
     "unknown quantity": ('"ux", "uy", "rotation"', '"ux", "uz"', 34, "outputs[1].quantities", "no 'uz'"),
     "reaction nowhere": ('"ux", "uy", "rotation"', '"fx"', 34, "outputs[1].quantities", "no support"),
     "odd states": ('["fx", "fy", "m"]', '["fx"]\nat = "first"', 40, "outputs[2].at", '"last", "all"'),
@@ -255,7 +270,10 @@ def run(text, tmp_path, *options):
 
 
 def test_documented_files_are_right(tmp_path):
-    weight, string, column, driven, rolled, swept = (run(block, tmp_path) for block in BLOCKS)
+    weight, crooked, string, column, driven, rolled, swept = (run(block, tmp_path) for block in BLOCKS)
+    critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
+    bent = 1e-3 / (1.0 - 600.0 / critical) - 1e-3
+    assert abs(crooked["outputs"][0]["rows"][0]["ux"]) == pytest.approx(bent, rel=2e-4)
     # reactions of weight and force; the moment has the deflected levers
     clamp = weight["outputs"][1]["rows"][0]
     assert clamp["fy"] == pytest.approx(10.0 + 7800.0 * 1e-4 * 9.81, rel=1e-9)

@@ -62,6 +62,7 @@ def run(
             tell_of_compilation()
         begun = time.perf_counter()
         try:
+            job = job.imperfect()
             found = job.solve()
         except (ConvergenceError, KeyboardInterrupt) as error:
             found_before = getattr(error, "solution", None)

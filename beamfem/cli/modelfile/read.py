@@ -10,6 +10,7 @@ from beamfem.cli.modelfile import actions, parts
 from beamfem.cli.modelfile.analyses import Analysis, Found, analysis
 from beamfem.cli.modelfile.curves import OutputCurve, curves
 from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.imperfection import Imperfection, imperfection
 from beamfem.cli.modelfile.lines import key_lines
 from beamfem.cli.modelfile.outputs import Output, outputs
 from beamfem.cli.modelfile.table import Source, Table
@@ -28,6 +29,7 @@ _KEYS = (
     "beams",
     "supports",
     "joints",
+    "imperfection",
     "loads",
     "analysis",
     "outputs",
@@ -49,11 +51,26 @@ class Job:
     curves: tuple[OutputCurve, ...]
     varied: tuple[Varied, ...]
     root: Table
+    imperfection: Imperfection | None = None
 
     @property
     def file(self) -> Path:
         """The model file."""
         return self.root.source.file
+
+    def imperfect(self) -> "Job":
+        """Return the job of the imperfect model, where the file asks for one. Raises ModelFileError, ConvergenceError.
+
+        Its mode has to be solved for, so that this comes after all checks of the file.
+        """
+        if self.imperfection is None:
+            return self
+        try:
+            model = self.imperfection.of_model(self.model)
+        except InputError as error:
+            raise self.root.table("imperfection").refused(error) from error
+        beams = dict(zip(self.beams, model.beams, strict=True))
+        return _job(self.root, beams, model, self.title, None)
 
     def solve(self) -> Found:
         """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
@@ -100,9 +117,13 @@ def job_of(root: Table) -> Job:
     function = parts.functions(root)
     function.check_all()
     beams = actions.beams(root, function)
+    moving = analysis(root, actions.Places(beams)).moving
+    return _job(root, beams, actions.model(root, beams, function, moving), title, imperfection(root))
+
+
+def _job(root: Table, beams: dict[str, Beam], model: Model, title: str, crooked: Imperfection | None) -> Job:
     places = actions.Places(beams)
     chosen = analysis(root, places)
-    model = actions.model(root, beams, function, chosen.moving)
     kind = root.values.get("analysis", {}).get("kind", "static")
-    asked = tuple(outputs(root, places, model, chosen))
-    return Job(title, beams, model, kind, chosen, asked, curves(root, places, model, chosen), varied(root), root)
+    asked, drawn = tuple(outputs(root, places, model, chosen)), curves(root, places, model, chosen)
+    return Job(title, beams, model, kind, chosen, asked, drawn, varied(root), root, crooked)

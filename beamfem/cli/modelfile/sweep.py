@@ -36,7 +36,7 @@ class PointOfFile:
             raise ModelFileError(f"{error.message} (with {where})", error.file, error.line, error.key) from error
 
     def __call__(self, **values: Any) -> dict[str, Any]:
-        job = self.job(values)
+        job = self.job(values).imperfect()
         return numbers(job, job.solve())
 
 

@@ -137,7 +137,7 @@ quantities = ["x", "ux"]
 
 
 def test_an_imperfection_is_that_of_python_and_grows_as_it_should(tmp_path):
-    """An axis that is out of line by the first mode bends on by 1 / (1 - P / P_cr); a cantilever, P_cr = pi^2 EI / 4."""
+    """An axis that is out of line by the first mode bends on by 1 / (1 - P / P_cr); P_cr L^2 = pi^2 EI / 4."""
     (row,) = found_by(COLUMN, tmp_path)["outputs"][0]["rows"]
     critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
     assert abs(row["x"]) == pytest.approx(1e-5 / (1.0 - 600.0 / critical), rel=2e-4)

@@ -117,7 +117,7 @@ MISTAKES = {
     ),
     "force of three": ("[0, 833.3333333333334]", "[0, 1, 2]", 29, "loads[1].vector", "two finite numbers"),
     "scale as number": ("vector = [0, 833", "scale = 1\nvector = [0, 833", 29, "loads[1].scale", "true or false"),
-    "imperfection without size": ("[[loads]]", "[imperfection]\nmode = 1\n[[loads]]", 26, "imperfection", "size is missing"),
+    "no size": ("[[loads]]", "[imperfection]\nmode = 1\n[[loads]]", 26, "imperfection", "size is missing"),
     "imperfection of no mode": (
         "[[loads]]",
         "[imperfection]\nsize = 0.001\nmode = 0\n[[loads]]",

@@ -1,5 +1,6 @@
 """The Python that kernels are written in: compiled, it does what Python does; what it does not know is named."""
 
+import importlib
 import math
 
 import numpy as np
@@ -246,3 +247,153 @@ def test_arrays_of_other_numbers_are_refused():
         added(2, np.ones(2, dtype=np.float32))
     with pytest.raises(TypeError, match="contiguous float64"):
         added(2, np.ones((2, 2))[:, 0])
+
+
+def perhaps_nothing(n, x):
+    if n > 5:
+        q = 1
+    return q
+
+
+def after_an_empty_loop(n, x):
+    for i in range(n):
+        x[i] = 0.0
+    return i
+
+
+def no_value_at_the_end(n, x):
+    if n > 0:
+        return 1
+
+
+def value_after_none(n, x):
+    if n < 0:
+        return
+    return n
+
+
+total = 100
+
+
+def own_name_of_the_module(n, x):
+    x[0] = total  # noqa: F823
+    if n > 5:
+        total = 1  # noqa: F841
+    return 0
+
+
+def whole_numbers_joined(n, x):
+    return n or 7
+
+
+def range_of_four(n, x):
+    for i in range(0, n, 1, 5):
+        x[i] = 0.0
+    return 0
+
+
+def in_nothing(n, x):
+    return n in ()  # noqa: RUF060
+
+
+@inlined
+def with_default(a, b=3):
+    return a + b
+
+
+def call_with_default(n, x):
+    return with_default(n)
+
+
+@inlined
+def of_itself(n):
+    return of_itself(n)
+
+
+def endless_calls(n, x):
+    return of_itself(n)
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (perhaps_nothing, "q may have no value here"),
+        (after_an_empty_loop, "i may have no value here"),
+        (no_value_at_the_end, "returns a value, but not where it ends"),
+        (value_after_none, "as many values everywhere"),
+        (own_name_of_the_module, "total is not known"),
+        (whole_numbers_joined, "and, or join conditions, and n is a whole number"),
+        (range_of_four, "is not known to compiled code"),
+        (in_nothing, r"n in \(\)"),
+        (call_with_default, "names without defaults"),
+        (endless_calls, "RecursionError"),
+    ],
+)
+def test_what_python_would_do_otherwise_is_refused(function, words):
+    with pytest.raises(TypeError, match=words):
+        _ = routine("ir", "i")(function).address
+
+
+@inlined
+def set_to_ten(x):
+    x[0] = 10.0
+    return 1.0
+
+
+@routine("r")
+def read_before_it_is_called(x):
+    x[0] += set_to_ten(x)
+
+
+@routine("i", "i")
+def all_ways(n):
+    """Values that every way here gives; ways that end do not count."""
+    while True:
+        if n > 100:
+            found = 1
+            break
+        n += 60
+        found = 2
+        if n > 90:
+            break
+    if n % 2 == 0:
+        other = 3
+    else:
+        if n > 150:
+            return -1
+        other = 4
+    return 10 * found + other
+
+
+def test_the_order_of_python_is_kept():
+    x = np.array([1.0])
+    read_before_it_is_called(x)
+    assert x[0] == 2.0
+    assert [all_ways(n) for n in (0, 31, 33, 45, 101, 102, 151)] == [
+        all_ways.function(n) for n in (0, 31, 33, 45, 101, 102, 151)
+    ]
+
+
+def test_a_module_that_is_loaded_again_is_compiled_again(tmp_path, monkeypatch):
+    """Its old text was found in memory."""
+    monkeypatch.syspath_prepend(tmp_path)
+    text = "from beamfem.kernels.compiling import routine\n\n@routine('d', 'd')\ndef times(x):\n    return {} * x\n"
+    (tmp_path / "loaded_again.py").write_text(text.format("2.0"))
+    module = importlib.import_module("loaded_again")
+    assert module.times(1.0) == 2.0
+    (tmp_path / "loaded_again.py").write_text(text.format("33.0"))
+    importlib.invalidate_caches()
+    old = module.times
+    module = importlib.reload(module)
+    assert (module.times(1.0), old(1.0)) == (33.0, 2.0)
+
+
+def test_a_text_that_has_changed_is_not_taken_for_the_function(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "changed_meanwhile.py"
+    text = "from beamfem.kernels.compiling import routine\n\n@routine('d', 'd')\ndef times(x):\n    return {} * x\n"
+    file.write_text(text.format("2.0"))
+    module = importlib.import_module("changed_meanwhile")
+    file.write_text(text.format("33.0"))
+    with pytest.raises(TypeError, match="has been changed since it was imported"):
+        module.times(1.0)

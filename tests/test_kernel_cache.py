@@ -117,6 +117,64 @@ def test_a_disk_that_is_full_while_compiling_is_no_error(tmp_path, monkeypatch):
     assert cache.found("doubled") is None
 
 
+def test_a_user_without_a_home_has_no_folder_there(monkeypatch):
+    def nowhere(*names, **options):
+        raise RuntimeError("could not determine the home directory for '~/.cache'")
+
+    for name in ("BEAMFEM_CACHE_DIR", "NUMBA_CACHE_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(cache, "user_cache_path", nowhere)
+    assert list(cache._parents()) == [KERNELS / "__pycache__"]
+
+
+def test_files_that_are_no_sources_are_left_alone(small):
+    """Editors leave links to nowhere beside files that are not saved."""
+    (small / ".#inner.py").symlink_to("me@host:1")
+    (small / "folder.py").mkdir()
+    value, _, folder = run(small)
+    assert (value, folder) == (7.0, run(small)[2])
+    assert folder != "None"
+
+
+def test_a_folder_that_can_only_be_read_is_read(small):
+    folder = Path(run(small)[2])
+    prefix = "import small.cache; small.cache.cache_folder = lambda: None\n"
+    command = [sys.executable, "-B", "-c", RUN.replace("from small.outer", prefix + "from small.outer", 1)]
+    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    done = subprocess.run([*command, str(small.parent), ""], capture_output=True, text=True, check=True, env=given)
+    assert done.stdout.split()[:2] == ["7.0", "1"]
+    assert folder.exists()
+
+
+def test_sources_that_change_while_a_process_runs_leave_nothing_behind(small):
+    """What they were when they were imported names the folder; what they are when a kernel is compiled is compiled."""
+    change = "import pathlib; p = pathlib.Path(sys.argv[1]) / 'small' / 'inner.py'\n"
+    change += "p.write_text(p.read_text() + '\\n# changed\\n')\n"
+    command = [sys.executable, "-B", "-c", RUN.replace("print(", change + "print(", 1), str(small.parent), ""]
+    given = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=given)
+    assert done.stdout.split()[0] == "7.0"
+    folder = Path(done.stdout.split(" ", 2)[2].strip())
+    assert not list(folder.glob("*.code"))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+def test_a_process_that_is_forked_while_another_thread_compiles_goes_on():
+    code = (
+        "import os, signal, threading, warnings; warnings.simplefilter('ignore')\n"
+        "from beamfem.kernels import band, compiling\n"
+        "begun, go_on = threading.Event(), threading.Event()\n"
+        "def compiles():\n"
+        "    with compiling._compiling: begun.set(); go_on.wait(0.3)\n"
+        "thread = threading.Thread(target=compiles); thread.start(); begun.wait()\n"
+        "child = os.fork()\n"
+        "if child == 0: signal.alarm(20); os._exit(0 if band.band(3).solve_lower.address else 1)\n"
+        "print(os.waitpid(child, 0)[1]); thread.join()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout.strip() == "0"
+
+
 def test_code_of_users_is_not_kept(tmp_path, monkeypatch):
     """The folder is named by the kernels of the package: what else is compiled may change without changing its name."""
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)

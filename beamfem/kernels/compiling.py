@@ -4,6 +4,7 @@ A pass over rows of numbers is compiled once, on its own, and called by its addr
 for it nor compile it again.
 """
 
+import os
 from collections.abc import Callable, Iterable
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
 from functools import cached_property
@@ -23,6 +24,10 @@ from beamfem.kernels.pointers import address_of
 _TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
 _PLAIN: dict[str, Any] = {"": None, "i": c_int64, "d": c_double}
 _compiling = RLock()  # two threads may need a kernel at once, and LLVM works for one of them
+if hasattr(os, "register_at_fork"):  # a process that is forked meanwhile would wait for the lock without end
+    os.register_at_fork(
+        before=_compiling.acquire, after_in_parent=_compiling.release, after_in_child=_compiling.release
+    )
 
 
 class Routine:
@@ -76,7 +81,7 @@ class Routine:
             if self.loaded:  # by another thread, while this one waited
                 return vars(self)["address"]
             begun = process_time()
-            of_this_package = self.__module__.startswith(f"{__package__}.")  # what names the folder
+            of_this_package = str(self.__module__).startswith(f"{__package__}.")  # what names the folder
             code = cache.found(self.name) if of_this_package else None
             if code is None:
                 code, self.compiled_here = machine.object_code(self.module()), True
@@ -103,8 +108,10 @@ class Routine:
 
 def _address(kind: str, array: ndarray) -> int:
     """Return where an array begins; compiled code reads whatever is there, so that its type is looked at here."""
-    if array.dtype != _TYPES[kind] or not array.flags.c_contiguous:
-        raise TypeError(f"compiled code takes contiguous {_TYPES[kind]}, got {array.dtype} {array.strides}")
+    if array.dtype != _TYPES.get(kind) or not array.flags.c_contiguous:
+        raise TypeError(
+            f"compiled code takes contiguous {_TYPES.get(kind, 'numbers')}, got {array.dtype} {array.strides}"
+        )
     return address_of(array)
 
 

@@ -17,13 +17,15 @@ from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Kind, Value
 class Scope:
     """What names stand for in a function.
 
-    inline(function, values): writes the instructions of another function here and returns what it returns.
+    inline(function, values): writes the instructions of another function here and returns what it returns; assigned:
+    names of the variables that have a value here, whatever way led here.
     """
 
     build: Build
     outside: dict[str, Any]
     inline: Callable[[Inlined, Sequence[Value]], list[Value]]
     variables: dict[str, tuple[Kind, ir.Value]] = field(default_factory=dict)
+    assigned: set[str] = field(default_factory=set)
 
 
 def object_of(scope: Scope, node: ast.expr) -> Any:
@@ -58,6 +60,8 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
         case ast.Tuple(elts=parts):
             return [one_value(scope, each) for each in parts]
         case ast.Name(id=name) if name in scope.variables:
+            if name not in scope.assigned:
+                raise TypeError(f"{name} may have no value here")
             kind, place = scope.variables[name]
             return Value(kind, build.builder.load(place))
         case ast.Constant() | ast.Name() | ast.Attribute():
@@ -120,7 +124,9 @@ def _either(build: Build, condition: ir.Value, first: Callable[[], Value], secon
 
 def _joined(scope: Scope, all_hold: bool, first: ast.expr, others: list[ast.expr]) -> Value:
     """Return whether all conditions hold, or any; none is computed that does not matter."""
-    here = Value(FLAG, truth(scope, first))
+    here = one_value(scope, first)
+    if here.kind is not FLAG:
+        raise TypeError(f"and, or join conditions, and {ast.unparse(first)} is a {here.kind.name}")
     if not others:
         return here
 

@@ -2,33 +2,59 @@
 
 import ast
 import builtins
-import inspect
 import linecache
 from collections.abc import Callable, Iterator
 from functools import cache
+from types import CodeType
 from typing import Any
 
 
 @cache
-def _functions(file: str) -> dict[int, ast.FunctionDef]:
+def _functions(file: str, text: str) -> dict[int, ast.FunctionDef]:
     """Return the functions of a file by the lines where they begin, with their decorators."""
-    text = "".join(linecache.getlines(file))
-    found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
+    found = (node for node in ast.walk(ast.parse(text, file)) if isinstance(node, ast.FunctionDef))
     return {min([node.lineno, *(each.lineno for each in node.decorator_list)]): node for node in found}
 
 
+@cache
+def _codes(file: str, text: str) -> list[CodeType]:
+    """Return what Python makes of all functions of a file."""
+    found, left = list[CodeType](), [compile(text, file, "exec", dont_inherit=True)]
+    while left:
+        inner = [constant for constant in left.pop().co_consts if isinstance(constant, CodeType)]
+        found += inner
+        left += inner
+    return found
+
+
 def definition(function: Callable[..., Any]) -> ast.FunctionDef:
-    """Return the syntax tree of a function, with the lines of its file."""
-    file = inspect.getsourcefile(function) or function.__code__.co_filename
-    found = _functions(file).get(function.__code__.co_firstlineno)
-    if found is None:
-        raise TypeError(f"the text of {function.__qualname__} is not in {file}, and without it nothing is compiled")
+    """Return the syntax tree of a function, with the lines of its file.
+
+    Raises TypeError where there is no text, where it is that of another function, as after a change of the file, and
+    for arguments that are more than names.
+    """
+    code = function.__code__
+    linecache.checkcache(code.co_filename)
+    text = "".join(linecache.getlines(code.co_filename, function.__globals__))
+    found = _functions(code.co_filename, text).get(code.co_firstlineno)
+    if found is None or code not in _codes(code.co_filename, text):
+        raise TypeError(
+            f"the text of {function.__qualname__} is not in {code.co_filename}, or it has been changed since it was "
+            "imported, and without it nothing is compiled"
+        )
+    given = found.args
+    if given.posonlyargs or given.kwonlyargs or given.vararg or given.kwarg or given.defaults:
+        raise TypeError(f"arguments of compiled code are names without defaults, those of {found.name} are more")
     return found
 
 
 def outside(function: Callable[..., Any]) -> dict[str, Any]:
     """Return what names mean to a function that are not its own: built-in, of its module, of a function around it."""
-    return vars(builtins) | function.__globals__ | dict(_enclosed(function))
+    code = function.__code__
+    known = vars(builtins) | function.__globals__ | dict(_enclosed(function))
+    for name in (*code.co_varnames, *code.co_cellvars):
+        known.pop(name, None)
+    return known
 
 
 def _enclosed(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:

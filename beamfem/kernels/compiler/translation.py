@@ -6,6 +6,9 @@ There are `for` over `range` with a step that is written as a number, `while`, `
 `continue`, `return`, and assignments to names and entries of pointers, several at once as well. What is called is an
 `Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function are numbers,
 modules or what is called. Anything else raises TypeError with the line.
+
+Whole numbers have 64 bits, and are turned into numbers where they meet one. What is divided by the whole number zero
+ends the process, as in C; the number zero gives an infinity or no number.
 """
 
 import ast
@@ -58,7 +61,8 @@ class _Body:
         self._end = self._builder.append_basic_block("end")
         self._depth = 0  # of loops and branches around a statement
         self._loops: list[tuple[ir.Block, ir.Block]] = []  # where `continue` and `break` lead
-        self._results: list[tuple[Kind, ir.Value]] = []
+        self._results: list[tuple[Kind, ir.Value]] | None = None  # of the first return
+        self._breaks: list[set[str] | None] = []  # what is assigned wherever a loop is left, None where it is not
         self._definition = definition(function)
         for argument, value in zip(self._definition.args.args, arguments, strict=True):
             self._assign(ast.Name(argument.arg), value)
@@ -66,9 +70,11 @@ class _Body:
     def run(self) -> list[Value]:
         """Write all instructions; return what the function returns."""
         self._suite(self._definition.body)
+        if self._results and not self._builder.block.is_terminated:
+            raise TypeError(f"{self._function.__qualname__} returns a value, but not where it ends")
         self._branch(self._end)
         self._builder.position_at_end(self._end)
-        return [Value(kind, self._builder.load(place)) for kind, place in self._results]
+        return [Value(kind, self._builder.load(place)) for kind, place in self._results or ()]
 
     def _inline(self, inlined: Inlined, arguments: Sequence[Value]) -> list[Value]:
         flags = self._build.flags if inlined.flags is None else inlined.flags
@@ -82,12 +88,17 @@ class _Body:
         for statement in statements:
             if self._builder.block.is_terminated:
                 return
+            where = f"in compiled code: {self._function.__code__.co_filename}, line {statement.lineno}"
             try:
                 self._statement(statement)
             except TypeError as error:
                 if not hasattr(error, "__notes__"):
-                    error.add_note(f"in compiled code: {self._function.__code__.co_filename}, line {statement.lineno}")
+                    error.add_note(where)
                 raise
+            except Exception as error:  # whatever a statement that nobody thought of leads to
+                named = TypeError(f"{ast.unparse(statement).splitlines()[0]}: {error!r}")
+                named.add_note(where)
+                raise named from error
 
     def _inner(self, statements: Sequence[ast.stmt]) -> None:
         self._depth += 1
@@ -102,7 +113,7 @@ class _Body:
                 for target in targets:
                     self._assign(target, found)
             case ast.AugAssign(target=target, op=operation, value=value):
-                self._change(target, operation, one_value(scope, value))
+                self._change(target, operation, value)
             case ast.Expr(value=ast.Constant()) | ast.Pass():
                 pass  # a docstring
             case ast.Expr(value=value):
@@ -114,11 +125,14 @@ class _Body:
                 iter=ast.Call(func=ast.Name("range"), args=limits, keywords=[]),
                 body=body,
                 orelse=[],
-            ):
+            ) if len(limits) in (1, 2, 3):
                 self._count(target, limits, body)
             case ast.While(test=test, body=body, orelse=[]):
-                self._loop(lambda: truth(scope, test), body)
+                endless = isinstance(test, ast.Constant) and test.value is True
+                self._loop(lambda: truth(scope, test), body, endless=endless)
             case ast.Break():
+                others = self._breaks[-1]
+                self._breaks[-1] = self._scope.assigned & (self._scope.assigned if others is None else others)
                 self._builder.branch(self._loops[-1][1])
             case ast.Continue():
                 self._builder.branch(self._loops[-1][0])
@@ -144,6 +158,7 @@ class _Body:
 
     def _set(self, name: str, value: Value) -> None:
         variables = self._scope.variables
+        self._scope.assigned.add(name)
         if name in variables:
             kind, place = variables[name]
             if kind is value.kind or kind.rank > value.kind.rank > 0:
@@ -154,15 +169,18 @@ class _Body:
         variables[name] = value.kind, self._build.space(value.kind.llvm)
         self._builder.store(value.llvm, variables[name][1])
 
-    def _change(self, target: ast.expr, operation: ast.operator, value: Value) -> None:
+    def _change(self, target: ast.expr, operation: ast.operator, by: ast.expr) -> None:
         if isinstance(target, ast.Subscript):
             pointer, index = one_value(self._scope, target.value), one_value(self._scope, target.slice)
-            self._build.write(pointer, index, combined(self._build, operation, self._build.read(pointer, index), value))
+            before = self._build.read(pointer, index)
+            after = combined(self._build, operation, before, one_value(self._scope, by))
+            self._build.write(pointer, index, after)
         else:
-            self._assign(target, combined(self._build, operation, one_value(self._scope, target), value))
+            before = one_value(self._scope, target)
+            self._assign(target, combined(self._build, operation, before, one_value(self._scope, by)))
 
     def _return(self, found: list[Value]) -> None:
-        if not self._results:
+        if self._results is None:
             self._results = [(each.kind, self._build.space(each.kind.llvm)) for each in found]
         if len(self._results) != len(found):
             raise TypeError("a function returns as many values everywhere")
@@ -173,11 +191,21 @@ class _Body:
     def _fork(self, condition: ir.Value, body: Sequence[ast.stmt], other: Sequence[ast.stmt]) -> None:
         then, otherwise, after = (self._builder.append_basic_block(name) for name in ("then", "else", "after"))
         self._builder.cbranch(condition, then, otherwise)
+        assigned = self._scope.assigned
+        before, ways = set(assigned), []
         for block, statements in ((then, body), (otherwise, other)):
             self._builder.position_at_end(block)
             self._inner(statements)
+            if not self._builder.block.is_terminated:
+                ways.append(set(assigned))
             self._branch(after)
+            assigned.clear()
+            assigned |= before
         self._builder.position_at_end(after)
+        if ways:
+            assigned |= set.intersection(*ways)
+        else:
+            self._builder.unreachable()
 
     def _loop(
         self,
@@ -185,6 +213,7 @@ class _Body:
         body: Sequence[ast.stmt],
         begin: Callable[[], None] = lambda: None,
         advance: Callable[[], None] = lambda: None,
+        endless: bool = False,
     ) -> None:
         ask, inside, onwards, after = (
             self._builder.append_basic_block(name) for name in ("ask", "inside", "onwards", "after")
@@ -194,14 +223,24 @@ class _Body:
         self._builder.cbranch(condition(), inside, after)
         self._builder.position_at_end(inside)
         self._loops.append((onwards, after))
+        self._breaks.append(None)
+        assigned = self._scope.assigned
+        before = set(assigned)
+        self._depth += 1
         begin()
         self._inner(body)
+        self._depth -= 1
         self._loops.pop()
+        left = self._breaks.pop()
         self._branch(onwards)
         self._builder.position_at_end(onwards)
         advance()
         self._builder.branch(ask)
         self._builder.position_at_end(after)
+        assigned.clear()
+        assigned |= (left or set()) if endless else before
+        if endless and left is None:
+            self._builder.unreachable()
 
     def _count(self, target: ast.Name, limits: list[ast.expr], body: Sequence[ast.stmt]) -> None:
         found = [one_value(self._scope, each) for each in limits]

@@ -50,6 +50,12 @@ def element(request):
 
 
 @pytest.fixture
+def widest_band(monkeypatch):
+    """Return a function that sets the widest half width for which a model gets a band."""
+    return lambda half_width: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", half_width)
+
+
+@pytest.fixture
 def rng():
     return np.random.default_rng(20160101)
 

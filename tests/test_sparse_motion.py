@@ -10,12 +10,6 @@ from beamfem.assembly.system import system_of
 from beamfem.solve.motion import sparse_motion
 
 
-@pytest.fixture
-def widest_band(monkeypatch):
-    """Return a function that sets the widest half width for which a model gets a band."""
-    return lambda half_width: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", half_width)
-
-
 def arcade(bays=3):
     """Portals side by side with hinges, an inclined roller, a driven foot and a follower that shakes them."""
     posts = [bf.Beam(bf.Line((i, 0), (i, 1)), 2, bf.CRBF(2), SECTION, MATERIAL) for i in range(bays + 1)]

@@ -195,13 +195,13 @@ class Assembler:
         model_passes.balance(self.address)
         self.raise_errors()
 
-    def predict(self, p: np.ndarray, step: np.ndarray) -> None:
-        """Fill `stresses` with those after a linearised step (n,) from p (n,)."""
+    def predict(self, p: np.ndarray, step: np.ndarray, v: np.ndarray | None = None) -> None:
+        """Fill `stresses` with those after a linearised step (n,) from p (n,); v: p' (n,), where rates count."""
         self.require("prediction")
-        self.table[record.COORDINATES_P], self.table[record.COORDINATES_V] = (
-            _address(p, self.size),
-            _address(step, self.size),
-        )
+        states = [_address(values, self.size) for values in (p, step, step if v is None else v)]
+        fields = record.COORDINATES_P, record.COORDINATES_V, record.COORDINATES_A
+        for field, address in zip(fields, states, strict=True):
+            self.table[field] = address
         for work in self.works:
             model_passes.predict_resultants(work.address, self.address)
         self.raise_errors()

@@ -159,16 +159,24 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
 
 
 def predicted_stresses(
-    system: System, p: np.ndarray, step: np.ndarray, time: float, equations: Equations | None = None
+    system: System,
+    p: np.ndarray,
+    step: np.ndarray,
+    time: float,
+    equations: Equations | None = None,
+    rates: tuple[np.ndarray, tuple[float, float, float]] | None = None,
 ) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
 
     time: at the end of the step, for strains that loads impose;
-    equations: of other blocks, to take instead of those of the system.
+    equations: of other blocks, to take instead of those of the system; rates: p' (n,) in motions, and the weights of p,
+    p' and p'' in their tangent.
     """
     assembler = Assembler(equations or system.equations)
     assembler.impose(system.imposing(time))
-    assembler.predict(_plain(p), _plain(step))
+    if rates is not None:
+        assembler.weigh(rates[1])
+    assembler.predict(_plain(p), _plain(step), None if rates is None else _plain(rates[0]))
     return assembler.stresses
 
 

@@ -62,13 +62,15 @@ def _solve_turned(s, b, call):
 def _predict_resultants(s, b, call, system):
     """Keep the resultants that a correction leads to, for the geometric part of the next tangent."""
     groups, free, right = wholes(s[r.GROUP_RECORDS]), wholes(b[r.FREE_DOFS]), reals(b[r.RIGHT])
-    change, velocity = reals(b[r.CHANGE]), s[r.COORDINATES_V]
+    change, velocity, acceleration = reals(b[r.CHANGE]), s[r.COORDINATES_V], s[r.COORDINATES_A]
     for i in range(b[r.UNKNOWN]):
         change[free[i]] = right[i]
     s[r.COORDINATES_V] = b[r.CHANGE]
+    s[r.COORDINATES_A] = velocity
     for group in range(s[r.GROUPS]):
         _two(call[r.PREDICT_RESULTANTS], groups[group], system)
     s[r.COORDINATES_V] = velocity
+    s[r.COORDINATES_A] = acceleration
 
 
 @inlined

@@ -93,7 +93,8 @@ def rate_nodes(group, system, row):
 def predict_resultants(group, system):
     """Fill `STRESS` with C (eps + (d eps / de) B dp) less what is imposed; B and eps at p, dp in the place of p'.
 
-    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent.
+    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent. Where rates
+    count, p' stands in the place of p'', and t C (d eps / de) B (p' + cv dp) of the retardation time t is added.
     """
     b = wholes(group)
     call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
@@ -104,9 +105,17 @@ def predict_resultants(group, system):
         b[r.ELEMENTS],
         b[r.MEASURES],
     )
-    size, slots, stress = 2 * vectors, nodes * vectors, reals(b[r.STRESS])
+    s, size, slots, stress = wholes(system), 2 * vectors, nodes * vectors, reals(b[r.STRESS])
+    damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
+    cv = reals(s[r.FACTORS])[1] if damped else 0.0
+    rows = b[r.CURVATURE] if damped else 2 * size
     _three(call[r.PLACE_NODES], group, system, 0)
     _three(call[r.RATE_NODES], group, system, b[r.ACCELERATION])
+    if damped:
+        step = s[r.COORDINATES_V]
+        s[r.COORDINATES_V] = s[r.COORDINATES_A]
+        _three(call[r.RATE_NODES], group, system, b[r.VELOCITY])
+        s[r.COORDINATES_V] = step
     _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
     pairs = measures * (measures + 1) // 2
@@ -115,31 +124,33 @@ def predict_resultants(group, system):
         count = min(b[r.BATCH], elements - first)
         for i in range(count):
             unit[i] = 1.0
-        _collect(call[r.COLLECT], group, 0, first, count, 2 * size, 1)
+        _collect(call[r.COLLECT], group, 0, first, count, rows, 1)
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, 2 * size * ROW, slope, second, factor, e, q)
+            stride, rate, time = rows * ROW, at(q, RATE * ROW), at(t, b[r.DAMPING] * ROW)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, e, q)
             _measure(call[r.STRAINS], count, q)
-            rate = at(q, RATE * ROW)
-            _interpolate(
-                call[r.INTERPOLATE],
-                nodes,
-                vectors,
-                bends,
-                count,
-                2 * size * ROW,
-                slope,
-                second,
-                factor,
-                at(e, size * ROW),
-                rate,
-            )
+            change = at(e, b[r.ACCELERATION] * ROW)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
             _measure(call[r.RATES], count, q)
             for row in range(measures):
-                strain, change = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
+                strain, its = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                 for i in range(count):
-                    strain[i] += change[i]
+                    strain[i] += its[i]
+                if damped:
+                    for i in range(count):
+                        strain[i] += time[i] * cv * its[i]
+            if damped:
+                moving = at(e, b[r.VELOCITY] * ROW)
+                _interpolate(
+                    call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, moving, rate
+                )
+                _measure(call[r.RATES], count, q)
+                for row in range(measures):
+                    strain, its = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
+                    for i in range(count):
+                        strain[i] += time[i] * its[i]
             if b[r.NATURAL] != 0:
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(

@@ -116,7 +116,8 @@ class SparseMotion:
                 break
             if full:
                 self._change[free] = right
-                stresses = predicted_stresses(self.system, state[0], self._change[: self._size], time)
+                rates = state[1], self.coefficients
+                stresses = predicted_stresses(self.system, state[0], self._change[: self._size], time, rates=rates)
             scale = self._inverse_scale
             last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights, self._change)
             state[1:, self._multipliers] = 0.0  # they have no rates

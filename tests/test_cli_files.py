@@ -45,7 +45,7 @@ def test_everything_that_the_template_mentions_can_be_read(tmp_path):
     """Also what stands behind a comment sign, one analysis after the other."""
     text = Path(new.__file__).with_name("template.toml").read_text()
     begin, analyses, rest = re.split(r"^# -+ what to (?:compute|print).*\n", text, flags=re.MULTILINE)
-    begin = re.sub(r"^# (?=\w+ = |\[\[)", "", begin, flags=re.MULTILINE)
+    begin = re.sub(r"^# (?=\w+ = |\[)", "", begin, flags=re.MULTILINE)
     kinds = []
     for analysis in re.split(r"^(?:# )?\[analysis\]\n", analyses, flags=re.MULTILINE)[1:]:
         own = "[analysis]\n" + re.sub(r"^# ", "", analysis, flags=re.MULTILINE)

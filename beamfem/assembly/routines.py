@@ -92,7 +92,8 @@ Sizes = tuple[tuple[str, int], ...]  # arguments of kernels by their names
 class Routines:
     """A table of addresses for a strain measure; entries are filled when a task first needs them.
 
-    law: address of what takes the place of the linear law, if anything does; sizes: what the compiler knows of them.
+    sizes: arguments that the compiler knows, since they are the same for all elements; law: address of what takes the
+    place of the linear law, if anything does.
     """
 
     def __init__(self, measures: int, sizes: Sizes, law: int = 0) -> None:

@@ -51,6 +51,8 @@ def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
     """Return the addresses of what the driver of statics, or of motions, calls for a band of this half width."""
     found = {
         record.BALANCE: model_passes.balance,
+        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
+        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
         record.HOLD_NORMALS: rollers.hold_normals,
         record.ROTATE_IN: rollers.rotate_in,
         record.ROTATE_BACK: rollers.rotate_back,
@@ -66,8 +68,6 @@ def _of_statics(own: Band) -> dict[int, Routine]:
     return {
         record.FACTOR: own.factor,
         record.SOLVE_UPPER: own.solve_upper,
-        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
-        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
         record.TAKE_STEP: newton.take_step,
     }
 
@@ -76,8 +76,6 @@ def _of_motions(own: TwoSided) -> dict[int, Routine]:
     return {
         record.FACTOR_BOTH: own.factor,
         record.SOLVE_BOTH: own.solve,
-        record.PREDICT_RESULTANTS: model_passes.predict_resultants,
-        record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
         record.PREDICT: motion_steps.predict,
         record.COMPLETE: motion_steps.complete,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,

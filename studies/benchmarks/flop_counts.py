@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.kernels.band import band
 from beamfem.kernels.model_passes import balance
+from beamfem.kernels.two_sided import SHORT, two_sided
 from studies.benchmarks.roofline_cases import FACTOR, FORMS, KERNELS, RESIDUAL, SOLVE, TANGENT, case, place
 from studies.benchmarks.uncompiled import Memory, uncompiled
 
 _NOTHING = 0  # a whole number, which no sum of floating-point numbers is
-_CHAINS = (5, 9)  # elements; their difference leaves the ends out
+_CHAINS = (17, 21)  # elements, so many that bands are factorised from both ends; their difference leaves the ends out
 
 
 class Tally:
@@ -97,11 +97,12 @@ def count(form: str) -> dict[str, tuple[float, float]]:
 def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tally = Tally()
     _, one = case(form, elements)
-    own, half, n = band(one.half_width), one.half_width, len(one.right)
+    half, n = one.half_width, len(one.right)
+    own = two_sided(half, n < SHORT)
     equations, space = one.equations, np.empty(n)
     arrays = [*equations.memory, one.state, one.residual, one.band, one.right, space]
     addresses = [each.ctypes.data for each in (one.band, one.right, space)]
-    routines = balance, own.factor, own.solve_lower, own.solve_upper
+    routines = balance, own.factor, own.solve
     for routine in routines:
         assert routine.address
     memory = Memory(arrays, lambda value: Counted(value, tally))
@@ -113,13 +114,12 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
         balance.function(table)
 
     def solved() -> None:
-        own.solve_lower.function(n, n, half, rows, right)
-        own.solve_upper.function(n, n, half, rows, right)
+        own.solve.function(n, half, rows, right)
 
     tasks = {
         RESIDUAL: lambda: balanced(False),
         TANGENT: lambda: balanced(True),
-        FACTOR: lambda: own.factor.function(n, n, half, 0, rows, right, pivots),
+        FACTOR: lambda: own.factor.function(n, half, rows, pivots),
         SOLVE: solved,
     }
     found = {}

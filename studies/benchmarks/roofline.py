@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from beamfem.kernels.band import band
 from beamfem.kernels.model_passes import balance
+from beamfem.kernels.two_sided import SHORT, two_sided
 from beamfem.tabulate import as_text, write_csv
 from studies.benchmarks.ceilings import Ceilings, least_seconds, measure
 from studies.benchmarks.flop_counts import count_all
@@ -51,7 +51,8 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     """Return the CPU time of one call of each kernel [s]."""
     one = case(form, elements)[1]
     times = max(1, 100_000 // elements)
-    own, half, n = band(one.half_width), one.half_width, len(one.right)
+    half, n = one.half_width, len(one.right)
+    own = two_sided(half, n < SHORT)
     copy, right, space = np.empty_like(one.band), np.empty_like(one.right), np.empty_like(one.right)
 
     def balanced() -> None:
@@ -65,13 +66,12 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     def factored() -> None:
         for _ in range(times):
             np.copyto(copy, one.band)
-            own.factor(n, n, half, 0, copy, right, space)
+            own.factor(n, half, copy, space)
 
     def solved() -> None:
         for _ in range(times):
             np.copyto(right, one.right)
-            own.solve_lower(n, n, half, copy, right)
-            own.solve_upper(n, n, half, copy, right)
+            own.solve(n, half, copy, right)
 
     found = {TANGENT: least_seconds(balanced), FACTOR: least_seconds(factored) - least_seconds(copied)}
     found[SOLVE] = least_seconds(solved)

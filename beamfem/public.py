@@ -45,9 +45,11 @@ from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.model.grading import graded
 from beamfem.model.imposed_strains import Actuation, Temperature
-from beamfem.model.joints import Hinge, Rigid
+from beamfem.model.joints import Hinge, Joint, Rigid
+from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, PointLoad
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
+from beamfem.model.support import LineSupport, PointSupport
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise
 from beamfem.results.beam_stress import BeamStress

@@ -233,7 +233,7 @@ def _led(rng: Random, support):
     """In motions what is led moves from zero, as a function of time."""
     if not isinstance(support, bf.Prescribed):
         return support
-    values = {name: _Ramp(value) for name, value in support.held().items()}
+    values = {name: _Ramp(value) for name, value in support.prescribed().items()}
     return bf.Prescribed(support.point, **values)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 import beamfem as bf
 from beamfem.element.coordinates import Gradients, labels, nodal_rates
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.model.load import factor, jumps_along
+from beamfem.model.along_beam import jumps_along
+from beamfem.model.load import factor
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
@@ -237,7 +238,8 @@ def sprung(model: bf.Model, moved: np.ndarray) -> np.ndarray:
         if isinstance(support, bf.Spring):
             mesh = model.mesh_of(support.point)
             dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            for name, stiffness in support.by_coordinate.items():
+            springs = zip(("r^x", "r^y", "theta"), (*support.stiffness, support.rotational), strict=True)
+            for name, stiffness in springs:
                 if stiffness:
                     result[dofs[name]] -= stiffness * moved[dofs[name]]
     return result

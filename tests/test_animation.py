@@ -13,7 +13,7 @@ from PIL import Image, ImageSequence
 import beamfem as bf
 from beamfem.view.acting import FORCE
 from beamfem.view.animation import _palette
-from beamfem.view.held import PRESCRIBED
+from beamfem.view.supports import PRESCRIBED
 
 
 @pytest.fixture(scope="module")

@@ -168,9 +168,13 @@ def test_starts_that_break_a_condition_are_refused():
 
 
 def test_results_with_connectors_of_ones_own_say_why_they_cannot_be_saved(tmp_path):
+    @dataclass(frozen=True)
+    class Local(Anchor):
+        pass
+
     own = beam()
-    solution = bf.solve_static(cantilever(own, [], [Anchor(own.end, (1.0, 1.0, 1.0))]))
-    with pytest.raises(bf.InputError, match="a Anchor cannot be saved"):
+    solution = bf.solve_static(cantilever(own, [], [Local(own.end, (1.0, 1.0, 1.0))]))
+    with pytest.raises(bf.InputError, match="a Local cannot be saved: define its class at the top level of a module"):
         solution.save(tmp_path / "own.h5")
     solution.plot(tmp_path / "own.png")
     solution.to_vtk(tmp_path / "own.vtkhdf")

@@ -58,7 +58,7 @@ def test_an_inclined_roller_beside_a_prescribed_displacement_is_refused(held):
     beam = line()
     supports = [bf.Clamp(beam.start), bf.Roller(beam.end, (1.0, 1.0)), bf.Prescribed(beam.end, **held)]
     model = bf.Model([beam], supports, [bf.PointForce(beam.at(0.5), (0.0, 1.0))])
-    with pytest.raises(bf.InputError, match="inclined Roller stands where another support already holds"):
+    with pytest.raises(bf.InputError, match="inclined Roller stands where another support already constrains"):
         bf.solve_static(model)
 
 
@@ -66,7 +66,7 @@ def test_two_inclined_rollers_at_one_point_are_refused():
     beam = line()
     rollers = [bf.Roller(beam.end, (1.0, 1.0)), bf.Roller(beam.end, (1.0, -1.0))]
     model = bf.Model([beam], [bf.Clamp(beam.start), *rollers])
-    with pytest.raises(bf.InputError, match="two inclined Rollers stand at the same point; a Pin holds both"):
+    with pytest.raises(bf.InputError, match="two inclined Rollers stand at the same point; a Pin constrains both"):
         bf.solve_static(model)
 
 

@@ -17,9 +17,9 @@ from beamfem.view import symbols
 from beamfem.view.acting import FORCE, draw_loads
 from beamfem.view.drawing import equal_axes
 from beamfem.view.frames import spread_rows
-from beamfem.view.held import supports_of
 from beamfem.view.history import plot_load_displacement
 from beamfem.view.shapes import Shapes, limits
+from beamfem.view.supports import supports_of
 
 
 @pytest.fixture(scope="module")

@@ -254,10 +254,12 @@ def test_an_error_in_a_law_ends_a_solve():
         bf.solve_static(model)
 
 
-def test_results_of_a_law_cannot_be_saved(tmp_path):
+def test_results_of_a_law_are_saved_with_its_module(tmp_path):
     solution = bf.solve_static(arm(RambergOsgood(**SECTION, knee=30.0), force=(0.0, 10.0))[1])
-    with pytest.raises(bf.InputError, match="RambergOsgood cannot be saved"):
-        solution.save(tmp_path / "a.h5")
+    solution.save(tmp_path / "a.h5")
+    loaded = bf.load(tmp_path / "a.h5")
+    assert loaded.model.beams[0].section == RambergOsgood(**SECTION, knee=30.0)
+    assert loaded.energy().strain == pytest.approx(solution.energy().strain, rel=1e-14)
 
 
 def test_a_motion_does_not_jump_to_another_one():

@@ -1,6 +1,7 @@
 """Sweeps that keep whole solutions: in memory, from other processes and on disk."""
 
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -81,7 +82,11 @@ def test_what_is_neither_number_nor_solution_is_refused():
 
 
 def of_an_own_law(force):
-    law = RambergOsgood(axial=1e6, shear=1e5, bending=100.0, mass=1.0, rotary_inertia=1e-4, knee=30.0)
+    @dataclass(frozen=True)
+    class Local(RambergOsgood):
+        """A class that no module holds."""
+
+    law = Local(axial=1e6, shear=1e5, bending=100.0, mass=1.0, rotary_inertia=1e-4, knee=30.0)
     arm = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=2), law)
     solution = bf.solve_static(bf.Model([arm], [bf.Clamp(arm.start)], [bf.PointForce(arm.end, (0.0, force))]))
     return {"solution": solution, "tip": float(solution.p[-1].max())}
@@ -89,7 +94,7 @@ def of_an_own_law(force):
 
 def test_a_solution_that_cannot_be_saved_is_in_the_result_and_named(tmp_path):
     for _ in range(2):
-        with pytest.warns(bf.NotStoredWarning, match=r"not kept in the store .*RambergOsgood cannot be saved"):
+        with pytest.warns(bf.NotStoredWarning, match=r"not kept in the store .*Local cannot be saved"):
             found = bf.sweep(of_an_own_law, force=[10.0], store=tmp_path)
         assert found.computed == 1
         assert isinstance(found["solution"][0], bf.Solution)

@@ -7,8 +7,7 @@ import numpy as np
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
-from beamfem.model.load import factor
-from beamfem.model.loads import LineLoad, PointLoad, Pressure
+from beamfem.model.load import LineLoad, PointLoad, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
@@ -38,21 +37,19 @@ class Actions:
 
 def build_actions(model: Model, block: int) -> Actions:
     """Return everything that acts at points of the elements of a block."""
-    spread = (load for load in model.distributed if load.follower or callable(load.vector))
-    loads = (*model.point_loads, *spread, *model.pressures)
+    points, lines = model.point_loads, [load for load in model.line_loads if not (load.uniform and load.conservative)]
     parts: list[dict[str, np.ndarray]] = []
-    for number, load in enumerate(loads):
-        if isinstance(load, LineLoad):
-            mesh = _mesh(model, load.beam, block)
-            if mesh is not None:
-                parts.append(_line(mesh, load, number))
-        else:
-            mesh = _mesh(model, load.point.beam, block)
-            if mesh is not None:
-                where, at = mesh.locate(load.point.fraction)
-                unit = np.array([load.value])
-                parts.append(_part(mesh, np.array([where]), np.array([at]), unit, number, load.follower))
-    for foundation in model.foundations:
+    for number, load in enumerate(points):
+        mesh = _mesh(model, load.point.beam, block)
+        if mesh is not None:
+            where, at = mesh.locate(load.point.fraction)
+            unit = np.array([load.value])
+            parts.append(_part(mesh, np.array([where]), np.array([at]), unit, number, load.follower))
+    for number, line in enumerate(lines, len(points)):
+        mesh = _mesh(model, line.beam, block)
+        if mesh is not None:
+            parts.append(_line(mesh, line, number))
+    for foundation in model.line_supports:
         mesh = _mesh(model, foundation.beam, block)
         if mesh is not None:
             element, xi, weight = length_points(mesh)
@@ -62,7 +59,7 @@ def build_actions(model: Model, block: int) -> Actions:
     size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
     joined = {name: np.concatenate([empty, *(part[name] for part in parts)]) for name, empty in _empty(size).items()}
     own = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
-    return Actions(PointLoads(**joined), **own, loads=loads)
+    return Actions(PointLoads(**joined), **own, loads=(*points, *lines))
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
@@ -73,13 +70,11 @@ def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
 def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
     """Rows of the point loads for a load along a beam."""
     element, xi, weight = length_points(mesh)
-    values = load.values(mesh.arc_length(element, xi))
     unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
-    if not isinstance(load, Pressure):
-        unit[:, :2] = weight[:, None] * values
-        return _part(mesh, element, xi, unit, source, load.follower, rule)
-    # p (-y', x'): across the derivative of the position, which plays the section's direction of unit length along x
-    unit[:, 1] = weight * values
+    unit[:, :2] = weight[:, None] * load.forces(mesh.arc_length(element, xi))
+    if load.axes != "axis":
+        return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
+    # along and across the derivative of the position, which takes the place of the section's direction
     part = _part(mesh, element, xi, unit, source, True, rule)
     part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
     part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))

@@ -10,14 +10,14 @@ from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE, Block
 from beamfem.model.classes import Classes, likenesses
-from beamfem.model.load import Imposing
+from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
 
 def build_block(
-    element: Element, meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, Imposing]] = ()
+    element: Element, meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, ImposedStrain]] = ()
 ) -> Block:
     """Return the block of all beams (number, mesh) that share an element and a law of the section.
 

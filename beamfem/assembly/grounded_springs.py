@@ -3,22 +3,21 @@
 import numpy as np
 
 from beamfem.assembly.layout import Unknowns
+from beamfem.assembly.prescribed import COORDINATES
 from beamfem.kernels.block import Springs
 from beamfem.model.model import Model
-from beamfem.model.supports import Spring
 
 
 def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Springs:
     """Return the springs of a model whose coordinates are `reference` (n,) where no spring pulls."""
     dofs, stiffness = [], []
-    for support in model.supports:
-        if isinstance(support, Spring):
+    for support in model.point_supports:
+        if springs := support.springs():
             mesh = model.mesh_of(support.point)
             known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            for name, value in support.by_coordinate.items():
-                if value > 0.0:
-                    dofs.append(known[name])
-                    stiffness.append(value)
+            for direction, value in springs.items():
+                dofs.append(known[COORDINATES[direction]])
+                stiffness.append(value)
     where = np.array(dofs, dtype=np.int64)
     free = unknowns.free[where]
     place = free.copy()

@@ -6,11 +6,11 @@ import numpy as np
 
 from beamfem.kernels.block import Imposed
 from beamfem.model.free_strains import free_strains
-from beamfem.model.load import Imposing
+from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 
-def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, Imposing]]) -> Imposed | None:
+def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:
     """Return what loads, each with the number of its beam, impose on a block of beams (number, mesh); None: nothing."""
     by_beam: dict[int, list[int]] = {}
     for number, (beam, _) in enumerate(loads):

@@ -2,6 +2,8 @@
 
 from collections import defaultdict
 
+import numpy as np
+
 from beamfem.model.model import Model
 
 
@@ -13,11 +15,14 @@ def pressures_have_potential(model: Model, held: set[int]) -> bool:
     the same pressure. Where p changes along the beam, it remains at every point.
     """
     ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
-    for load in model.pressures:
-        if callable(load.value):
+    for load in model.line_loads:
+        if load.axes != "axis":
+            continue
+        along, across = load.forces(np.zeros(1))[0].tolist()
+        if not load.uniform or along != 0.0:
             return False
         mesh = model.mesh_of(load.beam.start)
         first, last = mesh.carried.dof[mesh.node[0, 0], 0], mesh.carried.dof[mesh.node[-1, -1], 0]
         for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
-            ends[id(load.amplitude), load.scale, dof] += sign * load.value
+            ends[id(load.amplitude), load.scale, dof] += sign * across
     return all(left == 0.0 or dof in held or dof + 1 in held for (_, _, dof), left in ends.items())

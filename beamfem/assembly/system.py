@@ -1,4 +1,4 @@
-"""A model in numbers: coordinates, blocks of elements, held coordinates and loads at a time."""
+"""A model in numbers: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,9 +13,9 @@ from beamfem.assembly.blocks import build_block
 from beamfem.assembly.columns import columns_of
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.grounded_springs import grounded_springs
-from beamfem.assembly.held import Held, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt
+from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.sheet import make_sheet
@@ -193,10 +193,10 @@ class System:
         result = np.zeros((len(self.model.beams), 4))
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
-        for spread in self.model.distributed:
-            if not spread.follower and not callable(spread.vector):
-                row = self.model.number_of(spread.beam)
-                result[row, 2:] += np.array(spread.vector) * factor(spread, time, self.static)
+        for line in self.model.line_loads:
+            if line.uniform and line.conservative:
+                row = self.model.number_of(line.beam)
+                result[row, 2:] += line.forces(np.zeros(1))[0] * factor(line, time, self.static)
         return result
 
     @cached_property
@@ -208,31 +208,31 @@ class System:
         return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)
 
     @cached_property
-    def held(self) -> tuple[Held, ...]:
-        """Held coordinates, ordered by number. Raises InputError where two supports hold the same one."""
+    def prescribed(self) -> tuple[PrescribedCoordinate, ...]:
+        """Prescribed coordinates, ordered by number. Raises InputError where two supports prescribe the same one."""
         return prescribed_coordinates(self.model)
 
     @cached_property
     def prescribed_dofs(self) -> np.ndarray:
-        return np.array([item.dof for item in self.held], dtype=np.int64)
+        return np.array([item.dof for item in self.prescribed], dtype=np.int64)
 
     def prescribed_values(self, time: float) -> np.ndarray:
-        """Values of the held coordinates at a time, in statics at a load factor."""
+        """Values of the prescribed coordinates at a time, in statics at a load factor."""
         start = self._prescribed_reference
-        return start + self.prescribed_changes(time) if self._led else start
+        return start + self.prescribed_changes(time) if self._moved else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
-        """Changes of the held coordinates from the reference (nh,) at a time, in statics at a load factor."""
-        return np.array([item.change(time, self.static) for item in self.held], dtype=float)
+        """Changes of the prescribed coordinates from the reference (nh,) at a time, in statics at a load factor."""
+        return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
 
     @cached_property
     def _prescribed_reference(self) -> np.ndarray:
         return self.reference[self.prescribed_dofs]
 
     @cached_property
-    def _led(self) -> bool:
-        """Whether a support changes what it holds."""
-        return any(callable(item.value) or item.value != 0.0 for item in self.held)
+    def _moved(self) -> bool:
+        """Whether a support changes what it prescribes."""
+        return any(callable(item.value) or item.value != 0.0 for item in self.prescribed)
 
     def largest_turn(self, before: float, after: float) -> float:
         """Return the largest change [rad] of a prescribed rotation between two times.
@@ -240,16 +240,16 @@ class System:
         Gradients elsewhere on the beam cannot tell a full turn from none, so it must be followed in parts.
         """
         static = self.static
-        return max((abs(own.change(after, static) - own.change(before, static)) for own in self._turned), default=0.0)
+        return max((abs(own.change(after, static) - own.change(before, static)) for own in self._rotated), default=0.0)
 
     @cached_property
-    def _turned(self) -> tuple[Held, ...]:
+    def _rotated(self) -> tuple[PrescribedCoordinate, ...]:
         """Rotations that supports change."""
-        return tuple(item for item in self.held if item.turns and (callable(item.value) or item.value != 0.0))
+        return tuple(item for item in self.prescribed if item.rotation and (callable(item.value) or item.value != 0.0))
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """The order of the coordinates that are not held."""
+        """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
         known = np.append(self.prescribed_dofs, connectors.memory)
@@ -280,7 +280,7 @@ class System:
     def turning(self) -> np.ndarray:
         """Numbers among the unknown of x and y of each vector that turns with its section, and its node (np, 3).
 
-        Nodes of all blocks are numbered one after the other; vectors of which a part is held do not turn.
+        Nodes of all blocks are numbered one after the other; vectors of which a part is prescribed do not turn.
         """
         free, found, first = self.unknowns.free, [], 0
         for block in self.blocks:

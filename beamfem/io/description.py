@@ -12,26 +12,15 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
+from beamfem.io.own_parts import class_of, dataclasses_of, name_of
 from beamfem.material import Material
+from beamfem.model import imposed_strains, joints, loads, supports
+from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.imposed_strains import Actuation, Temperature
-from beamfem.model.joints import Hinge, Rigid
-from beamfem.model.load import functions_along, jumps_along, kinks_along
-from beamfem.model.loads import (
-    DistributedLoad,
-    Gravity,
-    ImposedStrain,
-    LineLoad,
-    Load,
-    PointForce,
-    PointMoment,
-    Pressure,
-)
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import energy_points, length_points, stations
 from beamfem.model.sampled import Sampled, SampledAlong, SampledSection
-from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated
 from beamfem.section import Layer, Layered, Section, ShapedSection, StiffnessSection
 from beamfem.section.outline import RectangleOutline, TubeOutline
@@ -67,26 +56,13 @@ _CLASSES = {
         Structural,
         Beam,
         Point,
-        Clamp,
-        Pin,
-        Roller,
-        Spring,
-        Foundation,
-        Prescribed,
         Interpolated,
-        Gravity,
-        DistributedLoad,
-        Pressure,
         SampledAlong,
-        PointForce,
-        PointMoment,
-        Actuation,
-        Temperature,
-        Rigid,
-        Hinge,
         Model,
+        *(kind for room in (loads, imposed_strains, supports, joints) for kind in dataclasses_of(room)),
     )
 }
+_OF_TIME = "amplitude"  # the field of a user's part that is known to be a function of time
 _DRAWN = 4  # intervals of an element at whose ends a section that varies is saved besides
 
 
@@ -128,10 +104,11 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
     return replace(beam, section=SampledSection(tuple(at.tolist()), values, beam.jumps))
 
 
-def _with_own_values(load: Load, model: Model) -> Load:
+def _with_own_values(load: Any, model: Model) -> Any:
     """Return a load along a beam with its values where it is a function: those that were used, and some to draw."""
-    if not isinstance(load, LineLoad | ImposedStrain):
+    if not isinstance(load, AlongBeam):
         return load
+    kept: Any = load
     saved: dict[str, Any] = {}
     for name in functions_along(load):
         mesh = model.mesh_of(load.beam.start)
@@ -141,7 +118,7 @@ def _with_own_values(load: Load, model: Model) -> Load:
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
         saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
-    return replace(load, **saved)
+    return replace(kept, **saved)
 
 
 class _Writer:
@@ -157,12 +134,27 @@ class _Writer:
         names = [field.name for field in fields(value)]
         return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
 
+    def own_members(self, value: Any) -> dict[str, Any]:
+        """Describe a part that a user has written. Raises InputError for a function whose argument is not known."""
+        described: dict[str, Any] = {"class": name_of(value)}
+        for field in fields(value):
+            given = getattr(value, field.name)
+            for item in given if isinstance(given, tuple | list) else (given,):
+                if callable(item) and not self.known(item) and field.name != _OF_TIME:
+                    raise InputError(f"a {type(value).__name__} cannot be saved: its field {field.name} is a function")
+            described[field.name] = {"array": given.tolist()} if isinstance(given, np.ndarray) else self.write(given)
+        return described
+
+    @staticmethod
+    def known(value: Any) -> bool:
+        return _CLASSES.get(type(value).__name__) is type(value)
+
     def write(self, value: Any) -> Any:
         if isinstance(value, Parametric):
             value = value.spline()
         if isinstance(value, Beam):
             return {"beam": next(i for i, beam in enumerate(self.beams) if beam is value)}
-        if _CLASSES.get(type(value).__name__) is type(value):
+        if self.known(value):
             return self.members(value)
         if isinstance(value, np.ndarray | np.generic):
             return value.tolist()
@@ -172,7 +164,7 @@ class _Writer:
             return value
         if callable(value):
             return {"function": self.number(value)}
-        raise InputError(f"a {type(value).__name__} cannot be saved; the parts that can are {', '.join(_CLASSES)}")
+        return self.own_members(value)
 
     def number(self, function: Callable[[float], float]) -> int:
         for i, known in enumerate(self.functions):
@@ -192,8 +184,10 @@ def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:
         return beams[value["beam"]]
     if "function" in value:
         return functions[value["function"]]
+    if "array" in value:
+        return np.array(value["array"])
     name = value["class"]
-    if name not in _CLASSES:
+    if name not in _CLASSES and ":" not in name:
         raise InputError(f"this version of beamfem knows no {name}; a newer one may")
     members = {key: _read(item, beams, functions) for key, item in value.items() if key != "class"}
-    return _CLASSES[name](**members)
+    return (class_of(name) if ":" in name else _CLASSES[name])(**members)

@@ -5,14 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element.coordinates import Gradients
+from beamfem.model.along_beam import jumps_along
 from beamfem.model.grid import Grid
-from beamfem.model.load import Imposing, jumps_along
+from beamfem.model.load import ImposedStrain
 from beamfem.model.reference import energy_points, reference_axis
 
 _THICKNESS = 3  # column of the thickness stretch
 
 
-def free_strains(grid: Grid, loads: Sequence[Imposing]) -> tuple[np.ndarray, np.ndarray]:
+def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray, np.ndarray]:
     """Return parts (m, ne, nq, ns) and (m, m, ne, nq, ns) of the measures that m loads on a beam impose on elements.
 
     The measures for factors f are the sum of f_i of the first and f_i f_j of the second, exactly: strain measures are

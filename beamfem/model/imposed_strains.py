@@ -8,17 +8,15 @@ import numpy as np
 
 from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
-from beamfem.model.beam import Beam, require_beam
-from beamfem.model.load import Amplitude, check_along, check_common
-from beamfem.model.shapes import LoadShape, Placed, Strains
+from beamfem.model.beam import Beam
+from beamfem.model.load import Amplitude, ImposedStrain
 from beamfem.section.thermal import expands_evenly, thermal_strain
-from beamfem.validation import called, convert, finite, squared
 
 Along = float | Callable[[float], float]
 
 
 @dataclass(frozen=True)
-class Actuation:
+class Actuation(ImposedStrain):
     """Curvature [1/m], stretch [-] and shear [-] that a beam takes where nothing hinders it: muscles, growth, swelling.
 
     Each is a number or a function of the arc length [m] from the start, at whose `kinks` (declared, or jumps that are
@@ -37,16 +35,8 @@ class Actuation:
     scale: bool = True
 
     def __post_init__(self) -> None:
-        _check(self)
+        super().__post_init__()
         _require_followed(self)
-
-    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return curvature, stretch or shear at arc lengths (n,) [m]. Raises InputError where a function gives none."""
-        return _along(self, name, arc_length)
-
-    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
-        return (_strains(self, weight),)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
@@ -55,7 +45,7 @@ class Actuation:
 
 
 @dataclass(frozen=True)
-class Temperature:
+class Temperature(ImposedStrain):
     """Heat: a change of temperature [K] on the axis of a beam and its gradient [K/m] over the section, towards +y.
 
     Both are numbers or functions of the arc length [m] from the start, as in `Actuation`. A free section of one
@@ -73,7 +63,7 @@ class Temperature:
     scale: bool = True
 
     def __post_init__(self) -> None:
-        _check(self)
+        super().__post_init__()
         beam = self.beam
         sections = [beam.section_at(s) for s in _places(beam).tolist()]
         if not any(thermal_strain(section, beam.material).any() for section in sections):
@@ -89,17 +79,9 @@ class Temperature:
             )
         _require_followed(self)
 
-    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return change or gradient at arc lengths (n,) [m]. Raises InputError where a function gives none."""
-        return _along(self, name, arc_length)
-
-    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
-        return (_strains(self, weight),)
-
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
-        beam, heat = self.beam, np.column_stack([self.values_of(name, arc_length) for name in self.along])
+        beam, heat = self.beam, self.heat(arc_length)
         if beam.prismatic:
             unit = thermal_strain(beam.section_at(0.0), beam.material)[None]
         else:
@@ -107,13 +89,9 @@ class Temperature:
         stretch, curvature, thickness = (unit @ heat[:, :, None])[:, :, 0].T
         return np.column_stack([stretch, np.zeros(len(arc_length)), curvature, thickness])
 
-
-def _check(load: Actuation | Temperature) -> None:
-    require_beam(type(load).__name__, load.beam)
-    constant = [name for name in load.along if not callable(getattr(load, name))]
-    convert(load, squared(finite), *constant)
-    check_along(load)
-    check_common(load)
+    def heat(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the change of temperature [K] and its gradient [K/m] (n, 2) at arc lengths (n,) [m]."""
+        return np.column_stack([self.values_of(name, arc_length) for name in self.along])
 
 
 def _places(beam: Beam) -> np.ndarray:
@@ -121,7 +99,7 @@ def _places(beam: Beam) -> np.ndarray:
     return np.array([0.0, 0.5, 1.0]) * beam.curve.length
 
 
-def _require_followed(load: Actuation | Temperature) -> None:
+def _require_followed(load: ImposedStrain) -> None:
     """Raise InputError where nodes cannot take what they are given."""
     coordinates, name = load.beam.element.coordinates, load.beam.element.name
     if not isinstance(coordinates, ShearFree):
@@ -131,21 +109,3 @@ def _require_followed(load: Actuation | Temperature) -> None:
         raise InputError(f"{type(load).__name__}: nodes of {name} do not shear; take another element")
     if stretch.any() and not coordinates.stretchable:
         raise InputError(f"{type(load).__name__}: nodes of {name} do not stretch; let them")
-
-
-def _along(load: Actuation | Temperature, name: str, arc_length: np.ndarray) -> np.ndarray:
-    given, what = getattr(load, name), f"{name} of {type(load).__name__}"
-    if not callable(given):
-        return np.full(len(arc_length), given)
-    return np.array([finite(f"{what} at arc length {s:g} m", called(what, given, s)) for s in arc_length.tolist()])
-
-
-def _strains(load: Actuation | Temperature, weight: float) -> Strains:
-    values: dict[str, tuple[float | None, str]] = {}
-    for name, unit in zip(load.along, load.units, strict=True):
-        value = getattr(load, name)
-        if callable(value):
-            values[name] = None, unit
-        elif value:
-            values[name] = weight * value, unit
-    return Strains(load.beam, type(load).__name__.lower(), values)

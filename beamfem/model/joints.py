@@ -1,41 +1,44 @@
 """What connects beams."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from beamfem.model.beam import Point, require_point
 from beamfem.model.shapes import Ring
 
 
-@dataclass(frozen=True, slots=True)
-class Rigid:
-    """Join two points so that they move and turn alike, at whatever angle the beams meet."""
+class Joint:
+    """Two coincident points `a` and `b` of beams with one position; keeps_angle: their rotations are the same, too."""
+
+    __slots__ = ()
+    keeps_angle: ClassVar[bool] = False
 
     a: Point
     b: Point
 
     def __post_init__(self) -> None:
-        require_point("Rigid", self.a, "a")
-        require_point("Rigid", self.b, "b")
+        kind = type(self).__name__
+        require_point(kind, self.a, "a")
+        require_point(kind, self.b, "b")
 
     def shapes(self) -> tuple[Ring, ...]:
-        """Return what it looks like: nothing beside the beams."""
-        return ()
+        """Return what it looks like: a ring where the angle may change."""
+        return () if self.keeps_angle else (Ring(self.a),)
 
 
 @dataclass(frozen=True, slots=True)
-class Hinge:
-    """Join two points so that they move alike; each turns as it likes."""
+class Rigid(Joint):
+    """Join two points so that displacement and rotation are the same, at whatever angle the beams meet."""
+
+    keeps_angle: ClassVar[bool] = True
 
     a: Point
     b: Point
 
-    def __post_init__(self) -> None:
-        require_point("Hinge", self.a, "a")
-        require_point("Hinge", self.b, "b")
 
-    def shapes(self) -> tuple[Ring, ...]:
-        """Return what it looks like."""
-        return (Ring(self.a),)
+@dataclass(frozen=True, slots=True)
+class Hinge(Joint):
+    """Join two points so that the displacement is the same; the rotations are independent."""
 
-
-Joint = Rigid | Hinge
+    a: Point
+    b: Point

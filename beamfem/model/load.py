@@ -1,27 +1,208 @@
-"""What loads have in common: a factor in time, and values that may vary along a beam."""
+"""The kinds of loads: each enters the equations in its own way. A load derives from one of them."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from beamfem.model.beam import Beam
-from beamfem.model.jumps import find_jumps
-from beamfem.validation import flag, function_of_one, function_value
+from beamfem.element.coordinates import across
+from beamfem.model.along_beam import AlongBeam, check_along
+from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Placed, Strains, rotated
+from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, squared
 
 Amplitude = Callable[[float], float] | None
+_ARROWS = 11  # along a beam
 
 
-class Scaled(Protocol):
-    """What every load has besides its value."""
+class Load(ABC):
+    """What acts on beams, times a factor: amplitude(time), else the load factor where `scale` is True, else 1.
+
+    Loads are frozen dataclasses that derive from `PointLoad`, `LineLoad`, `BodyLoad` or `ImposedStrain`.
+    """
+
+    amplitude: Amplitude = None
+    scale: bool = True
+
+    def __post_init__(self) -> None:
+        kind = type(self).__name__
+        if self.amplitude is not None:
+            function_of_one(f"amplitude of {kind}", self.amplitude, "time")
+        flag(f"scale of {kind}", self.scale)
 
     @property
-    def amplitude(self) -> Amplitude: ...
+    @abstractmethod
+    def place(self) -> Beam | Point | None:
+        """The beam or point that it acts on, None for all beams."""
+
     @property
-    def scale(self) -> bool: ...
+    @abstractmethod
+    def conservative(self) -> bool:
+        """Whether it has a potential where its factor is constant and nothing depends on the supports."""
+
+    @abstractmethod
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
 
 
-def factor(load: Scaled, time: float, static: bool) -> float:
+class BodyLoad(Load):
+    """An acceleration `vector` (2,) [m/s^2] of all that has mass."""
+
+    vector: tuple[float, float]
+
+    @property
+    def place(self) -> None:
+        """All beams."""
+        return
+
+    @property
+    def conservative(self) -> bool:
+        """Whether it has a potential."""
+        return True
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        return (Acceleration(weight * np.array(self.vector)),)
+
+
+class PointLoad(Load):
+    """Force [N] and moment [N m] at a point; follower: the force rotates with the section there."""
+
+    point: Point
+    follower: bool = False
+
+    def __post_init__(self) -> None:
+        require_point(type(self).__name__, self.point)
+        super().__post_init__()
+        flag(f"follower of {type(self).__name__}", self.follower)
+
+    @property
+    @abstractmethod
+    def value(self) -> tuple[float, float, float]:
+        """fx, fy [N] and moment [N m]."""
+
+    @property
+    def place(self) -> Point:
+        """The point."""
+        return self.point
+
+    @property
+    def conservative(self) -> bool:
+        """Whether it has a potential."""
+        return not (self.follower and any(self.value[:2]))
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        force, moment = weight * np.array([self.value[:2]]), weight * self.value[2]
+        if self.follower:
+            force = rotated(force, np.array([placed.rotation(self.point)]))
+        found: tuple[LoadShape, ...] = (Force(self.point, force[0]),) if any(self.value[:2]) else ()
+        return (*found, Moment(self.point, moment)) if self.value[2] else found
+
+
+class LineLoad(AlongBeam, Load):
+    """Forces per length along a beam.
+
+    axes: of the forces, "plane": x and y, per reference length; "section": x and y of the reference, rotated with the
+    section, per reference length; "axis": along r0' and across it, to the left, per deformed length; uniform: whether
+    they are the same at every arc length.
+    """
+
+    uniform: bool = False
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, self.beam)
+        check_along(self)
+        super().__post_init__()
+
+    @property
+    @abstractmethod
+    def axes(self) -> Literal["plane", "section", "axis"]:
+        """The axes of the forces."""
+
+    @abstractmethod
+    def forces(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the forces (n, 2) [N/m] at arc lengths (n,) [m] of the reference."""
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return what is named in `along` at arc lengths (n,) [m]: the forces."""
+        return self.forces(arc_length)
+
+    @property
+    def place(self) -> Beam:
+        """The beam."""
+        return self.beam
+
+    @property
+    def conservative(self) -> bool:
+        """Whether it has a potential."""
+        return self.axes == "plane"
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        at = _arrows(self, placed)
+        vectors, points = weight * self.forces(at), [self.beam.at(part) for part in at / self.beam.curve.length]
+        if self.axes == "section":
+            vectors = rotated(vectors, np.array([placed.rotation(point) for point in points]))
+        elif self.axes == "axis":
+            slope = np.array([placed.slope(point) for point in points])
+            vectors = vectors[:, :1] * slope + vectors[:, 1:] * across(slope)
+        return (ForcesAlong(self.beam, at, vectors, even=self.uniform and self.axes == "plane"),)
+
+
+class ImposedStrain(AlongBeam, Load):
+    """Strains that a beam takes where nothing hinders it; what `along` names is a number or a function each.
+
+    units: of what `along` names.
+    """
+
+    units: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, self.beam)
+        convert(self, squared(finite), *(name for name in self.along if not callable(getattr(self, name))))
+        check_along(self)
+        super().__post_init__()
+
+    @abstractmethod
+    def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) at arc lengths (n,) [m]."""
+
+    def heat(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return temperature [K] and its gradient [K/m] (n, 2) that each layer expands by in its own way."""
+        return np.zeros((len(arc_length), 2))
+
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return what is named in `along` at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+        given, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        if not callable(given):
+            return np.full(len(arc_length), given)
+        return np.array([finite(f"{what} at arc length {s:g} m", called(what, given, s)) for s in arc_length.tolist()])
+
+    @property
+    def place(self) -> Beam:
+        """The beam."""
+        return self.beam
+
+    @property
+    def conservative(self) -> bool:
+        """Whether it has a potential."""
+        return True
+
+    def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
+        """Return what it looks like, times a weight, in a state."""
+        values: dict[str, tuple[float | None, str]] = {}
+        for name, unit in zip(self.along, self.units, strict=True):
+            value = getattr(self, name)
+            if callable(value):
+                values[name] = None, unit
+            elif value:
+                values[name] = weight * value, unit
+        return (Strains(self.beam, type(self).__name__.lower(), values),)
+
+
+def factor(load: Load, time: float, static: bool) -> float:
     """Return the multiplier of a load at a time, in statics at a load factor.
 
     amplitude(time) where there is one; else the load factor in statics for loads with `scale`, else 1.
@@ -31,63 +212,11 @@ def factor(load: Scaled, time: float, static: bool) -> float:
     return time if static and load.scale else 1.0
 
 
-def check_common(load: Scaled) -> None:
-    """Check what loads have besides their place and value: amplitude, scale, and where they have it follower."""
-    kind = type(load).__name__
-    if load.amplitude is not None:
-        function_of_one(f"amplitude of {kind}", load.amplitude, "time")
-    flag(f"scale of {kind}", load.scale)
-    if hasattr(load, "follower"):
-        flag(f"follower of {kind}", load.follower)
-
-
-@runtime_checkable
-class AlongBeam(Protocol):
-    """A load along a beam; `along`: names of what may be a function of the arc length [m] from the start."""
-
-    along: ClassVar[tuple[str, ...]]
-
-    @property
-    def beam(self) -> Beam: ...
-
-    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return one of them at arc lengths (n,) [m]. Raises InputError where a function gives none."""
-        ...
-
-
-class Imposing(AlongBeam, Scaled, Protocol):
-    """A load that gives a beam strains which it would take where nothing hindered it."""
-
-    def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) at arc lengths (n,) [m]."""
-        ...
-
-
-def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
-    """Return what of a load is a function of the arc length."""
-    found = {name: getattr(load, name) for name in load.along}
-    return {name: value for name, value in found.items() if callable(value)}
-
-
-def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
-    """Return the arc lengths (nj,) [m] at which such a function jumps, or has kinks that it declares."""
-    beam = load.beam
-
-    def numbers(arc_length: float) -> np.ndarray:
-        return load.values_of(name, np.array([arc_length])).ravel()
-
-    return find_jumps(getattr(load, name), numbers, beam.curve.length, beam.samples)
-
-
-def jumps_along(load: AlongBeam) -> tuple[float, ...]:
-    """Return the arc lengths [m] at which what a load gives a beam jumps, by itself or with the section."""
-    kinks = [kinks_along(load, name) for name in functions_along(load)]
-    return (*load.beam.jumps, *(kink for found in kinks for kink in found))
-
-
-def check_along(load: AlongBeam) -> None:
-    """Raise InputError for functions of the arc length that are none."""
-    kind = type(load).__name__
-    for name, function in functions_along(load).items():
-        function_of_one(f"{name} of {kind}", function, "arc length")
-        load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)
+def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
+    """Return the arc lengths [m] at which a load along a beam is drawn: spread evenly, and where it is largest."""
+    even = np.linspace(0.0, load.beam.curve.length, _ARROWS)
+    if load.uniform:
+        return even
+    at = placed.stations(load.beam)
+    sizes = [np.abs(load.forces(own)).max(axis=1) for own in (at, even)]
+    return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even

@@ -1,16 +1,17 @@
 """A model: beams, what holds and joins them and what acts on them."""
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
 from os import PathLike
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
+from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
 from beamfem.model.classes import by_value
@@ -18,20 +19,23 @@ from beamfem.model.contribution import Contribution, remembered, require_connect
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
-from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.load import AlongBeam, Imposing, functions_along, kinks_along
-from beamfem.model.loads import DistributedLoad, Gravity, ImposedStrain, Load, PointForce, PointMoment, Pressure
+from beamfem.model.joints import Joint
+from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
 from beamfem.model.size import require_room
-from beamfem.model.supports import Clamp, Foundation, Pin, PointSupport, Prescribed, Roller, Spring, Support
+from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
 from beamfem.validation import convert, items, shown
 
-_LISTS = ("beams", "supports", "loads", "joints", "connectors")
-_AT_POINT = Clamp | Pin | Roller | Prescribed | Spring | PointForce | PointMoment
-_ON_BEAM = DistributedLoad | Pressure | ImposedStrain | Foundation
+_KINDS: dict[str, tuple[type, ...]] = {
+    "beams": (Beam,),
+    "supports": (PointSupport, LineSupport),
+    "loads": (BodyLoad, LineLoad, PointLoad, ImposedStrain),
+    "joints": (Joint,),
+    "connectors": (Contribution,),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,28 +61,27 @@ class Model:
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
-        parts = [(name[:-1], getattr(self, name)) for name in _LISTS]
+        parts = [(name[:-1], getattr(self, name)) for name in _KINDS]
         counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
-        kinds_of: tuple[Any, ...] = (Beam, Support, Load, Joint, Contribution)
         _ = self._units
-        for name, kinds in zip(_LISTS, kinds_of, strict=True):
+        for name, kinds in _KINDS.items():
             convert(self, items, name)
             object.__setattr__(self, name, tuple(getattr(self, name)))
             for item in getattr(self, name):
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
+                if name != "connectors" and not is_dataclass(item):
+                    raise InputError(f"{type(item).__name__}, one of the {name} of a Model, must be a frozen dataclass")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
-        for item in (*self.supports, *self.loads):
-            if isinstance(item, _AT_POINT):
-                self._require(item, item.point)
-            elif isinstance(item, _ON_BEAM):
-                self._require(item, item.beam)
+        parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
+        for item in parts:
+            self._require(item, item.place)
         for joint in self.joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
@@ -88,10 +91,10 @@ class Model:
                 self._require(connector, point)
         self._require_touches()
 
-    def _require(self, item: object, place: Beam | Point) -> None:
+    def _require(self, item: object, place: Beam | Point | None) -> None:
         kind = type(item).__name__
         beam = place.beam if isinstance(place, Point) else place
-        if id(beam) not in self._numbers:
+        if beam is not None and id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""
             raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; add it to beams")
 
@@ -137,7 +140,7 @@ class Model:
             fractions[self._numbers[id(point.beam)]].append(point.fraction)
         for beam, own in zip(self.beams, fractions, strict=True):
             own += [jump / beam.curve.length for jump in beam.jumps]
-        lines: tuple[AlongBeam, ...] = (*self.distributed, *self.pressures, *(load for _, load in self.imposing))
+        lines: tuple[AlongBeam, ...] = (*self.line_loads, *(load for _, load in self.imposing))
         for line in lines:
             kinks = [kink for name in functions_along(line) for kink in kinks_along(line, name)]
             fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks]
@@ -145,7 +148,7 @@ class Model:
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        rigid, hinged = (self._pairs(grids, kind) for kind in (Rigid, Hinge))
+        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
         turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
         moving = np.concatenate([turning, hinged])
         grids = close_gaps(grids, moving)
@@ -162,9 +165,9 @@ class Model:
             filled[block] += grid.elements
         return tuple(meshes), size
 
-    def _pairs(self, grids: Sequence[Grid], kind: type[Joint]) -> np.ndarray:
-        """Return grid and node of both points (n, 4) of the joints of a kind."""
-        joints = [joint for joint in self.joints if isinstance(joint, kind)]
+    def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
+        """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
+        joints = [joint for joint in self.joints if joint.keeps_angle is keeps_angle]
         a, b = [joint.a for joint in joints], [joint.b for joint in joints]
         return np.hstack([self._places(grids, a), self._places(grids, b)])
 
@@ -219,33 +222,34 @@ class Model:
         return self.meshes[self._numbers[id(point.beam)]]
 
     @property
-    def gravity(self) -> tuple[Gravity, ...]:
-        return tuple(load for load in self.loads if isinstance(load, Gravity))
+    def gravity(self) -> tuple[BodyLoad, ...]:
+        """Accelerations of all that has mass."""
+        return tuple(load for load in self.loads if isinstance(load, BodyLoad))
 
     @property
-    def distributed(self) -> tuple[DistributedLoad, ...]:
-        return tuple(load for load in self.loads if isinstance(load, DistributedLoad))
-
-    @property
-    def pressures(self) -> tuple[Pressure, ...]:
-        return tuple(load for load in self.loads if isinstance(load, Pressure))
+    def line_loads(self) -> tuple[LineLoad, ...]:
+        """Forces along beams."""
+        return tuple(load for load in self.loads if isinstance(load, LineLoad))
 
     @cached_property
-    def imposing(self) -> tuple[tuple[int, Imposing], ...]:
+    def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
         """Loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
     @property
-    def point_loads(self) -> tuple[PointForce | PointMoment, ...]:
-        return tuple(load for load in self.loads if isinstance(load, PointForce | PointMoment))
+    def point_loads(self) -> tuple[PointLoad, ...]:
+        """Forces and moments at points."""
+        return tuple(load for load in self.loads if isinstance(load, PointLoad))
 
     @property
     def point_supports(self) -> tuple[PointSupport, ...]:
-        return tuple(support for support in self.supports if not isinstance(support, Foundation))
+        """Supports at points."""
+        return tuple(support for support in self.supports if isinstance(support, PointSupport))
 
     @property
-    def foundations(self) -> tuple[Foundation, ...]:
-        return tuple(support for support in self.supports if isinstance(support, Foundation))
+    def line_supports(self) -> tuple[LineSupport, ...]:
+        """Supports along beams."""
+        return tuple(support for support in self.supports if isinstance(support, LineSupport))
 
     def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
         """Return the model with its axes displaced by a mode, up to `size` [m], and free of stress there."""
@@ -259,9 +263,12 @@ class Model:
         return offered(Model._repr_html_)(self)
 
 
-def _named(kinds: Any) -> str:
-    """Return classes as a list in words."""
-    names = [kind.__name__ for kind in get_args(kinds) or (kinds,)]
+def _named(kinds: Sequence[type]) -> str:
+    """Return as a list in words the classes that are offered of some kinds."""
+    derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
+        kinds
+    ]
+    names = [each.__name__ for some in derived for each in some if each.__module__.startswith("beamfem.")]
     return " or ".join(", ".join(names).rsplit(", ", 1))
 
 
@@ -273,7 +280,7 @@ def _kind(beam: Beam) -> tuple[Element, Hashable]:
 
 def _turns(support: PointSupport) -> bool:
     """Tell whether a support has to do with the rotation."""
-    return support.rotational > 0.0 if isinstance(support, Spring) else "rotation" in support.held()
+    return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 
 def _corners(grid: Grid) -> np.ndarray:

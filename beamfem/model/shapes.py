@@ -8,9 +8,6 @@ import numpy as np
 
 from beamfem.element.coordinates import across
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import AlongBeam, functions_along
-
-_ARROWS = 11  # along a beam
 
 
 class Placed(Protocol):
@@ -72,11 +69,11 @@ class Strains:
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class Constraint:
     """What is prescribed at a point, zero or not, as `supports.Prescribed` names it; normal (2,): the one direction."""
 
     point: Point
-    held: Mapping[str, float | Callable[[float], float]]
+    prescribed: Mapping[str, float | Callable[[float], float]]
     normal: np.ndarray | None = None
 
 
@@ -105,21 +102,9 @@ class Ring:
 
 
 LoadShape = Force | Moment | ForcesAlong | Acceleration | Strains
-SupportShape = Held | Springs | SpringsAlong
+SupportShape = Constraint | Springs | SpringsAlong
 
 
-def arrows_along(load: AlongBeam, placed: Placed) -> np.ndarray:
-    """Return the arc lengths [m] at which a load along a beam is drawn: spread evenly, and where it is largest."""
-    length = load.beam.curve.length
-    even = np.linspace(0.0, length, _ARROWS)
-    if not functions_along(load):
-        return even
-    (name,) = load.along
-    at = placed.stations(load.beam)
-    sizes = [np.abs(load.values_of(name, own)).reshape(len(own), -1).max(axis=1) for own in (at, even)]
-    return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even
-
-
-def turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 2) turned by angles (n,) [rad]."""
+def rotated(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 2) rotated by angles (n,) [rad]."""
     return np.asarray(np.cos(angles)[:, None] * vectors + np.sin(angles)[:, None] * across(vectors))

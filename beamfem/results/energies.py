@@ -8,11 +8,9 @@ import numpy as np
 
 from beamfem.brief import brief
 from beamfem.model.beam import Beam
-from beamfem.model.load import Scaled, factor
-from beamfem.model.loads import PointForce
+from beamfem.model.load import Load, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
-from beamfem.model.supports import Foundation
 from beamfem.results import postprocess
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.loading import loading
@@ -60,22 +58,22 @@ def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np
 def _of_loads(solution: "Solution") -> np.ndarray:
     result = np.zeros(len(solution))
     for acting in solution.model.point_loads:
-        if acting.follower and isinstance(acting, PointForce):
+        if not acting.conservative:
             continue
         weights = _factors(solution, acting)
         fx, fy, moment = acting.value
         result -= weights * (solution.displacement(acting.point) @ np.array([fx, fy]))
         if moment:
             result -= weights * moment * solution.rotation(acting.point)
-    for spread in solution.model.distributed:
-        if not spread.follower:
+    for spread in solution.model.line_loads:
+        if spread.conservative:
             weights = _factors(solution, spread)
             moved, weight, arc = _along(solution, spread.beam)
-            result -= weights * np.einsum("sqc,qc,q->s", moved, spread.values(arc), weight)
+            result -= weights * np.einsum("sqc,qc,q->s", moved, spread.forces(arc), weight)
     return result
 
 
-def _factors(solution: "Solution", load: Scaled) -> np.ndarray:
+def _factors(solution: "Solution", load: Load) -> np.ndarray:
     system, times = loading(solution)
     return np.array([factor(load, at, system.static) for at in times])
 
@@ -83,10 +81,9 @@ def _factors(solution: "Solution", load: Scaled) -> np.ndarray:
 def _of_springs(solution: "Solution") -> np.ndarray:
     springs = loading(solution)[0].springs
     result = 0.5 * (solution.p[:, springs.dof] - springs.rest) ** 2 @ springs.stiffness
-    for support in solution.model.supports:
-        if isinstance(support, Foundation):
-            moved, weight, _ = _along(solution, support.beam)
-            result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
+    for support in solution.model.line_supports:
+        moved, weight, _ = _along(solution, support.beam)
+        result += 0.5 * np.einsum("sqc,c,q->s", moved**2, np.array(support.stiffness), weight)
     return np.asarray(result)
 
 

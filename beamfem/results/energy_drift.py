@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.system import system_of
-from beamfem.model.loads import DistributedLoad, PointForce, Pressure
 from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
@@ -62,12 +61,7 @@ def drift_warnings(solution: "Solution") -> tuple[str, ...]:
 
 def _conservative(solution: "Solution") -> bool:
     system = system_of(solution.model, static=False)
-    moved = any(callable(item.value) for item in system.held)
-    driven = any(
-        load.amplitude is not None
-        or isinstance(load, Pressure)
-        or (isinstance(load, PointForce | DistributedLoad) and load.follower)
-        for load in solution.model.loads
-    )
+    moved = any(callable(item.value) for item in system.prescribed)
+    driven = any(load.amplitude is not None or not load.conservative for load in solution.model.loads)
     damped = any(block.damping.any() for block in system.blocks)
     return not moved and not driven and not damped and system.connectors.keep_energy

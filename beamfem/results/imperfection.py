@@ -12,8 +12,8 @@ from beamfem.brief import brief
 from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
+from beamfem.model.along_beam import AlongBeam, functions_along
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import AlongBeam, functions_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.results.postprocess import axis, nodal_velocities

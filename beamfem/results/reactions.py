@@ -5,11 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.assembly.equations import residual
-from beamfem.assembly.held import prescribed_coordinate
+from beamfem.assembly.prescribed import COORDINATES, coordinate_of
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
-from beamfem.model.supports import Spring
 from beamfem.results.last_digits import exactly
 from beamfem.results.loading import loading
 
@@ -29,22 +28,22 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
     dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
-    held = {prescribed_coordinate(support, direction) for support in own for direction in support.held()}
-    if None in held:  # an inclined roller
-        held |= {"r^x", "r^y"}
+    prescribed = {coordinate_of(support, direction) for support in own for direction in support.prescribed()}
+    if None in prescribed:  # an inclined roller
+        prescribed |= {"r^x", "r^y"}
     result = np.zeros((len(solution), 3))
-    for column, name in enumerate(("r^x", "r^y", "theta")):
+    for column, (direction, name) in enumerate(COORDINATES.items()):
         if name in dofs:
-            stiffness = sum(support.by_coordinate[name] for support in own if isinstance(support, Spring))
-            result[:, column] = _of_some(solution, dofs[name], name in held, stiffness)
+            stiffness = sum(support.springs().get(direction, 0.0) for support in own)
+            result[:, column] = _of_some(solution, dofs[name], name in prescribed, stiffness)
     return result
 
 
-def _of_some(solution: "Solution", dof: int, held: bool, stiffness: float) -> np.ndarray:
-    """Return the force (steps,) on a coordinate of those supports that hold it, or not, and have this stiffness."""
+def _of_some(solution: "Solution", dof: int, prescribed: bool, stiffness: float) -> np.ndarray:
+    """Return the force (steps,) on a coordinate of supports that prescribe it, or not, and have this stiffness."""
     system, _ = loading(solution)
     moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
-    if not held:
+    if not prescribed:
         return np.asarray(-stiffness * moved)
     others = float(system.springs.stiffness[system.springs.dof == dof].sum()) - stiffness
     return np.asarray(solution.support_forces[:, dof] + others * moved)

@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.model.imposed_strains import Temperature
-from beamfem.model.load import jumps_along
+from beamfem.model.along_beam import jumps_along
 from beamfem.model.mesh import BeamMesh
 from beamfem.results.loading import loading
 from beamfem.section.protocol import CrossSection
@@ -30,12 +29,8 @@ def self_stress(
     to; None: the one around the axis. It adds nothing to section forces.
     """
     beam, (system, at) = mesh.beam, loading(solution)
-    heated = [
-        (number, load)
-        for number, (_, load) in enumerate(system.model.imposing)
-        if isinstance(load, Temperature) and load.beam is beam
-    ]
-    if not heated:
+    imposed = [(number, load) for number, (_, load) in enumerate(system.model.imposing) if load.beam is beam]
+    if not imposed:
         return 0.0
     arc = mesh.section_arc_length(element, xi)
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
@@ -44,10 +39,9 @@ def self_stress(
     units = np.array([_units(section, mesh, layer, own) for section, own in zip(_each(sections, y), y, strict=True)])
     factors = np.array([system.imposing(time) for time in at[rows].tolist()])
     result = np.zeros((len(factors), *y.shape))
-    for number, load in heated:
+    for number, load in imposed:
         there = mesh.arc_length_inside(element, xi, jumps_along(load))
-        heat = np.column_stack([load.values_of(name, there) for name in load.along])
-        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat)
+        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, load.heat(there))
     return result
 
 

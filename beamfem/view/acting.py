@@ -9,9 +9,9 @@ from beamfem.model.load import factor
 from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment, Strains
 from beamfem.results.loading import loading
 from beamfem.view import symbols
-from beamfem.view.held import Stamps
 from beamfem.view.imposed import draw_imposed
 from beamfem.view.placed import PlacedRow
+from beamfem.view.supports import Stamps
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution

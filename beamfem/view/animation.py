@@ -15,8 +15,8 @@ from beamfem.validation import count, flag, positive
 from beamfem.view.acting import FORCE, draw_loads
 from beamfem.view.drawing import bar, equal_axes
 from beamfem.view.frames import moment_of, spread_rows
-from beamfem.view.held import PRESCRIBED, draw_joints, draw_supports
 from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+from beamfem.view.supports import PRESCRIBED, draw_joints, draw_supports
 from beamfem.view.written import WrittenFile
 
 _POINTS = 600  # of all beams; what moves in a small picture needs no more

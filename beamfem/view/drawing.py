@@ -10,9 +10,9 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count, flag
 from beamfem.view.acting import draw_loads
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.held import draw_joints, draw_supports
 from beamfem.view.plots import empty_figure, quiet, save_figure
 from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+from beamfem.view.supports import draw_joints, draw_supports
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]

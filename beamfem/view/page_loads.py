@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.model.load import AlongBeam, factor
+from beamfem.model.along_beam import AlongBeam
+from beamfem.model.load import factor
 from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment
 from beamfem.results.loading import loading
 from beamfem.view.placed import PlacedRow

@@ -10,7 +10,7 @@ from beamfem.model.shapes import Force, ForcesAlong, LoadShape
 from beamfem.view.frames import one_row
 
 if TYPE_CHECKING:
-    from beamfem.model.loads import Load
+    from beamfem.model.load import Load
     from beamfem.results.solution import Solution
 
 

@@ -16,10 +16,10 @@ from beamfem.results.along import QUANTITIES, section_forces
 from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.held import joints_of, supports_of
 from beamfem.view.page_loads import loads_of
 from beamfem.view.shapes import Shapes, limits
 from beamfem.view.summary import model_rows, solution_rows
+from beamfem.view.supports import joints_of, supports_of
 from beamfem.view.written import WrittenFile
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third

@@ -16,7 +16,8 @@ from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
-from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring, Support
+from beamfem.model.support import Support
+from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.validation import nearest
 
 SUPPORTS: Kinds = {
@@ -137,7 +138,7 @@ def _require_compatible(root: Table, model: Model, static: bool) -> None:
 
     def check(supports: Sequence[Support]) -> None:
         system = System(Model(model.beams, supports, joints=model.joints), static)
-        _ = system.held, system.inclined
+        _ = system.prescribed, system.inclined
 
     try:
         check(model.supports)

@@ -263,7 +263,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     mode = plain.softest(factors)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     per_load = _reach(plain, p, load_factor, stiffness, 1e-6)
-    if system.varying or any(callable(item.value) for item in system.held) or per_load == 0.0:
+    if system.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:
         # an amplitude may start with slope zero, or nearly so: then what it does up to load factor 1 tells
         with suppress(InputError):  # of a function that ends before
             further = _reach(plain, p, load_factor, stiffness, 1.0)

@@ -135,7 +135,7 @@ class OwnSteps:
 
 def refuse_what_own_steps_lack(system: System) -> None:
     """Raise InputError for models whose motions integrators of one's own do not take."""
-    moved = [item for item in system.held if callable(item.value)]
+    moved = [item for item in system.prescribed if callable(item.value)]
     if moved:
         raise InputError(
             f"{moved[0].point} is moved, which an integrator of one's own does not take: use GeneralizedAlpha, or let "

@@ -25,13 +25,13 @@ def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
     Values are u without what swings from step to step: stiff parts of a model would have to follow that, and ring.
     Raises InputError for motions that are known by values only.
     """
-    if any(isinstance(item.value, Sampled) for item in system.held):
+    if any(isinstance(item.value, Sampled) for item in system.prescribed):
         raise InputError(
             "a prescribed motion of this model was saved as values, which have no accelerations between them; "
             "give the function again to run it on"
         )
-    values = np.zeros((len(ends), 3, len(system.held)))
-    if not any(callable(item.value) for item in system.held):
+    values = np.zeros((len(ends), 3, len(system.prescribed)))
+    if not any(callable(item.value) for item in system.prescribed):
         values[:, 0] = system.prescribed_values(0.0)
         return values
     steps = np.diff(ends)

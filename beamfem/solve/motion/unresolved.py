@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.system import System
-from beamfem.model.loads import Gravity, ImposedStrain, LineLoad, Load
+from beamfem.model.beam import Beam
+from beamfem.model.load import Load
 from beamfem.model.model import Model
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
@@ -74,7 +75,7 @@ def courses(system: System) -> list[Course]:
     for load in model.loads:
         if load.amplitude is not None:
             found.setdefault(id(load.amplitude), Course(f"amplitude of {_name(load, model)}", load.amplitude, True))
-    for item in system.held:
+    for item in system.prescribed:
         if callable(item.value):
             found.setdefault(id(item.value), Course(f"motion prescribed at {item.point}", item.value, False))
     return list(found.values())
@@ -98,8 +99,7 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
 
 
 def _name(load: Load, model: Model) -> str:
-    if isinstance(load, Gravity):
-        return "Gravity"
-    if isinstance(load, LineLoad | ImposedStrain):
-        return f"{type(load).__name__} on beam {model.number_of(load.beam)}"
-    return f"{type(load).__name__} at {load.point}"
+    kind, place = type(load).__name__, load.place
+    if isinstance(place, Beam):
+        return f"{kind} on beam {model.number_of(place)}"
+    return kind if place is None else f"{kind} at {place}"

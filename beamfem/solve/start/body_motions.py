@@ -11,9 +11,7 @@ from beamfem.assembly.rigid_velocity import RigidVelocity, set_rigid_rates
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError
 from beamfem.model.beam import Point
-from beamfem.model.joints import Rigid
 from beamfem.model.model import Model
-from beamfem.model.supports import Roller, Spring
 
 NEGLIGIBLE = 1e-9  # of the size of the model
 _DENSE_BODIES = 300
@@ -23,9 +21,7 @@ _FIRST_FEW = 3
 def bodies_of(model: Model) -> np.ndarray:
     """Return the number of the body (beams,) that each beam is part of; rigid joints make one body of two beams."""
     pairs = [
-        (model.number_of(joint.a.beam), model.number_of(joint.b.beam))
-        for joint in model.joints
-        if isinstance(joint, Rigid)
+        (model.number_of(joint.a.beam), model.number_of(joint.b.beam)) for joint in model.joints if joint.keeps_angle
     ]
     count = len(model.beams)
     if not pairs:
@@ -50,19 +46,13 @@ class Conditions:
         self.count = 0
         for support in model.point_supports:
             here = self.displacement(support.point)
-            turn = np.array([0.0, 0.0, 1.0])
             own = int(body[model.number_of(support.point.beam)])
-            if isinstance(support, Spring):
-                held = [row for row, k in zip(here, support.stiffness, strict=True) if k > 0.0]
-                held += [turn] if support.rotational > 0.0 else []
-            elif isinstance(support, Roller):
-                held = [support.direction @ here]
-            else:
-                given = {"ux": here[0], "uy": here[1], "rotation": turn}
-                held = [given[name] for name in support.held()]
-            for row in held:
-                self._add({own: row})
-        for foundation in model.foundations:
+            rows = {"ux": here[0], "uy": here[1], "rotation": np.array([0.0, 0.0, 1.0])}
+            if support.direction is not None:
+                rows["normal"] = support.direction @ here
+            for direction in (*support.prescribed(), *support.springs()):
+                self._add({own: rows[direction]})
+        for foundation in model.line_supports:
             number = model.number_of(foundation.beam)
             for position in self.nodes[number]:
                 for row, k in zip(self._moved(position), foundation.stiffness, strict=True):

@@ -1,7 +1,7 @@
 """The equilibrium at load factor 0, under the loads that do not scale and what is prescribed there."""
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -9,8 +9,9 @@ from beamfem.assembly.equations import residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError
-from beamfem.model.load import factor
+from beamfem.model.load import Load, factor
 from beamfem.model.model import Model
+from beamfem.model.support import PointSupport
 from beamfem.model.supports import Prescribed
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
@@ -61,19 +62,28 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
 
 def _growing(model: Model) -> Model:
     """Return the model with what acts at load factor 0 in proportion to the load factor, and nothing else."""
-    loads = [replace(load, amplitude=_in_proportion(factor(load, 0.0, True))) for load in model.loads]
-    supports = [_led(support) if isinstance(support, Prescribed) else support for support in model.supports]
+    loads = [_in_proportion(load) for load in model.loads]
+    moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
+    supports = [moved.get(id(support), support) for support in model.supports]
     return replace(model, supports=supports, loads=loads)
 
 
-def _led(support: Prescribed) -> Prescribed:
+def _moves(support: PointSupport) -> bool:
+    """Tell whether a support prescribes more than zeros."""
+    return any(callable(value) or value != 0.0 for value in support.prescribed().values())
+
+
+def _in_step(support: PointSupport) -> Prescribed:
     """Return a support with what it prescribes at load factor 0 in proportion to the load factor."""
     values = {
         name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
-        for name, value in support.held().items()
+        for name, value in support.prescribed().items()
     }
     return Prescribed(support.point, **values)
 
 
-def _in_proportion(weight: float) -> Callable[[float], float]:
-    return lambda load_factor: weight * load_factor
+def _in_proportion(load: Any) -> Load:
+    """Return a load with its size at load factor 0 in proportion to the load factor."""
+    weight = factor(load, 0.0, True)
+    found: Load = replace(load, amplitude=lambda load_factor: weight * load_factor)
+    return found

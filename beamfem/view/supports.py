@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.model.shapes import Held, Springs, SpringsAlong
+from beamfem.model.shapes import Constraint, Springs, SpringsAlong
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -83,9 +83,9 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
                     _springs_along(stamps, shape)
                 case Springs():
                     _springs(stamps, shape)
-                case Held(normal=None):
-                    _held(stamps, shape, only.position(shape.point)[0], centre)
-                case Held():
+                case Constraint(normal=None):
+                    _constraint(stamps, shape, only.position(shape.point)[0], centre)
+                case Constraint():
                     _stamp(stamps, symbols.ROLLER, only.position(shape.point)[0], -np.asarray(shape.normal))
     return stamps
 
@@ -158,10 +158,10 @@ def _springs_along(stamps: Stamps, foundation: SpringsAlong) -> None:
                 _stamp(stamps, symbols.SPRING, at, np.array(down), 0.7)
 
 
-def _held(stamps: Stamps, support: Held, now: np.ndarray, centre: np.ndarray) -> None:
+def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np.ndarray) -> None:
     """Draw what is prescribed as zero as a support and what moves as an arrow."""
-    held, at = support.held, support.point.reference
-    still = {name for name, value in held.items() if not callable(value) and value == 0.0}
+    prescribed, at = support.prescribed, support.point.reference
+    still = {name for name, value in prescribed.items() if not callable(value) and value == 0.0}
     if still == {"ux", "uy", "rotation"}:
         _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)
     elif {"ux", "uy"} <= still:
@@ -173,12 +173,12 @@ def _held(stamps: Stamps, support: Held, now: np.ndarray, centre: np.ndarray) ->
     if "rotation" in still and not still >= {"ux", "uy"}:
         _stamp(stamps, symbols.NO_TURN, now, np.array([0.0, -1.0]), 1.2)
     for name, direction in (("ux", (1.0, 0.0)), ("uy", (0.0, 1.0))):
-        if name in held and name not in still:
-            value = held[name]
+        if name in prescribed and name not in still:
+            value = prescribed[name]
             sign = 1.0 if callable(value) or value > 0.0 else -1.0
             _moved(stamps, at, sign * np.array(direction))
-    if "rotation" in held and "rotation" not in still:
-        value = held["rotation"]
+    if "rotation" in prescribed and "rotation" not in still:
+        value = prescribed["rotation"]
         arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * (1.0 if callable(value) or value > 0.0 else -1.0))
         stamps.add(now, arc, PRESCRIBED, 1.4)
         stamps.add(now, head, PRESCRIBED, 0.5, PRESCRIBED)

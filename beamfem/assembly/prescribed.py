@@ -1,0 +1,84 @@
+"""Coordinates that supports prescribe."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.model.beam import Point
+from beamfem.model.model import Model
+from beamfem.model.support import PointSupport, Value
+from beamfem.validation import function_value
+
+COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # of a node, by direction of a support
+
+
+@dataclass(frozen=True)
+class PrescribedCoordinate:
+    """A coordinate that a support prescribes: its change from the reference, a value or a function of time.
+
+    rotation: whether it is one; point: where the support stands.
+    """
+
+    dof: int
+    value: Value
+    rotation: bool
+    point: Point
+
+    def change(self, time: float, static: bool) -> float:
+        """Return the change from the reference at a time, in statics at a load factor."""
+        if callable(self.value):
+            return function_value(f"Prescribed at {self.point}: value", self.value, time)
+        return self.value * (time if static else 1.0)
+
+
+def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
+    """Return them ordered by number. Raises InputError where two supports prescribe the same one."""
+    found: dict[int, PrescribedCoordinate] = {}
+    for support in model.point_supports:
+        mesh = model.mesh_of(support.point)
+        dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+        for direction, value in support.prescribed().items():
+            name = coordinate_of(support, direction)
+            if name is None:
+                continue
+            dof = dofs[name]
+            if dof in found:
+                what = type(support).__name__
+                raise InputError(f"{what} at {support.point}: another support already prescribes {direction} there")
+            found[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
+    return tuple(found[dof] for dof in sorted(found))
+
+
+def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
+    """Return first coordinate of r and unit normal of each roller that neither x nor y describes. Raises InputError."""
+    found = []
+    for support in model.point_supports:
+        normal = support.direction
+        if normal is not None and _axis_of(normal) is None:
+            mesh = model.mesh_of(support.point)
+            dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+            found.append((dofs["r^x"], normal))
+    if len({dof for dof, _ in found}) < len(found):
+        raise InputError("two inclined Rollers stand at the same point; a Pin constrains both directions")
+    for dof, _ in found:
+        if dof in prescribed or dof + 1 in prescribed:
+            raise InputError("an inclined Roller stands where another support already constrains the displacement")
+    return tuple(found)
+
+
+def coordinate_of(support: PointSupport, direction: str) -> str | None:
+    """Name the coordinate of a node that a direction of a support is; None for the normal of an inclined roller."""
+    if direction != "normal":
+        return COORDINATES[direction]
+    assert support.direction is not None
+    axis = _axis_of(support.direction)
+    return None if axis is None else f"r^{axis}"
+
+
+def _axis_of(normal: np.ndarray) -> str | None:
+    """Name the axis that a unit normal (2,) is along, if any."""
+    nx, ny = np.abs(normal)
+    if ny < 1e-12:
+        return "x"
+    return "y" if nx < 1e-12 else None

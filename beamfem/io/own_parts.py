@@ -1,0 +1,46 @@
+"""Classes of users in files: saved by module and name, found again where the module is imported."""
+
+import sys
+from dataclasses import fields, is_dataclass
+from types import ModuleType
+from typing import Any
+
+from beamfem.errors import InputError
+
+
+def name_of(part: Any) -> str:
+    """Return "module:Class" for a part of a model that a user has written. Raises InputError where it has none."""
+    kind = type(part)
+    what = f"a {kind.__name__} cannot be saved"
+    if not is_dataclass(part):
+        raise InputError(f"{what}: only dataclasses can, whose fields tell what they hold")
+    if find(f"{kind.__module__}:{kind.__qualname__}") is not kind:
+        raise InputError(f"{what}: define its class at the top level of a module, so that it is found again")
+    hidden = [field.name for field in fields(part) if not field.init]
+    if hidden:
+        raise InputError(f"{what}: its field {hidden[0]} is not an argument of the class")
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def class_of(name: str) -> Any:
+    """Return the class of "module:Class". Nothing is imported. Raises InputError where its module is not there yet."""
+    found = find(name)
+    if not (isinstance(found, type) and is_dataclass(found)):
+        module, _, kind = name.partition(":")
+        raise InputError(f"the file holds a {kind} of the module {module}: import that module before loading the file")
+    return found
+
+
+def dataclasses_of(module: ModuleType) -> list[type]:
+    """Return the dataclasses that a module defines."""
+    own = (kind for kind in vars(module).values() if isinstance(kind, type) and kind.__module__ == module.__name__)
+    return [kind for kind in own if is_dataclass(kind)]
+
+
+def find(name: str) -> Any:
+    """Return what a loaded module has under "module:name", None where there is none."""
+    module, _, attribute = name.partition(":")
+    found: Any = sys.modules.get(module)
+    for part in attribute.split("."):
+        found = getattr(found, part, None)
+    return found

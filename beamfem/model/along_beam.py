@@ -1,0 +1,53 @@
+"""What loads along a beam have in common: values that may be functions of the arc length."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+
+from beamfem.model.beam import Beam
+from beamfem.model.jumps import find_jumps
+from beamfem.validation import function_of_one
+
+
+class AlongBeam(ABC):
+    """A load along a beam; `along`: names of what may be a function of the arc length [m] from the start."""
+
+    along: ClassVar[tuple[str, ...]] = ()
+
+    beam: Beam
+
+    @abstractmethod
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return one of them at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+
+
+def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
+    """Return what of a load is a function of the arc length."""
+    found = {name: getattr(load, name) for name in load.along}
+    return {name: value for name, value in found.items() if callable(value)}
+
+
+def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
+    """Return the arc lengths (nj,) [m] at which such a function jumps, or has kinks that it declares."""
+    beam = load.beam
+
+    def numbers(arc_length: float) -> np.ndarray:
+        return load.values_of(name, np.array([arc_length])).ravel()
+
+    return find_jumps(getattr(load, name), numbers, beam.curve.length, beam.samples)
+
+
+def jumps_along(load: AlongBeam) -> tuple[float, ...]:
+    """Return the arc lengths [m] at which what a load gives a beam jumps, by itself or with the section."""
+    kinks = [kinks_along(load, name) for name in functions_along(load)]
+    return (*load.beam.jumps, *(kink for found in kinks for kink in found))
+
+
+def check_along(load: AlongBeam) -> None:
+    """Raise InputError for functions of the arc length that are none."""
+    kind = type(load).__name__
+    for name, function in functions_along(load).items():
+        function_of_one(f"{name} of {kind}", function, "arc length")
+        load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)

@@ -1,0 +1,87 @@
+"""The kinds of supports: at a point or along a beam. A support derives from one of them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.shapes import Constraint, Springs, SpringsAlong, SupportShape
+
+Value = float | Callable[[float], float]
+
+
+class Support(ABC):
+    """What connects beams to the ground: frozen dataclasses that derive from `PointSupport` or `LineSupport`."""
+
+    @property
+    @abstractmethod
+    def place(self) -> Beam | Point:
+        """The beam or point that it stands at."""
+
+    @abstractmethod
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+
+
+class PointSupport(Support):
+    """A support at a point: what it prescribes there, and its springs.
+
+    Directions are "ux" and "uy" [m] and "rotation" [rad], from the reference.
+    """
+
+    point: Point
+
+    def __post_init__(self) -> None:
+        require_point(type(self).__name__, self.point)
+
+    def prescribed(self) -> Mapping[str, Value]:
+        """Return what is prescribed, by direction: numbers, which grow with the load factor, or functions of time.
+
+        "normal": 0.0 is the displacement along `direction`.
+        """
+        return {}
+
+    def springs(self) -> Mapping[str, float]:
+        """Return the stiffness [N/m], [N m/rad] of the springs to the ground by direction, none of them zero."""
+        return {}
+
+    @property
+    def direction(self) -> np.ndarray | None:
+        """Unit vector (2,) along which "normal" is prescribed."""
+        return None
+
+    @property
+    def place(self) -> Point:
+        """The point."""
+        return self.point
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        prescribed, springs = self.prescribed(), self.springs()
+        found: tuple[SupportShape, ...] = ()
+        if prescribed:
+            found = (Constraint(self.point, prescribed, self.direction),)
+        if springs:
+            kx, ky, rotational = (springs.get(name, 0.0) for name in ("ux", "uy", "rotation"))
+            found = (*found, Springs(self.point, (kx, ky), rotational))
+        return found
+
+
+class LineSupport(Support):
+    """Springs along a beam to the ground, `stiffness` (kx, ky) [N/m^2] per reference length."""
+
+    beam: Beam
+    stiffness: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        require_beam(type(self).__name__, self.beam)
+
+    @property
+    def place(self) -> Beam:
+        """The beam."""
+        return self.beam
+
+    def shapes(self) -> tuple[SupportShape, ...]:
+        """Return what it looks like."""
+        return (SpringsAlong(self.beam, self.stiffness),)

@@ -99,7 +99,7 @@ MODELS = {
     "two supports of one coordinate": (
         lambda: bf.solve_static(bf.Model([BEAM], [bf.Clamp(END), bf.Pin(END)])),
         BAD,
-        "already holds",
+        "already prescribes",
     ),
     "a beam in its own curvature": (
         lambda: bf.Model([a_beam(curve=bf.Arc((0, 0), 0.004, 0.0, 1.0))]).meshes,

@@ -42,7 +42,7 @@ def test_a_reaction_where_no_support_is_is_refused():
 
 def test_two_supports_of_one_coordinate_are_refused():
     model = bf.Model([BEAM], [bf.Clamp(BEAM.start), bf.Pin(BEAM.start)])
-    with pytest.raises(bf.InputError, match="already holds"):
+    with pytest.raises(bf.InputError, match="already prescribes"):
         bf.solve_static(model)
 
 

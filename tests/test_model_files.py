@@ -113,7 +113,7 @@ MISTAKES = {
         '[[supports]]\nkind = "pin"\npoint = "arm.start"\n[[loads]]',
         26,
         "supports[2]",
-        "already holds",
+        "already prescribes",
     ),
     "force of three": ("[0, 833.3333333333334]", "[0, 1, 2]", 29, "loads[1].vector", "two finite numbers"),
     "scale as number": ("vector = [0, 833", "scale = 1\nvector = [0, 833", 29, "loads[1].scale", "true or false"),

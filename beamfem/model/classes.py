@@ -68,6 +68,8 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
     Lengths count as equal within 1e-12 of themselves. A beam that is like no other has its number.
     """
     found: list[Hashable] = list(range(len(grids)))
+    if len(grids) == 1:
+        return found
     sized: defaultdict[int, list[int]] = defaultdict(list)
     for number, grid in enumerate(grids):
         if grid.straight and grid.beam.prismatic:

@@ -64,6 +64,11 @@ class Grid:
         start, end = self.parameter[element : element + 2]
         return element, float(np.clip((along - start) / (end - start), 0.0, 1.0))
 
+    def node_of(self, element: int, xi: float) -> int | None:
+        """Return the node at a point of an element, None where there is none."""
+        here = self.beam.element.field.nodes.tolist()
+        return int(self.node[element, here.index(xi)]) if xi in here else None
+
     def node_at(self, fraction: float) -> int:
         """Return the node at a support or joint; `make_grid` has put one there."""
         return int(np.argmin(np.abs(self.arc - fraction * self.vertices[-1])))

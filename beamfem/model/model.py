@@ -269,7 +269,7 @@ def _named(kinds: Sequence[type]) -> str:
         kinds
     ]
     names = [each.__name__ for some in derived for each in some if each.__module__.startswith("beamfem.")]
-    return " or ".join(", ".join(names).rsplit(", ", 1))
+    return " or ".join(", ".join(dict.fromkeys(names)).rsplit(", ", 1))  # slots make a class twice
 
 
 def _kind(beam: Beam) -> tuple[Element, Hashable]:

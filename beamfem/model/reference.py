@@ -78,6 +78,10 @@ def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.nda
 
 def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Return the axis (n, 2) of the reference at points (element, xi), positions from the element's first node."""
+    if grid.straight:
+        along = grid.tangent[grid.node[element, 0]]
+        none = np.zeros_like(along)
+        return Axis((xi * grid.lengths[element])[:, None] * along, along, none, across(along), none)
     found = interpolate(grid, reference_vectors(grid, element)[None], element, xi)
     return Axis(*(getattr(found, name)[0] for name in Axis.__dataclass_fields__))
 

@@ -17,6 +17,7 @@ from beamfem.model.reference import (
     interpolate,
     reference_angle,
     reference_axis,
+    reference_position,
 )
 
 
@@ -94,6 +95,24 @@ def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarra
     """Interpolate nodal vectors (steps, nodes, vectors, 2) at points (element, xi), both (points,)."""
     local = vectors[:, mesh.node[element]].reshape(len(vectors), len(element), -1, 2)
     return interpolate(mesh, local, element, xi)
+
+
+def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
+    """Return the position (steps, 2) [m] of a point of the axis, at a node without interpolation."""
+    element, xi = mesh.locate(fraction)
+    node = mesh.node_of(element, xi)
+    if node is not None:
+        return np.asarray(p[:, mesh.carried.dof[node, :2]])
+    return axis(mesh, nodal_vectors(mesh, p), np.array([element]), np.array([xi])).r[:, 0]
+
+
+def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
+    """Return the position (2,) [m] of a point of the axis in the reference, likewise."""
+    element, xi = mesh.locate(fraction)
+    node = mesh.node_of(element, xi)
+    if node is not None:
+        return np.asarray(mesh.position[node])
+    return reference_position(mesh, np.array([element]), np.array([xi]))[0]
 
 
 def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:

@@ -15,7 +15,6 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
-from beamfem.model.reference import reference_position
 from beamfem.registry import offered
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import BeamStress, beam_stress
@@ -179,13 +178,12 @@ class Solution:
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point (steps, 2) [m]."""
-        return self._axis(point, postprocess.nodal_vectors(self.model.mesh_of(point), self.p)).r[:, 0]
+        return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement of a point from the reference (steps, 2) [m]."""
         mesh = self.model.mesh_of(point)
-        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        return self.position(point) - reference_position(mesh, element, xi)
+        return self.position(point) - postprocess.start(mesh, point.fraction)
 
     def velocity(self, point: Point) -> np.ndarray:
         """Return the velocity of a point (steps, 2) [m/s]."""

@@ -98,6 +98,13 @@ class Conditions:
         shape = (max(self.count, 1), 3 * self.bodies)
         return csr_array(coo_array((value, (row.astype(int), column.astype(int))), shape=shape))
 
+    def dense(self) -> np.ndarray:
+        """Return the same as an array."""
+        result = np.zeros((max(self.count, 1), 3 * self.bodies))
+        for row, column, value in self.entries:
+            result[row, column] += value
+        return result
+
     def rates(self, p: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the change (n,) of the coordinates from the state p with a motion (3 bodies,)."""
         result = np.zeros(len(p))
@@ -110,9 +117,12 @@ class Conditions:
 
 def mechanisms(conditions: Conditions) -> np.ndarray:
     """Return an orthonormal basis (m, 3 bodies) of the motions that satisfy all conditions."""
-    rows, size = conditions.matrix(), 3 * conditions.bodies
+    size = 3 * conditions.bodies
+    if conditions.bodies <= _DENSE_BODIES:
+        return _null_space(conditions.dense())
+    rows = conditions.matrix()
     wanted = _FIRST_FEW
-    while size > 3 * _DENSE_BODIES and 2 * wanted < size:
+    while 2 * wanted < size:
         start = np.random.default_rng(1).standard_normal(size)
         try:
             values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
@@ -123,5 +133,9 @@ def mechanisms(conditions: Conditions) -> np.ndarray:
         if values.max() >= NEGLIGIBLE:
             return np.asarray(vectors.T[values < NEGLIGIBLE])
         wanted *= 4
-    _, singular, basis = np.linalg.svd(rows.toarray())
+    return _null_space(conditions.dense())
+
+
+def _null_space(rows: np.ndarray) -> np.ndarray:
+    _, singular, basis = np.linalg.svd(rows)
     return np.asarray(basis[int((singular > NEGLIGIBLE).sum()) :])

@@ -30,7 +30,12 @@ class Work:
         """Return rows of all nodes (N, count)."""
         nodes = int(self.table[record.NODES])
         own = self.chunks[:, first : first + count, : record.LANES]
-        return np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
+        found = np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
+        if self.sheet.order is None:
+            return found
+        result = np.empty_like(found)
+        result[self.sheet.order] = found
+        return result
 
 
 class Equations:

@@ -33,13 +33,14 @@ class Sheet:
     """A group of like elements as compiled code takes it.
 
     table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds, law: one whose address
-    its routines hold.
+    its routines hold; order (N,): nodes of the group as they are stored, None where as they are numbered.
     """
 
     table: np.ndarray
     kept: tuple[np.ndarray, ...]
     chunks: tuple[int, int, int]
     space: int
+    order: np.ndarray | None
     constant: np.ndarray | None
     routines: Routines
     needs: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
@@ -58,8 +59,34 @@ class Sheet:
         return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
 
 
+def storage_order(block: Block) -> np.ndarray | None:
+    """Return the nodes (N,) of a block as they are stored: those at ends of elements, then the inner ones by place.
+
+    So nodes of the same place in neighbouring elements are neighbours. None where there are no inner ones.
+    """
+    last = block.node.shape[1] - 1
+    if last == 1:
+        return None
+    place = np.zeros(len(block.node_kind), dtype=np.int64)
+    for inner in range(1, last):
+        place[block.node[:, inner]] = inner
+    return np.argsort(place, kind="stable")
+
+
+def stored(block: Block, order: np.ndarray | None) -> Block:
+    """Return a block with its nodes numbered as they are stored."""
+    if order is None:
+        return block
+    number = np.empty_like(order)
+    number[order] = np.arange(len(order))
+    own = {name: getattr(block, name)[order] for name in ("node_kind", "frame", "dof", "home")}
+    return block._replace(node=number[block.node], **own)
+
+
 def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     """Return the sheet of a block."""
+    order = storage_order(block)
+    block = stored(block, order)
     elements, nodes = block.node.shape
     count, coordinates = block.dof.shape
     slots = block.scale.shape[1]
@@ -153,7 +180,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         else None
     )
     needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)), damped, block.imposed is not None)
-    return Sheet(table, tuple(kept), chunks, used * ROW, constant, own, needs, block.law, block.imposed)
+    return Sheet(table, tuple(kept), chunks, used * ROW, order, constant, own, needs, block.law, block.imposed)
 
 
 def _routines(block: Block) -> Routines:

@@ -18,7 +18,7 @@ from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
-from beamfem.assembly.sheet import make_sheet
+from beamfem.assembly.sheet import make_sheet, storage_order, stored
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.element.coordinates import across
@@ -278,12 +278,13 @@ class System:
 
     @cached_property
     def turning(self) -> np.ndarray:
-        """Numbers among the unknown of x and y of each vector that turns with its section, and its node (np, 3).
+        """Numbers among the unknown of x and y of each vector that turns with its section, and its node as stored (np, 3).
 
         Nodes of all blocks are numbered one after the other; vectors of which a part is prescribed do not turn.
         """
         free, found, first = self.unknowns.free, [], 0
-        for block in self.blocks:
+        for numbered in self.blocks:
+            block = stored(numbered, storage_order(numbered))
             vectors = block.scale.shape[1] // block.node.shape[1]
             for slot in range(vectors):
                 turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]

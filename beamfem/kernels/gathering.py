@@ -9,18 +9,38 @@ from beamfem.kernels.record import ROW
 
 
 @inlined
+def _run(own, count):
+    """Return how many nodes of a batch stand beside the first one in a chunk, 0 where the others are not in a row.
+
+    The others begin the next chunk, if they are in a row as well.
+    """
+    run = 1
+    while run < count and own[run] - own[0] == run:
+        run += 1
+    if run < count and own[count - 1] - own[run] != count - 1 - run:
+        run = 0
+    return run
+
+
+@inlined
 def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
     """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`.
 
-    ordered: nodes that are as many places apart as their elements follow one another, as along a chain.
+    ordered: nodes whose places grow from element to element, as along a chain.
     """
     for n in range(nodes):
         own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
-        if ordered != 0 and own[count - 1] - own[0] == count - 1:
+        run = _run(own, count) if ordered != 0 else 0
+        if run > 0:
             lanes, filled = as_rows(at(chunks, own[0])), as_rows(whole)
-            for i in range(0, count, WIDTH):
+            for i in range(0, run, WIDTH):
                 for row in range(i, i + rows * ROW, ROW):
                     filled[row] = lanes[row]
+            if run < count:
+                lanes, filled = as_rows(at(chunks, own[run])), as_rows(at(whole, run))
+                for i in range(0, count - run, WIDTH):
+                    for row in range(i, i + rows * ROW, ROW):
+                        filled[row] = lanes[row]
         else:
             for row in range(rows):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
@@ -105,11 +125,17 @@ def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     small_code()
     for n in range(nodes):
         own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
-        if ordered != 0 and own[count - 1] - own[0] == count - 1:
+        run = _run(own, count) if ordered != 0 else 0
+        if run > 0:
             lanes, added = as_rows(forces), as_rows(at(sums, own[0]))
             for part in range(size):
-                for i in range(0, count, WIDTH):
-                    added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), count - i)
+                for i in range(0, run, WIDTH):
+                    added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), run - i)
+            if run < count:
+                lanes, added = as_rows(at(forces, run)), as_rows(at(sums, own[run]))
+                for part in range(size):
+                    for i in range(0, count - run, WIDTH):
+                        added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), count - run - i)
         else:
             for part in range(size):
                 source, to = at(forces, part * ROW), at(sums, part * ROW)

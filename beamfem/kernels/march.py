@@ -3,6 +3,7 @@
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
@@ -47,8 +48,16 @@ def _solve_turned(s, b, call):
         reals(b[r.ROLLER_NORMAL]),
         reals(b[r.ROWS]),
     )
-    for i in range(unknown):
-        right[i] = -residual[free[i]]
+    if b[r.FIRST_FREE] >= 0:
+        lanes, given = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
+        whole = unknown // WIDTH * WIDTH
+        for i in range(0, whole, WIDTH):
+            lanes[i] = -given[i]
+        for i in range(whole, unknown):
+            right[i] = -residual[b[r.FIRST_FREE] + i]
+    else:
+        for i in range(unknown):
+            right[i] = -residual[free[i]]
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
     _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], -1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
@@ -164,7 +173,7 @@ def march(system, solver, calls):
             _solve_turned(s, b, call)
             if full != 0:
                 _predict_resultants(s, b, call, system)
-            last, size = size, _correct(n, unknown, state, right, free, scale, factors, corrections)
+            last, size = size, _correct(n, unknown, b[r.FIRST_FREE], state, right, free, scale, factors, corrections)
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size

@@ -67,15 +67,23 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
             state[k * n + dofs[i]] = values[k * prescribed + i]
 
 
-@routine("iirrnrrr", "d", fastmath=FAST)
-def correct(n, unknown, state, right, free, inverse_scale, coefficients, change):
+@routine("iiirrnrrr", "d", fastmath=FAST)
+def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficients, change):
     """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale.
 
+    first_free: of the unknown coordinates `free`, where they follow one another, else -1;
     change (padded(n),): takes the corrections, zero elsewhere.
     """
     to_velocity, to_acceleration = coefficients[1], coefficients[2]
-    for i in range(unknown):
-        change[free[i]] = right[i]
+    if first_free >= 0:
+        source, to, filled = as_rows(right), as_rows(at(change, first_free)), unknown // WIDTH * WIDTH
+        for i in range(0, filled, WIDTH):
+            to[i] = source[i]
+        for i in range(filled, unknown):
+            change[first_free + i] = right[i]
+    else:
+        for i in range(unknown):
+            change[free[i]] = right[i]
     lanes, weight, rows, size = as_rows(change), as_rows(inverse_scale), as_rows(state), zeros()
     for i in range(0, n, WIDTH):
         size = larger(size, lanes[i] * weight[i])

@@ -194,7 +194,8 @@ LINEAR = 39  # address (n,)
 NATURALS = 40  # address of addresses, of each group (steps or 1, elements, points, measures), 0 where there are none
 NATURALS_VARY = 41
 CHANGE = 42  # address (padded(n),): corrections, zero where there are none
-SOLVER_FIELDS = 43
+FIRST_FREE = 43  # the first of the unknown where they follow one another, else -1
+SOLVER_FIELDS = 44
 
 (
     BALANCE,

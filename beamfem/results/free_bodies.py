@@ -116,7 +116,8 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
         imposed=None if block.imposed is None else block.imposed.of(elements),
         node=np.arange(len(flat)).reshape(nodes.shape),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
-        **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof", "home")},
+        home=np.column_stack(np.indices(nodes.shape).reshape(2, -1)),
+        **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof")},
     )
 
 

@@ -119,7 +119,10 @@ class SparseMotion:
                 rates = state[1], self.coefficients
                 stresses = predicted_stresses(self.system, state[0], self._change[: self._size], time, rates=rates)
             scale = self._inverse_scale
-            last, size = size, correct(self._size, len(free), state, right, free, scale, self._weights, self._change)
+            last, size = (
+                size,
+                correct(self._size, len(free), -1, state, right, free, scale, self._weights, self._change),
+            )
             state[1:, self._multipliers] = 0.0  # they have no rates
             iteration += 1
             statistics[0] += 1

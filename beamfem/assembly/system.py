@@ -278,7 +278,7 @@ class System:
 
     @cached_property
     def turning(self) -> np.ndarray:
-        """Numbers among the unknown of x and y of each vector that turns with its section, and its node as stored (np, 3).
+        """Numbers among the unknown of x and y of each vector that turns with its section, and its stored node (np, 3).
 
         Nodes of all blocks are numbered one after the other; vectors of which a part is prescribed do not turn.
         """

@@ -14,6 +14,8 @@ def _run(own, count):
 
     The others begin the next chunk, if they are in a row as well.
     """
+    if own[count - 1] - own[0] == count - 1:
+        return count
     run = 1
     while run < count and own[run] - own[0] == run:
         run += 1

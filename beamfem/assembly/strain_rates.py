@@ -80,7 +80,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
         dof=np.where(dof >= 0, np.arange(dof.size).reshape(dof.shape), -1),
         node_kind=block.node_kind[own],
         frame=block.frame[own],
-        home=np.column_stack(np.indices((elements, nodes)).reshape(2, -1)),
+        home=np.indices((elements, nodes)).reshape(2, -1).T,
     )
     part = free_elements.resisting(np.broadcast_to(np.eye(strains), block.stiffness.shape))
     resists = resisting(block)

@@ -173,6 +173,8 @@ class Model:
 
     def _places(self, grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
         """Return grid and node (n, 2) of points at which there is a node."""
+        if not points:
+            return np.empty((0, 2), dtype=np.int64)
         number = np.array([self._numbers[id(point.beam)] for point in points], dtype=np.int64)
         fraction = np.array([point.fraction for point in points])
         last = np.array([grid.nodes - 1 for grid in grids])

@@ -108,9 +108,10 @@ def _ownership(
     for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
         for code in range(TURNED_GRADIENTS + 1):
             rows = (has_slope == slope) & (node_kind == code)
+            if not rows.any():
+                continue
             own_names = labels(code, names)
-            if rows.any():
-                own[np.ix_(rows, np.arange(len(own_names)))] = True
+            own[rows, : len(own_names)] = True
             last[rows] = len(own_names) - 1
             turn_size[rows] = 1 if own_names[-1] == "theta" else 2
     return own, last, turn_size

@@ -126,8 +126,8 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
     beam, forces = grid.beam, grid.beam.element.forces
     at = reference_axis(grid, element, xi)
     strains = forces.strains(at)
-    if isinstance(beam.section, CrossSection):
-        return forces.stiffness(beam.section, beam.material, beam.element.coordinates, at), strains
+    if beam.prismatic:
+        return forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at), strains
     parts = []
     for i, arc in enumerate(grid.section_arc_length(element, xi)):
         here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis.__dataclass_fields__))
@@ -162,8 +162,8 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
     """
     beam = grid.beam
     where, at, weight = length_points(grid, element)
-    if isinstance(beam.section, CrossSection):
-        own = beam.section.inertia(beam.material)
+    if beam.prismatic:
+        own = beam.section_at(0.0).inertia(beam.material)
         inertia = np.broadcast_to([own.mass, own.first_moment, own.rotary], (len(where), 3))
     else:
         found = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
@@ -185,8 +185,8 @@ def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     def moments(section: CrossSection) -> np.ndarray:
         return np.asarray(sum(part.density * moments[1:4] for part, moments in section.moments(beam.material)))
 
-    if isinstance(beam.section, CrossSection):
-        return np.broadcast_to(moments(beam.section), (len(element), 3))
+    if beam.prismatic:
+        return np.broadcast_to(moments(beam.section_at(0.0)), (len(element), 3))
     return np.array([moments(beam.section_at(arc)) for arc in grid.section_arc_length(element, xi)])
 
 

@@ -116,7 +116,7 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
         imposed=None if block.imposed is None else block.imposed.of(elements),
         node=np.arange(len(flat)).reshape(nodes.shape),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
-        home=np.column_stack(np.indices(nodes.shape).reshape(2, -1)),
+        home=np.indices(nodes.shape).reshape(2, -1).T,
         **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof")},
     )
 

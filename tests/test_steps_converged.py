@@ -64,5 +64,11 @@ def test_a_step_that_is_not_converged_or_does_not_follow_is_seen():
 )
 def test_a_kept_tangent_does_not_judge_itself(own, size, last, noise, verdict):
     rate, known = np.array([0.1]), np.array([noise])
-    assert judge(3, 0, own, size, last, 1.0, TOLERANCE, rate, known) == verdict
+    assert judge(3, 0, own, 0, size, last, 1.0, TOLERANCE, rate, known) == verdict
     assert known[0] == (2.0 * last if own and size == 5e-10 else noise)
+
+
+@pytest.mark.parametrize(("own", "far", "verdict"), [(0, 0, 1), (0, 1, 2), (1, 1, 1)])
+def test_a_tangent_from_far_away_does_not_judge_what_it_led_to(own, far, verdict):
+    """A beam that creeps: from 38 m away it converged to 7e-5 m beside the equilibrium."""
+    assert judge(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0]), np.zeros(1)) == verdict

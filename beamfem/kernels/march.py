@@ -154,7 +154,7 @@ def march(system, solver, calls):
                 record[r.NATURAL] = naturals[group] + 8 * step * strains
         prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * held * step)
         _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule)
-        size, first_size, iteration = 0.0, 0.0, 0
+        size, first_size, iteration, far = 0.0, 0.0, 0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(space, n)
         rate[0] = max(statistics[4], 1e-4) ** 0.8 if not fresh else 1.0
@@ -179,8 +179,9 @@ def march(system, solver, calls):
             statistics[2] = size
             if iteration == 1:
                 first_size = max(size, statistics[8])
+                far = 1 if size > motion_steps.FAR else 0
             own = 1 if renew else 0
-            done = _judge(iteration, full, own, size, last, first_size, limits[0], rate, at(statistics, 9))
+            done = _judge(iteration, full, own, far, size, last, first_size, limits[0], rate, at(statistics, 9))
             if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call):
                 done = -1
             fresh = done == 2

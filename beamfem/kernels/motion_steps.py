@@ -100,11 +100,12 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
     return largest(size)
 
 
-@routine("iiiddddrr", "i")
-def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
+@routine("iiiiddddrr", "i")
+def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
     """Return 1 if a step is done after a correction, -1 if it is lost, 2 if a new tangent has to tell.
 
-    own: this correction has a tangent of its own, full: each has; size, last: this correction and the one before;
+    own: this correction has a tangent of its own, full: each has; far: the first one was larger than `FAR`, so that the
+    tangent it was made with tells nothing of where it led; size, last: this correction and the one before;
     changed: what a change of acceleration changes in the step. Updated: rate (1,) at which corrections shrink, noise
     (1,): corrections of this size are round-off, as a new tangent has shown. Hairer and Wanner 1996, IV.8.
     """
@@ -125,7 +126,9 @@ def judge(iteration, full, own, size, last, changed, tolerance, rate, noise):
             return 1
         return -1 if iteration > 2 and size > _GROWTH * last else 0
     small = rate[0] * size <= (1.0 - rate[0]) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
-    return 1 if rate[0] < 1.0 and small else 0
+    if rate[0] < 1.0 and small:
+        return 2 if far != 0 and own == 0 else 1
+    return 0
 
 
 @routine("iirrrrnrr", "d", fastmath=FAST)

@@ -102,7 +102,7 @@ class SparseMotion:
         statistics, most = self.statistics, self.iterations if full else min(_MOST, self.iterations)
         free = self.system.free_dofs
         rate = 1.0 if fresh else max(statistics[4], 1e-4) ** 0.8
-        size, first_size, done, iteration = 0.0, 0.0, False, 0
+        size, first_size, done, iteration, far = 0.0, 0.0, False, 0, 0
         stresses: tuple[np.ndarray, ...] | None = None
         state[:] = before
         dofs = self.system.prescribed_dofs
@@ -128,10 +128,21 @@ class SparseMotion:
             statistics[0] += 1
             statistics[2] = size
             if iteration == 1:
-                first_size = max(size, statistics[8])
+                first_size, far = max(size, statistics[8]), int(size > FAR)
             self._number[0] = rate
             judged = judge(
-                *(iteration, int(full), int(own), size, last, first_size, self.tolerance, self._number, statistics[9:])
+                *(
+                    iteration,
+                    int(full),
+                    int(own),
+                    far,
+                    size,
+                    last,
+                    first_size,
+                    self.tolerance,
+                    self._number,
+                    statistics[9:],
+                )
             )
             if (
                 judged == 1

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from beamfem.cli.app import app
-from beamfem.cli.modelfile import ModelFileError, actions, functions, parts, read_model_file
+from beamfem.cli.modelfile import ModelFileError, actions, axes, elements, functions, parts, read_model_file
 from beamfem.cli.modelfile.analyses import ANALYSES
 from beamfem.cli.modelfile.lines import key_lines
 
@@ -249,7 +249,7 @@ def test_joints_that_do_not_touch_have_a_line_and_tables_move_supports(tmp_path)
 
 
 def test_every_kind_and_key_is_documented():
-    kinds = {**parts.SECTIONS, **parts.ELEMENTS, **parts.CURVES, **functions.FUNCTIONS}
+    kinds = {**parts.SECTIONS, **elements.ELEMENTS, **axes.CURVES, **functions.FUNCTIONS}
     kinds |= {**actions.SUPPORTS, **actions.JOINTS, **actions.LOADS, **ANALYSES}
     import inspect
 
@@ -257,7 +257,7 @@ def test_every_kind_and_key_is_documented():
         (row,) = [line for line in DOCS.splitlines() if re.match(rf"\|[^|]*`{kind}`", line)]
         for key in inspect.signature(make).parameters:
             assert f"`{key}`" in row, (kind, key)
-    for kind in parts.FORCES:
+    for kind in (*elements.FORCES, *elements.FIELDS, *elements.COORDINATES, *axes.MESHES):
         assert f'"{kind}"' in DOCS
 
 

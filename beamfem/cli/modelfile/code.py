@@ -58,11 +58,10 @@ def _run(file: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)
-    folder = str(file.parent.resolve())
-    if folder not in sys.path:  # at its end, so that what lies there takes the place of no module
-        sys.path.append(folder)
     before = sys.modules.get(file.stem)
     sys.modules[file.stem] = module  # classes are looked up there, by dataclasses and by pickle
+    folder = str(file.parent.resolve())
+    sys.path.append(folder)  # for files beside it, which take the place of no other module
     try:
         spec.loader.exec_module(module)
     except Exception as error:
@@ -70,6 +69,8 @@ def _run(file: Path) -> ModuleType:
         if before is not None:
             sys.modules[file.stem] = before
         raise InputError(f"{file.name} cannot be run: {_where(error, file)}") from error
+    finally:
+        sys.path.remove(folder)
     return module
 
 

@@ -23,6 +23,7 @@ from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 from beamfem.validation import count, flag, items, one_of, positive, require_known, text
 
+_TARGETS = {"results": "out", "vtk": "vtk", "film": "film", "page": "page", "body": "body"}
 _HISTORY = ("displacement", "ux", "uy", "position", "velocity", "rotation", "force", "reaction_moment", "energy")
 
 
@@ -48,9 +49,6 @@ class Results(_OfAny):
 
     file: Path
 
-    def __post_init__(self) -> None:
-        require_target("out", self.file)
-
     def require(self, model: Model, analysis: Analysis) -> None:
         """Refuse parts that cannot be saved."""
         require_saved(model)
@@ -70,7 +68,6 @@ class Vtk(_OfAny):
     every: int = 1
 
     def __post_init__(self) -> None:
-        require_target("vtk", self.file)
         Content(self.geometry, None, self.single)
         count("every", self.every)
         if self.fields is not None:
@@ -100,7 +97,6 @@ class Plot(_OfAny):
     loads: bool = True
 
     def __post_init__(self) -> None:
-        require_target("curve", self.file)
         _check_colour(self.colour)
         count("shapes", self.shapes)
         _check_flags(self)
@@ -124,7 +120,6 @@ class Film(_OfAny):
     dpi: int = 100
 
     def __post_init__(self) -> None:
-        require_target("film", self.file)
         positive("fps", self.fps)
         positive("seconds", self.seconds)
         _check_colour(self.colour)
@@ -145,7 +140,6 @@ class Page(_OfAny):
     frames: int = 60
 
     def __post_init__(self) -> None:
-        require_target("page", self.file)
         count("frames", self.frames)
         if self.title is not None:
             text("title", self.title)
@@ -164,7 +158,6 @@ class Body(_OfAny):
     size: Sequence[int] = (1400, 900)
 
     def __post_init__(self) -> None:
-        require_target("body", self.file)
         _check_colour(self.colour)
         if self.row is not None:
             count("row", self.row)
@@ -190,7 +183,6 @@ class History:
     quantity: str = "displacement"
 
     def __post_init__(self) -> None:
-        require_target("curve", self.file)
         require_known(f"there is no quantity {self.quantity!r} to draw over the states", self.quantity, _HISTORY)
         if bool(self.points) == (self.quantity == "energy"):
             raise InputError('points are needed, or quantity = "energy", which is of the whole model')
@@ -212,7 +204,6 @@ class LoadDisplacement:
     quantity: str = "uy"
 
     def __post_init__(self) -> None:
-        require_target("curve", self.file)
         one_of("quantity", self.quantity, ("ux", "uy", "rotation"))
 
     def require(self, model: Model, analysis: Analysis) -> None:
@@ -233,7 +224,6 @@ class Shapes:
     most: int = 6
 
     def __post_init__(self) -> None:
-        require_target("curve", self.file)
         count("most", self.most)
 
     def require(self, model: Model, analysis: Analysis) -> None:
@@ -251,9 +241,6 @@ class Undeformed(_OfAny):
     """The model before any solve, with its supports and loads (.png, .svg, .pdf)."""
 
     file: Path
-
-    def __post_init__(self) -> None:
-        require_target("curve", self.file)
 
     def write(self, found: Found) -> None:
         found.solution.model.plot(self.file)
@@ -275,8 +262,17 @@ FILES: Kinds = {
 
 def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tuple[OutputFile, ...]:
     """Return the files that a model file asks for. Raises ModelFileError."""
+
+    def file(table: Table, key: str) -> Path:
+        target = table.source.file.parent / table.text(key)
+        try:
+            require_target(_TARGETS.get(table.values["kind"], "curve"), target)
+        except InputError as error:
+            raise table.error(str(error), key) from None
+        return target
+
     readers: dict[str, Reader] = {
-        "file": lambda table, key: table.source.file.parent / table.text(key),
+        "file": file,
         "point": places.point,
         "points": places.points,
     }

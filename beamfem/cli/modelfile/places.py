@@ -76,10 +76,10 @@ class Places:
     def _set(self, table: Table, key: str, one: str) -> tuple[Frame, str]:
         text = table.text(key)
         found = _SET.fullmatch(text)
-        if not found:
-            raise table.error(f'must be a list such as ["{one}"], or a set of a frame, "FRAME.SET", got "{text}"', key)
-        if found["frame"] not in self.frames:
-            raise table.error(f"there is no frame {found['frame']!r}; {nearest(found['frame'], self.frames)}", key)
+        if not found or found["frame"] not in self.frames:
+            near = f"; {nearest(found['frame'] if found else text, self.frames)}" if self.frames else ""
+            right = f'must be a list such as ["{one}"], or a set of a frame, "FRAME.SET", got "{text}"'
+            raise table.error(right + near, key)
         return self.frames[found["frame"]], found["set"]
 
 

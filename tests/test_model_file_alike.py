@@ -119,6 +119,22 @@ def test_an_imperfection_by_a_mode_about_an_equilibrium(tmp_path):
     require_same(found.solution, bf.solve_static(crooked))
 
 
+def test_reactions_inside_a_crooked_beam(tmp_path):
+    roller = '[[supports]]\nkind = "roller"\npoint = "arm.at(0.4)"\n'
+    crooked = '[imperfection]\nsize = 0.05\nof = "modes"\n'
+    output = '[[outputs]]\npoint = "arm.at(0.4)"\nquantities = ["fy"]\n'
+    (tmp_path / "a.toml").write_text(ARM + roller + LIFT + crooked + output)
+    job = read_model_file(tmp_path / "a.toml").imperfect()
+    beam = arm()
+    supports = [bf.Clamp(beam.start), bf.Roller(beam.at(0.4))]
+    straight = bf.Model([beam], supports, [bf.PointForce(beam.end, (0, 100))])
+    expected = bf.solve_static(straight.with_imperfection(bf.solve_modes(straight, 1), 0.05))
+    found = job.solve().solution
+    require_same(found, expected)
+    fy = expected.reaction(expected.model.supports[1].point)[-1, 1]
+    assert job.outputs[0].rows(found)[0]["fy"] == fy != 0.0
+
+
 def test_a_branch_of_a_path(tmp_path):
     text = """[analysis]
 kind = "path"

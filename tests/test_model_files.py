@@ -271,7 +271,11 @@ def run(text, tmp_path, *options):
 
 def test_documented_files_are_right(tmp_path):
     (tmp_path / "parts.py").write_text(re.search(r"```python\n(.*?)```", DOCS, re.S)[1])
-    weight, crooked, string, column, driven, rolled, damped, swept = (run(block, tmp_path) for block in BLOCKS)
+    (tmp_path / "portal.msh").write_bytes((ROOT / "meshes" / "portal.msh").read_bytes())
+    weight, portal, crooked, string, column, driven, rolled, damped, swept = (run(block, tmp_path) for block in BLOCKS)
+    assert portal["outputs"][1]["rows"][0]["fy"] == pytest.approx(
+        500.0 * 6.0 / 2, rel=1e-9
+    )  # half of the load on the beam
     assert damped["outputs"][1]["rows"][0]["fy"] == pytest.approx(
         [-5.0 * damped["outputs"][0]["rows"][0]["vy"]], rel=1e-12
     )

@@ -1,7 +1,7 @@
 """Beams of a model file, what holds, joins and connects them and what acts on them."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from inspect import signature
 from typing import Any
 
@@ -12,7 +12,7 @@ from beamfem.cli.modelfile.frames import frame
 from beamfem.cli.modelfile.functions import Components
 from beamfem.cli.modelfile.named import Named, value_by
 from beamfem.cli.modelfile.own_parts import build_own
-from beamfem.cli.modelfile.places import Places
+from beamfem.cli.modelfile.places import Moved, Places
 from beamfem.cli.modelfile.table import Kinds, Reader, Table, build, build_kind
 from beamfem.errors import InputError
 from beamfem.io.frame import Frame
@@ -46,34 +46,22 @@ JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 
 @dataclass(frozen=True)
 class Structure:
-    """Beams of a file by name, frames from mesh files, and what the beams are made of."""
+    """Beams and frames of a file by name, what they are made of, and where a crooked model has them."""
 
     beams: Mapping[str, Beam]
     frames: Mapping[str, Frame]
     material: Named
+    moved: Moved = field(default_factory=Moved)
 
     @property
     def places(self) -> Places:
         """What reads points and beams."""
-        return Places(self.beams, self.frames)
+        return Places(self.beams, self.frames, self.moved)
 
     @property
     def joints(self) -> list[Joint]:
         """The joints inside frames."""
         return [joint for frame in self.frames.values() for joint in frame.joints]
-
-    def moved_to(self, beams: Sequence[Beam]) -> "Structure":
-        """Return the same names for other beams, in their order."""
-        other = {id(old): new for old, new in zip(self.beams.values(), beams, strict=True)}
-        frames = {
-            name: replace(
-                own,
-                beams=tuple(other[id(beam)] for beam in own.beams),
-                places=tuple(tuple(other[id(point.beam)].at(point.fraction) for point in at) for at in own.places),
-            )
-            for name, own in self.frames.items()
-        }
-        return replace(self, beams=dict(zip(self.beams, beams, strict=True)), frames=frames)
 
 
 def structure(root: Table, function: Named) -> Structure:

@@ -8,10 +8,42 @@ from beamfem.cli.modelfile.table import Table
 from beamfem.errors import InputError
 from beamfem.io.frame import Frame
 from beamfem.model.beam import Beam, Point
+from beamfem.model.model import Model
 from beamfem.validation import nearest
 
 _POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
 _SET = re.compile(r"(?P<frame>[^.]+)\.(?P<set>.+)")
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Beams of a crooked model in the place of straighter ones, by identity, and points where these have moved."""
+
+    beams: Mapping[int, Beam] = field(default_factory=dict)
+    points: Mapping[tuple[int, float], Point] = field(default_factory=dict)
+
+    def beam(self, beam: Beam) -> Beam:
+        """Return the beam in the place of another."""
+        return self.beams.get(id(beam), beam)
+
+    def point(self, point: Point) -> Point:
+        """Return the point in the place of another; where nothing acts, that at the same fraction."""
+        moved = self.points.get((id(point.beam), point.fraction))
+        return Point(self.beam(point.beam), point.fraction) if moved is None else moved
+
+
+def moved(old: Model, new: Model) -> Moved:
+    """Return where the beams of a model are in another that is the same part for part."""
+    beams = {id(before): after for before, after in zip(old.beams, new.beams, strict=True)}
+    pairs = zip(_points(old), _points(new), strict=True)
+    return Moved(beams, {(id(before.beam), before.fraction): after for before, after in pairs})
+
+
+def _points(model: Model) -> list[Point]:
+    """Return all points at which something holds, loads, joins or connects beams."""
+    found = [item.point for item in (*model.point_supports, *model.point_loads)]
+    found += [point for joint in model.joints for point in (joint.a, joint.b)]
+    return found + [point for connector in model.connectors for point in connector.points]
 
 
 @dataclass(frozen=True)
@@ -20,11 +52,12 @@ class Places:
 
     beams: Mapping[str, Beam]
     frames: Mapping[str, Frame] = field(default_factory=dict)
+    moved: Moved = field(default_factory=Moved)
 
     def beam(self, table: Table, key: str) -> Beam:
         """Return the beam named at a key. Raises ModelFileError."""
         given = table.values[key]
-        return given if isinstance(given, Beam) else self._beam(table, key, table.text(key))
+        return given if isinstance(given, Beam) else self.moved.beam(self._beam(table, key, table.text(key)))
 
     def _beam(self, table: Table, key: str, name: str) -> Beam:
         if name not in self.beams:
@@ -37,8 +70,9 @@ class Places:
         x, y [m]: of a node of the mesh.
         """
         given = table.values[key]
-        if isinstance(given, Point):
-            return given
+        return given if isinstance(given, Point) else self.moved.point(self._point(table, key))
+
+    def _point(self, table: Table, key: str) -> Point:
         text = table.text(key)
         found = _POINT.fullmatch(text.strip())
         if not found:
@@ -59,7 +93,7 @@ class Places:
             return [self.point(item, place) for item, place in table.items(key)]
         frame, name = self._set(table, key, "NAME.start")
         try:
-            return frame.points(name)
+            return [self.moved.point(point) for point in frame.points(name)]
         except InputError as error:
             raise table.error(str(error), key) from None
 
@@ -69,7 +103,7 @@ class Places:
             return [self.beam(item, place) for item, place in table.items(key)]
         frame, name = self._set(table, key, "NAME")
         try:
-            return frame.members(name)
+            return [self.moved.beam(beam) for beam in frame.members(name)]
         except InputError as error:
             raise table.error(str(error), key) from None
 

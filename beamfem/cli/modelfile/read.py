@@ -3,7 +3,7 @@
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from beamfem.cli.modelfile.files import OutputFile, files
 from beamfem.cli.modelfile.imperfection import Imperfection, imperfection
 from beamfem.cli.modelfile.lines import key_lines
 from beamfem.cli.modelfile.outputs import Output, outputs
+from beamfem.cli.modelfile.places import moved
 from beamfem.cli.modelfile.table import Source, Table
 from beamfem.cli.modelfile.varied import Varied, varied
 from beamfem.errors import InputError
@@ -70,7 +71,7 @@ class Job:
     @property
     def beams(self) -> Mapping[str, Beam]:
         """The beams by name; those of a frame are NAME[1], NAME[2], ..."""
-        return self.structure.beams
+        return {name: self.structure.moved.beam(beam) for name, beam in self.structure.beams.items()}
 
     def imperfect(self) -> "Job":
         """Return the job of the imperfect model, where the file asks for one. Raises ModelFileError, ConvergenceError.
@@ -83,7 +84,7 @@ class Job:
             model = self.imperfection.of_model(self.model)
         except InputError as error:
             raise self.root.table("imperfection").refused(error) from error
-        return _job(self.root, self.structure.moved_to(model.beams), model, self.title, None)
+        return _job(self.root, replace(self.structure, moved=moved(self.model, model)), model, self.title, None)
 
     def solve(self) -> Found:
         """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""

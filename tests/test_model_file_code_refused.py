@@ -64,6 +64,11 @@ MISTAKES = {
         "connectors.a",
         "broken cannot be made: ZeroDivisionError: division by zero",
     ),
+    "connectors without names": (
+        CODE + ARM + "[[connectors]]\nclass = 'Several'",
+        "connectors",
+        "must be tables with a name, each headed [connectors.NAME]",
+    ),
     "types that are lost": (
         CODE + ARM + "[connectors.a]\nclass = 'lost'\npoint = 'arm.end'",
         "connectors.a.class",

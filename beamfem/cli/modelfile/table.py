@@ -82,6 +82,9 @@ class Table:
         """Return the tables [key.name] by name. Raises ModelFileError."""
         if key not in self.values:
             return {}
+        values = self.values[key]
+        if not isinstance(values, dict):
+            raise self.error(f"must be tables with a name, each headed [{key}.NAME], got {shown(values)}", key)
         found = self.table(key)
         return {name: found.table(name) for name in found.values}
 

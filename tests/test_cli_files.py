@@ -13,6 +13,10 @@ import beamfem as bf
 from beamfem.cli import new
 from beamfem.cli.modelfile import read_model_file
 
+DASHPOT = re.search(
+    r"```python\n(.*?)```", (Path(__file__).parent.parent / "docs" / "model_files.md").read_text(), re.S
+)[1]
+
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
@@ -46,6 +50,7 @@ def test_everything_that_the_template_mentions_can_be_read(tmp_path):
     text = Path(new.__file__).with_name("template.toml").read_text()
     begin, analyses, rest = re.split(r"^# -+ what to (?:compute|print).*\n", text, flags=re.MULTILINE)
     begin = re.sub(r"^# (?=\w+ = |\[)", "", begin, flags=re.MULTILINE)
+    (tmp_path / "parts.py").write_text(DASHPOT)
     kinds = []
     for analysis in re.split(r"^(?:# )?\[analysis\]\n", analyses, flags=re.MULTILINE)[1:]:
         own = "[analysis]\n" + re.sub(r"^# ", "", analysis, flags=re.MULTILINE)
@@ -55,7 +60,8 @@ def test_everything_that_the_template_mentions_can_be_read(tmp_path):
         if kinds[-1] == "dynamics":
             asked = asked.replace('y = "load_factor"', 'y = "time"')
         (tmp_path / "model.toml").write_text(begin + own + asked)
-        read_model_file(tmp_path / "model.toml")
+        job = read_model_file(tmp_path / "model.toml")
+        assert [type(connector).__name__ for connector in job.model.connectors] == ["Dashpot"]
     tapered = re.search(r"height = \S+ # tapered: (\{.*\})", begin)[1]
     (tmp_path / "model.toml").write_text(re.sub(r"height = .*", f"height = {tapered}", begin))
     assert read_model_file(tmp_path / "model.toml").beams["arm"].section_at(0.2).area == pytest.approx(0.03 * 0.0015)

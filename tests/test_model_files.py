@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from beamfem.cli.app import app
-from beamfem.cli.modelfile import ModelFileError, actions, functions, parts, read_model_file
+from beamfem.cli.modelfile import ModelFileError, actions, axes, elements, files, functions, parts, read_model_file
 from beamfem.cli.modelfile.analyses import ANALYSES
 from beamfem.cli.modelfile.lines import key_lines
 
@@ -249,15 +249,15 @@ def test_joints_that_do_not_touch_have_a_line_and_tables_move_supports(tmp_path)
 
 
 def test_every_kind_and_key_is_documented():
-    kinds = {**parts.SECTIONS, **parts.ELEMENTS, **parts.CURVES, **functions.FUNCTIONS}
-    kinds |= {**actions.SUPPORTS, **actions.JOINTS, **actions.LOADS, **ANALYSES}
+    kinds = {**parts.SECTIONS, **elements.ELEMENTS, **axes.CURVES, **functions.FUNCTIONS}
+    kinds |= {**actions.SUPPORTS, **actions.JOINTS, **actions.LOADS, **ANALYSES, **files.FILES}
     import inspect
 
     for kind, make in kinds.items():
         (row,) = [line for line in DOCS.splitlines() if re.match(rf"\|[^|]*`{kind}`", line)]
         for key in inspect.signature(make).parameters:
             assert f"`{key}`" in row, (kind, key)
-    for kind in parts.FORCES:
+    for kind in (*elements.FORCES, *elements.FIELDS, *elements.COORDINATES, *axes.MESHES):
         assert f'"{kind}"' in DOCS
 
 
@@ -270,7 +270,15 @@ def run(text, tmp_path, *options):
 
 
 def test_documented_files_are_right(tmp_path):
-    weight, crooked, string, column, driven, rolled, swept = (run(block, tmp_path) for block in BLOCKS)
+    (tmp_path / "parts.py").write_text(re.search(r"```python\n(.*?)```", DOCS, re.S)[1])
+    (tmp_path / "portal.msh").write_bytes((ROOT / "meshes" / "portal.msh").read_bytes())
+    weight, portal, crooked, string, column, driven, rolled, damped, swept = (run(block, tmp_path) for block in BLOCKS)
+    assert portal["outputs"][1]["rows"][0]["fy"] == pytest.approx(
+        500.0 * 6.0 / 2, rel=1e-9
+    )  # half of the load on the beam
+    assert damped["outputs"][1]["rows"][0]["fy"] == pytest.approx(
+        [-5.0 * damped["outputs"][0]["rows"][0]["vy"]], rel=1e-12
+    )
     critical = np.pi**2 * 2e11 * 0.02 * 0.01**3 / 12.0 / 4.0
     bent = 1e-3 / (1.0 - 600.0 / critical) - 1e-3
     assert abs(crooked["outputs"][0]["rows"][0]["ux"]) == pytest.approx(bent, rel=2e-4)

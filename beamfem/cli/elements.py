@@ -2,7 +2,7 @@
 
 import re
 
-from beamfem.cli.modelfile.parts import ELEMENTS
+from beamfem.cli.modelfile.elements import PRESETS
 from beamfem.element.element import CRBF, Element
 from beamfem.errors import InputError
 from beamfem.validation import nearest
@@ -14,14 +14,14 @@ def element_from_text(text: str) -> Element:
     """Return the element of a text such as "ANCFCRBF" or "CRBF(4)". Raises InputError."""
     found = _TEXT.fullmatch(text.strip())
     name = found["name"] if found else text
-    if not found or name not in ELEMENTS:
-        raise InputError(f"there is no element {name!r}; {nearest(name, ELEMENTS)}")
-    if ELEMENTS[name] is CRBF:
+    if not found or name not in PRESETS:
+        raise InputError(f"there is no element {name!r}; {nearest(name, PRESETS)}")
+    if PRESETS[name] is CRBF:
         if found["order"] is None:
             raise InputError('CRBF needs its order, such as "CRBF(4)"')
         return CRBF(int(found["order"]))
     if found["order"] is not None:
         raise InputError(f"{name} has no order, only CRBF has")
-    element = ELEMENTS[name]()
+    element = PRESETS[name]()
     assert isinstance(element, Element)
     return element

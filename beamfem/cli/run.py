@@ -49,6 +49,7 @@ def run(
     with reported(as_json, quiet):
         from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
+        from beamfem.cli.modelfile.files import require_saved
         from beamfem.cli.targets import require_target
         from beamfem.errors import ConvergenceError
 
@@ -58,6 +59,8 @@ def run(
             return
         for option, target in (("out", out), ("vtk", vtk), ("plot", plot)):
             require_target(option, target)
+        if out is not None:
+            require_saved(job.model)
         if not quiet:
             tell_of_compilation()
         begun = time.perf_counter()
@@ -77,6 +80,9 @@ def run(
         for curve in job.curves:
             curve.draw(found.solution)
             written.append(str(curve.file))
+        for file in job.files:
+            file.write(found)
+            written.append(str(file.file))
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)

@@ -24,8 +24,11 @@ def run_sweep(
 
     if vtk is not None or colour is not None:
         raise InputError(f"{'--vtk' if vtk else '--colour'} is for one solution, and {job.file} has a sweep")
-    if job.curves:
-        raise InputError(f"{job.file} has [[curves]], which are of one solution, and a sweep; leave one of them out")
+    for name in ("curves", "files"):
+        if getattr(job, name):
+            raise InputError(
+                f"{job.file} has [[{name}]], which are of one solution, and a sweep; leave one of them out"
+            )
     require_target("table", out)
     require_target("curve", plot)
     if plot is not None and not any(all(map(_is_number, each.values)) for each in job.varied):

@@ -12,6 +12,9 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "curve": ("matplotlib",),
     "vtk": ("vtkmodules",),
     "table": (),
+    "film": ("matplotlib",),
+    "page": (),
+    "body": ("matplotlib",),
 }
 _OTHERWISE: dict[str, tuple[str, ...]] = {".html": (), ".mp4": ("matplotlib", "imageio_ffmpeg")}
 _SUFFIXES = {
@@ -20,13 +23,16 @@ _SUFFIXES = {
     "curve": (".png", ".svg", ".pdf"),
     "vtk": (".pvd", ".vtkhdf"),
     "table": (".csv",),
+    "film": (".gif", ".mp4"),
+    "page": (".html",),
+    "body": (".png",),
 }
 
 
 def require_target(option: str, path: Path | None) -> None:
     """Raise InputError where a file of this kind cannot be written: suffix, a folder in its place, a missing package.
 
-    option: "out", "plot", "vtk"; "curve" or "table" of a sweep.
+    option: "out", "plot", "vtk"; "curve" or "table" of a sweep; "film", "page" or "body" of a model file.
     """
     if path is None:
         return

@@ -1,24 +1,29 @@
-"""Beams of a model file, what holds and joins them and what acts on them."""
+"""Beams of a model file, what holds, joins and connects them and what acts on them."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from inspect import signature
 from typing import Any
 
 from beamfem.assembly.system import System
-from beamfem.cli.modelfile import parts
+from beamfem.cli.modelfile import axes, parts
+from beamfem.cli.modelfile.elements import elements
+from beamfem.cli.modelfile.frames import frame
 from beamfem.cli.modelfile.functions import Components
-from beamfem.cli.modelfile.parts import Kinds, Named
-from beamfem.cli.modelfile.table import Reader, Table, build, build_kind
+from beamfem.cli.modelfile.named import Named, value_by
+from beamfem.cli.modelfile.own_parts import build_own, build_own_or_kind
+from beamfem.cli.modelfile.places import Moved, Places
+from beamfem.cli.modelfile.table import Kinds, Reader, Table, build
 from beamfem.errors import InputError
+from beamfem.io.frame import Frame
+from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.imposed_strains import Actuation, Temperature
-from beamfem.model.joints import Hinge, Rigid
+from beamfem.model.joints import Hinge, Joint, Rigid
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
 from beamfem.model.support import Support
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
-from beamfem.validation import nearest
 
 SUPPORTS: Kinds = {
     "clamp": Clamp,
@@ -39,101 +44,114 @@ LOADS: Kinds = {
 }
 JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
+
+@dataclass(frozen=True)
+class Structure:
+    """Beams and frames of a file by name, what they are made of, and where a crooked model has them."""
+
+    beams: Mapping[str, Beam]
+    frames: Mapping[str, Frame]
+    material: Named
+    moved: Moved = field(default_factory=Moved)
+
+    @property
+    def places(self) -> Places:
+        """What reads points and beams."""
+        return Places(self.beams, self.frames, self.moved)
+
+    @property
+    def joints(self) -> list[Joint]:
+        """The joints inside frames."""
+        return [joint for frame in self.frames.values() for joint in frame.joints]
 
 
-def beams(root: Table, function: Named) -> dict[str, Beam]:
-    """Return the beams of a file by name. Raises ModelFileError."""
-    material, element = parts.materials(root), parts.elements(root)
+def structure(root: Table, function: Named) -> Structure:
+    """Return the beams of a file and the frames that it reads. Raises ModelFileError."""
+    material, element = parts.materials(root), elements(root)
     section = parts.sections(root, material, function)
     readers: dict[str, Reader] = {
-        "curve": parts.curve,
+        "curve": axes.curve,
+        "elements": axes.elements_along,
         "element": element,
         "section": section,
         "material": material,
     }
     found = {name: build(table, Beam, readers) for name, table in root.named("beams").items()}
+    frames = {name: frame(table, readers) for name, table in root.named("frames").items()}
+    for name, own in frames.items():
+        found |= {f"{name}[{number}]": beam for number, beam in enumerate(own.beams, 1)}
     if not found:
         raise root.error("a model needs at least one beam, a table headed [beams.NAME]")
     for named in (material, element, section):
         named.check_all()
-    return found
+    return Structure(found, frames, material)
 
 
-class Places:
-    """Reads what means a beam of the file, or a point of one."""
-
-    def __init__(self, beams: Mapping[str, Beam]) -> None:
-        self.beams = beams
-
-    def beam(self, table: Table, key: str) -> Beam:
-        """Return the beam named at a key. Raises ModelFileError."""
-        name = table.text(key)
-        if name not in self.beams:
-            raise table.error(f"there is no beam {name!r}; {nearest(name, self.beams)}", key)
-        return self.beams[name]
-
-    def point(self, table: Table, key: str) -> Point:
-        """Return the point at a key: NAME.start, NAME.end or NAME.at(fraction). Raises ModelFileError."""
-        text = table.text(key)
-        found = _POINT.fullmatch(text.strip())
-        if not found:
-            raise table.error(f'must be a point such as "NAME.start", "NAME.end" or "NAME.at(0.5)", got "{text}"', key)
-        name = found["beam"]
-        if name not in self.beams:
-            raise table.error(f"there is no beam {name!r}; {nearest(name, self.beams)}", key)
-        if found["end"]:
-            return self.beams[name].start if found["end"] == "start" else self.beams[name].end
-        try:
-            fraction = float(found["share"])
-        except ValueError:
-            raise table.error(f"the fraction along the beam must be a number, got {found['share']!r}", key) from None
-        try:
-            return self.beams[name].at(fraction)
-        except InputError as error:
-            raise table.error(str(error), key) from None
-
-
-def model(root: Table, known: Mapping[str, Beam], function: Named, moving: bool) -> Model:
+def model(root: Table, known: Structure, function: Named, moving: bool) -> Model:
     """Return the model of a file; moving: for an analysis in time. Raises ModelFileError."""
-    places, value = Places(known), parts.value_by(function)
-    all_beams = list(known.values())
+    places, value = known.places, value_by(function)
+    all_beams, inner = list(known.beams.values()), known.joints
 
     def vector(table: Table, key: str) -> Any:
         given = table.values[key]
+        if isinstance(given, str | dict):
+            return function(table, key)
         if not isinstance(given, list) or not any(isinstance(part, str | dict) for part in given):
             return given
-        named = [Table(table.source, table.path, {key: part}) for part in given]
-        return Components(tuple(value(part, key) for part in named))
+        return Components(tuple(value(part, place) for part, place in table.items(key)))
 
     readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
     readers |= {"point": places.point, "vector": vector}
     readers |= dict.fromkeys(("ux", "uy", "rotation", "value", *Actuation.along, *Temperature.along), value)
 
+    types: dict[Any, Reader] = {Point: places.point, Beam: places.beam, Material: known.material, Callable: value}
+
+    def tried(table: Table, item: Any, trial: Callable[[Any], Model]) -> Any:
+        try:
+            trial(item)
+        except InputError as error:
+            raise table.refused(error) from None
+        return item
+
     def items(key: str, kinds: Kinds, trial: Callable[[Any], Model]) -> list[Any]:
-        found = []
-        for table in root.tables(key):
-            found.append(build_kind(table, kinds, readers))
-            try:
-                trial(found[-1])
-            except InputError as error:
-                raise table.refused(error) from None
-        return found
+        tables = [one for table in root.tables(key) for one in _each_place(table, kinds, places)]
+        return [tried(table, build_own_or_kind(table, kinds, readers, types), trial) for table in tables]
 
     supports = items("supports", SUPPORTS, lambda item: Model(all_beams, supports=[item]))
     loads = items("loads", LOADS, lambda item: Model(all_beams, loads=[item]))
     joints = items("joints", JOINTS, lambda item: Model(all_beams, joints=[item]))
-    whole = Model(all_beams, supports, loads, joints)
+    connectors = [
+        tried(table, build_own(table, types), lambda item: Model(all_beams, connectors=[item]))
+        for table in root.named("connectors").values()
+    ]
+    whole = Model(all_beams, supports, loads, [*inner, *joints], connectors)
     if "units" in root.values:
         try:
             whole = replace(whole, units=root.text("units"))
         except InputError as error:
             raise root.error(str(error), "units") from None
-    _require_compatible(root, whole, not moving)
+    _require_compatible(root, whole, places, not moving)
     return whole
 
 
-def _require_compatible(root: Table, model: Model, static: bool) -> None:
+def _each_place(table: Table, kinds: Kinds, places: Places) -> list[Table]:
+    """Return a table for each of its `points` or `beams`, where it has them in place of one. Raises ModelFileError."""
+    kind = table.values.get("kind")
+    taken = signature(kinds[kind]).parameters if isinstance(kind, str) and kind in kinds else {}
+    several: Sequence[tuple[str, str, Callable[[Table, str], Sequence[Any]]]] = (
+        ("points", "point", places.points),
+        ("beams", "beam", places.members),
+    )
+    for plural, single, read in several:
+        if plural in table.values and single in taken:
+            if single in table.values:
+                raise table.error(f"{single} and {plural} are given; one of them is enough", plural)
+            rest = {key: value for key, value in table.values.items() if key != plural}
+            return [Table(table.source, table.path, {**rest, single: place}) for place in read(table, plural)]
+    return [table]
+
+
+def _require_compatible(root: Table, model: Model, places: Places, static: bool) -> None:
     """Raise ModelFileError at the first support that holds what another one holds already."""
 
     def check(supports: Sequence[Support]) -> None:
@@ -143,7 +161,8 @@ def _require_compatible(root: Table, model: Model, static: bool) -> None:
     try:
         check(model.supports)
     except InputError:
-        for number, table in enumerate(root.tables("supports"), 1):
+        tables = [one for table in root.tables("supports") for one in _each_place(table, SUPPORTS, places)]
+        for number, table in enumerate(tables, 1):
             try:
                 check(model.supports[:number])
             except InputError as error:

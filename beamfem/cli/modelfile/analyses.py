@@ -2,177 +2,132 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.cli.modelfile.actions import Places
-from beamfem.cli.modelfile.table import Table, build, build_kind
+from beamfem.cli.modelfile.found import Analysis, Found
+from beamfem.cli.modelfile.own_parts import build_own, own_code
+from beamfem.cli.modelfile.paths import Crossing, Trace, Until
+from beamfem.cli.modelfile.places import Places
+from beamfem.cli.modelfile.starts import Equilibrium, Start, newton, start, state_of
+from beamfem.cli.modelfile.table import Reader, Table, build, build_kind
 from beamfem.errors import InputError
-from beamfem.model.beam import Point
 from beamfem.model.model import Model
-from beamfem.results.path import Path, PathState
-from beamfem.results.solution import Solution
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.own_steps import Integrator
 from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import solve_buckling
-from beamfem.solve.statics.load_steps import Snap
+from beamfem.solve.statics.load_steps import SAME, Snap
 from beamfem.solve.statics.statics import solve_static, solve_through
-from beamfem.validation import count, finite, one_of, positive
-
-
-@dataclass(frozen=True)
-class Found:
-    """States to draw, save and ask, and what the analysis found besides, by name."""
-
-    solution: Solution
-    values: dict[str, Any] = field(default_factory=dict)
-
-
-class Analysis(Protocol):
-    """What every analysis offers; states: whether its states answer the outputs of a file.
-
-    span: lowest and highest load factor or time [s] that it can have states at; at: those that are asked for, which get
-    a state where the analysis is free to choose.
-    """
-
-    @property
-    def states(self) -> bool: ...
-    @property
-    def moving(self) -> bool: ...
-    @property
-    def span(self) -> tuple[float, float]: ...
-    def run(self, model: Model, at: Sequence[float]) -> Found: ...
+from beamfem.validation import count, finite, items, one_of, optional, positive
 
 
 @dataclass(frozen=True)
 class Static:
-    """Equilibria from load factor 0 to 1; snap: what to do at a limit point, "error" or "jump"."""
+    """Equilibria from load factor 0 to 1; see `solve_static`, also for `at`, the load factors to have states at."""
 
     steps: int = 1
     newton: Newton | None = None
     snap: Snap = "error"
+    at: Sequence[float] | None = None
     states: bool = field(default=True, init=False)
     moving: bool = field(default=False, init=False)
-    span: tuple[float, float] = field(default=(0.0, 1.0), init=False)
 
     def __post_init__(self) -> None:
         count("steps", self.steps)
         one_of("snap", self.snap, ("error", "jump"))
+        if self.at is not None:
+            _check_load_factors(self.at)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Load factors of its start and end."""
+        return (0.0, 1.0) if self.at is None else (self.at[0], self.at[-1])
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        return Found(solve_through(model, at, self.steps, self.newton, snap=self.snap))
-
-
-@dataclass(frozen=True)
-class Until:
-    """Where a path ends: a displacement [m] or rotation [rad] of a point below or above a value."""
-
-    point: Point
-    quantity: str
-    below: float | None = None
-    above: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.quantity not in ("ux", "uy", "rotation"):
-            raise InputError(f"quantity must be ux, uy or rotation, got {self.quantity!r}")
-        if (self.below is None) == (self.above is None):
-            raise InputError("either below or above must be given, and not both")
-        finite("below" if self.above is None else "above", self.below if self.above is None else self.above)
-
-    def __call__(self, state: PathState) -> bool:
-        if self.quantity == "rotation":
-            value = state.rotation(self.point)
-        else:
-            value = float(state.displacement(self.point)[["ux", "uy"].index(self.quantity)])
-        return value < self.below if self.below is not None else value > (self.above or 0.0)
-
-
-@dataclass(frozen=True)
-class Trace:
-    """The equilibrium path from load factor 0, past limit points."""
-
-    until: float | Until | None = None
-    points: int = 500
-    step: float | None = None
-    newton: Newton | None = None
-    states: bool = field(default=True, init=False)
-    moving: bool = field(default=False, init=False)
-    span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.until, Until) and self.until is not None:
-            finite("until", self.until)
-        count("points", self.points)
-        if self.step is not None:
-            positive("step", self.step)
-
-    def run(self, model: Model, at: Sequence[float]) -> Found:
-        path = trace_equilibrium(model, self.until, step=self.step, points=self.points, newton=self.newton)
-        return Found(path, critical_points(path))
+        if self.at is None:
+            return Found(solve_through(model, at, self.steps, self.newton, snap=self.snap))
+        further = [value for value in at if all(abs(value - own) > SAME for own in self.at)]
+        wanted = sorted({*self.at, *further})
+        return Found(solve_static(model, self.steps, self.newton, at=wanted, snap=self.snap))
 
 
 @dataclass(frozen=True)
 class Buckling:
-    """Critical load factors; mode (from 1) is the one to save and draw."""
+    """Critical load factors; about: where the path starts; mode (from 1) is the one to save and draw, its size in m."""
 
     count: int = 1
     mode: int = 1
+    about: Start = None
+    amplitude: float | None = None
     states: bool = field(default=False, init=False)
     moving: bool = field(default=False, init=False)
     span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
 
     def __post_init__(self) -> None:
-        _check_mode(self.count, self.mode)
+        _check_mode(self.count, self.mode, self.amplitude)
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        found = solve_buckling(model, self.count)
+        found = solve_buckling(model, self.count, state_of(self.about, model))
         values = {
             "load_factors": found.load_factors.tolist(),
             "kinds": list(found.kinds),
             "linearised": found.linearised.tolist(),
         }
-        return Found(found.solution(self.mode - 1), values)
+        return Found(found.solution(self.mode - 1, self.amplitude), values, found)
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Frequencies; loaded: about the static equilibrium under the loads; mode (from 1) is the one to save and draw."""
+    """Frequencies, about a static equilibrium; loaded: that under the loads; mode (from 1): the one to save and draw.
+
+    amplitude [m] of it, and in how many frames.
+    """
 
     count: int = 10
     loaded: bool = False
     mode: int = 1
+    about: Start = None
+    amplitude: float | None = None
+    frames: int = 25
     states: bool = field(default=False, init=False)
     moving: bool = field(default=False, init=False)
     span: tuple[float, float] = field(default=(-np.inf, np.inf), init=False)
 
     def __post_init__(self) -> None:
-        _check_mode(self.count, self.mode)
+        _check_mode(self.count, self.mode, self.amplitude)
+        if count("frames", self.frames) < 2:
+            raise InputError("frames must be at least 2")
+        if self.loaded and self.about is not None:
+            raise InputError('about and loaded are given; loaded = true is short for about = "static"')
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        found = solve_modes(model, self.count, solve_static(model) if self.loaded else None)
+        about = Equilibrium() if self.loaded else self.about
+        found = solve_modes(model, self.count, state_of(about, model))
         values: dict[str, Any] = {"frequencies": found.frequencies.tolist()}
         if np.any(found.growth):
             values["growth"] = found.growth.tolist()
         if found.rigid:
             values["rigid"] = list(found.rigid)
-        return Found(found.solution(self.mode - 1), values)
+        return Found(found.solution(self.mode - 1, self.amplitude, self.frames), values, found)
 
 
 @dataclass(frozen=True)
 class Dynamics:
-    """A motion; start: "reference", or "static" for the equilibrium under the loads at load factor 1."""
+    """A motion; start: the state that it starts from; integrator: one of the user's own in place of `rho_inf`."""
 
     duration: float
     step: float
-    rho_inf: float = 0.9
+    rho_inf: float | None = None
     save_every: int = 1
-    start: str = "reference"
-    velocity: RigidVelocity | None = None
+    start: Start = None
+    velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None
+    integrator: Integrator | None = None
     states: bool = field(default=True, init=False)
     moving: bool = field(default=True, init=False)
 
@@ -180,10 +135,17 @@ class Dynamics:
         positive("duration", self.duration)
         if positive("step", self.step) > self.duration:
             raise InputError(f"step ({self.step:g} s) must not exceed duration ({self.duration:g} s)")
-        GeneralizedAlpha(self.rho_inf)
         count("save_every", self.save_every)
-        if self.start not in ("reference", "static"):
-            raise InputError(f'start must be "reference" or "static", got {self.start!r}')
+        _ = self._rule
+        if self.integrator is not None:
+            if self.rho_inf is not None:
+                raise InputError("integrator and rho_inf are given; rho_inf is that of the generalized-alpha method")
+            if not callable(getattr(self.integrator, "step", None)):
+                raise InputError("integrator must have step(motion, begin, end), as bf.Integrator describes it")
+
+    @property
+    def _rule(self) -> GeneralizedAlpha:
+        return GeneralizedAlpha() if self.rho_inf is None else GeneralizedAlpha(self.rho_inf)
 
     @property
     def span(self) -> tuple[float, float]:
@@ -191,8 +153,8 @@ class Dynamics:
         return 0.0, self.duration
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        start = solve_static(model)[-1] if self.start == "static" else None
-        rule = GeneralizedAlpha(self.rho_inf)
+        start = state_of(self.start, model)
+        rule = self._rule if self.integrator is None else self.integrator
         return Found(simulate(model, self.duration, self.step, rule, start, self.velocity, self.save_every))
 
 
@@ -212,28 +174,44 @@ def analysis(root: Table, places: Places) -> Analysis:
         value = table.values[key]
         if not isinstance(value, dict):
             return value
-        return build(table.table(key), Until, {"point": places.point})
+        own = table.table(key)
+        return _function(own) if "function" in value else build(own, Until, {"point": places.point})
 
-    def newton(table: Table, key: str) -> Newton:
-        return build(table.table(key), Newton)
+    def velocity(table: Table, key: str) -> Any:
+        own = table.table(key)
+        return _function(own) if "function" in own.values else build(own, RigidVelocity)
 
-    def velocity(table: Table, key: str) -> RigidVelocity:
-        return build(table.table(key), RigidVelocity)
+    def integrator(table: Table, key: str) -> Any:
+        return build_own(table.table(key), {})
+
+    def crossing(table: Table, key: str) -> Crossing:
+        found: Crossing = build(table.table(key), Crossing, paths)
+        return found
 
     if "analysis" not in root.values:
         return Static()
-    readers = {"until": until, "newton": newton, "velocity": velocity}
-    return build_kind(root.table("analysis"), ANALYSES, readers, default="static")
+    table = root.table("analysis")
+    paths: dict[str, Reader] = {"until": until, "newton": newton, "start": crossing}
+    readers = {**paths, "velocity": velocity, "integrator": integrator, "about": start}
+    if table.values.get("kind") != "path":
+        readers["start"] = start
+    return build_kind(table, ANALYSES, readers, default="static")
 
 
-def critical_points(path: Path) -> dict[str, Any]:
-    """Return the load factors of the limit points and bifurcations of a path."""
-    return {
-        "limit_points": [point.load_factor for point in path.limit_points],
-        "bifurcations": [point.load_factor for point in path.bifurcations],
-    }
+def _function(table: Table) -> Callable[..., Any]:
+    """Return the function of the user's that a table names. Raises ModelFileError."""
+    table.require_known(("function",))
+    return own_code(table, "function")
 
 
-def _check_mode(number: int, mode: int) -> None:
+def _check_mode(number: int, mode: int, amplitude: float | None) -> None:
     if count("mode", mode) > count("count", number):
         raise InputError(f"mode must be at most count, {number}, got {mode}")
+    optional(positive)("amplitude", amplitude)
+
+
+def _check_load_factors(values: Any) -> None:
+    known = [finite(f"at[{number}]", value) for number, value in enumerate(items("at", values), 1)]
+    rising = all(after - before > SAME for before, after in pairwise(known))
+    if not known or not rising or known[0] < 0.0 or known[-1] > 1.0:
+        raise InputError(f"at must be load factors that rise within 0 and 1, such as [0.25, 0.5, 1.0], got {values}")

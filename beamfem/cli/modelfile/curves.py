@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from beamfem.cli.modelfile.actions import Places
-from beamfem.cli.modelfile.analyses import Analysis
-from beamfem.cli.modelfile.outputs import QUANTITIES, require_supported
+from beamfem.cli.modelfile.found import Analysis
+from beamfem.cli.modelfile.outputs import require_supported
+from beamfem.cli.modelfile.places import Places
+from beamfem.cli.modelfile.quantities import QUANTITIES
 from beamfem.cli.modelfile.table import Table, build
 from beamfem.cli.targets import require_target
 from beamfem.errors import InputError

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.model.time_functions import Interpolated, kinks_of
+from beamfem.cli.modelfile.table import Kinds
+from beamfem.model.time_functions import Interpolated, Piecewise, kinks_of
 from beamfem.validation import finite, positive
 
 
@@ -68,4 +69,4 @@ class Components:
         return tuple(part(arc_length) if callable(part) else float(part) for part in self.parts)
 
 
-FUNCTIONS = {"table": Interpolated, "sine": Sine, "smooth-ramp": SmoothRamp}
+FUNCTIONS: Kinds = {"table": Interpolated, "piecewise": Piecewise, "sine": Sine, "smooth-ramp": SmoothRamp}

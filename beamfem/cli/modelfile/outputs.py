@@ -1,42 +1,29 @@
-"""What a model file asks to print: quantities of points, of beams or of the whole model."""
+"""What a model file asks to print: quantities of points, of beams, of connectors or of the whole model."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from beamfem.cli.modelfile.actions import Places
-from beamfem.cli.modelfile.analyses import Analysis
+from beamfem.cli.modelfile.found import Analysis
+from beamfem.cli.modelfile.places import Places
+from beamfem.cli.modelfile.quantities import AT_POINT, OF_BEAM, OF_CONNECTOR, OF_MODEL, QUANTITIES
 from beamfem.cli.modelfile.table import Table, build
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.results.path import Path, PathState
 from beamfem.results.solution import Solution
 from beamfem.validation import finite, nearest
 
-# of a point: method of a Solution and component of what it returns
-QUANTITIES = {
-    "x": ("position", 0),
-    "y": ("position", 1),
-    "ux": ("displacement", 0),
-    "uy": ("displacement", 1),
-    "vx": ("velocity", 0),
-    "vy": ("velocity", 1),
-    "rotation": ("rotation", None),
-    "fx": ("reaction", 0),
-    "fy": ("reaction", 1),
-    "m": ("reaction", 2),
-}
-_BEAM = ("normal", "shear", "moment")
 _NEAR = 1e-9
-_ENERGY = ("kinetic", "strain", "potential", "total")
 
 
 @dataclass(frozen=True)
 class Output:
-    """Quantities of a point, of a beam (along its stations), or of the model (energies); at: which states.
+    """Quantities of a point, of a beam (along its stations), of a connector, or of the model; at: which states.
 
     at: "last", "all", or a list of times [s] or load factors: static solves have a state there, motions and paths give
     the nearest one.
@@ -47,16 +34,22 @@ class Output:
     point: Point | None = None
     beam: Beam | None = None
     at: str | Sequence[float] = "last"
+    connector: Contribution | None = None
 
     def __post_init__(self) -> None:
-        if self.point is not None and self.beam is not None:
-            raise InputError("beam and point are given; an output has one of them, or none for the energies")
+        given = [name for name in ("beam", "point", "connector") if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)} are given; an output has one of them, or none for the model")
         known = self.known
         if not isinstance(self.quantities, list) or not self.quantities:
             raise InputError(f"quantities must be a list of some of {', '.join(known)}, got {self.quantities!r}")
         for quantity in self.quantities:
             if quantity not in known:
                 raise InputError(f"quantities has no {quantity!r}; {nearest(str(quantity), known)} {self._where}")
+        if "multiplier" in self.quantities and len(self.quantities) > 1:
+            raise InputError(
+                "quantities has multiplier, of which there is not one a point: ask for it in another output"
+            )
         if isinstance(self.at, str):
             if self.at not in ("last", "all"):
                 raise InputError(f'at must be "last", "all" or a list of numbers, got "{self.at}"')
@@ -69,11 +62,19 @@ class Output:
     @property
     def known(self) -> tuple[str, ...]:
         """Quantities that can be asked here."""
-        return tuple(QUANTITIES) if self.point is not None else _BEAM if self.beam is not None else _ENERGY
+        return self._kind[0]
 
     @property
     def _where(self) -> str:
-        return "at a point" if self.point is not None else "of a beam" if self.beam is not None else "of the model"
+        return self._kind[1]
+
+    @property
+    def _kind(self) -> tuple[tuple[str, ...], str]:
+        if self.point is not None:
+            return tuple(AT_POINT), "at a point"
+        if self.beam is not None:
+            return tuple(OF_BEAM), "of a beam"
+        return (tuple(OF_MODEL), "of the model") if self.connector is None else (tuple(OF_CONNECTOR), "of a connector")
 
     def rows(self, solution: Solution) -> list[dict[str, Any]]:
         """Return a row for each state asked for: its time [s] or load factor, and the quantities."""
@@ -84,10 +85,13 @@ class Output:
             {axis: float(solution.at[row]), **{name: values[row].tolist() for name, values in columns.items()}}
             for row in chosen
         ]
-        if self.beam is None:
-            return rows
-        stations = solution.section_forces(self.beam).arc_length.tolist()
-        return [{axis: row.pop(axis), "arc_length": stations, **row} for row in rows]
+        if self.beam is not None:
+            stations = {"arc_length": solution.section_forces(self.beam).arc_length.tolist()}
+        elif self.connector is not None and self.quantities != ["multiplier"]:
+            stations = {"point": list(range(1, len(self.connector.points) + 1))}
+        else:
+            stations = {}
+        return [{axis: row.pop(axis), **stations, **row} for row in rows]
 
     @property
     def asked(self) -> list[float]:
@@ -115,38 +119,47 @@ class Output:
             raise InputError(f"at asks for the {what} {value:g}, where the structure jumps: it has no state there")
 
     def _columns(self, solution: Solution) -> dict[str, np.ndarray]:
-        if self.point is not None:
-            found = {
-                method: getattr(solution, method)(self.point) for method in {QUANTITIES[q][0] for q in self.quantities}
-            }
-            return {
-                quantity: found[method] if component is None else found[method][:, component]
-                for quantity, (method, component) in ((q, QUANTITIES[q]) for q in self.quantities)
-            }
-        source = solution.energy() if self.beam is None else solution.section_forces(self.beam)
-        return {quantity: np.asarray(getattr(source, quantity)) for quantity in self.quantities}
+        given = next((item for item in (self.point, self.beam, self.connector) if item is not None), None)
+        tables = {
+            "at a point": AT_POINT,
+            "of a beam": OF_BEAM,
+            "of a connector": OF_CONNECTOR,
+            "of the model": OF_MODEL,
+        }
+        return {quantity: np.asarray(tables[self._where][quantity](solution, given)) for quantity in self.quantities}
 
 
-def outputs(root: Table, places: Places, model: Model, analysis: Analysis) -> list[Output]:
-    """Return what a file asks to print. Raises ModelFileError."""
+def outputs(
+    root: Table, places: Places, model: Model, analysis: Analysis, connectors: Mapping[str, Contribution]
+) -> list[Output]:
+    """Return what a file asks to print; connectors: by name. Raises ModelFileError."""
+
+    def connector(table: Table, key: str) -> Contribution:
+        name = table.text(key)
+        if name not in connectors:
+            raise table.error(f"there is no connector {name!r}; {nearest(name, connectors)}", key)
+        return connectors[name]
+
     found = []
     for number, table in enumerate(root.tables("outputs"), 1):
         if not analysis.states:
             raise table.error("this analysis prints what it finds; outputs go with static, path and dynamics")
-        output = build(table, _output(number), {"point": places.point, "beam": places.beam})
+        output = build(table, _output(number), {"point": places.point, "beam": places.beam, "connector": connector})
         low, high = analysis.span
         for value in output.asked:
             if not low <= value <= high:
                 raise table.error(f"there is no state at {value:g}, only from {low:g} to {high:g}", "at")
         if output.point is not None:
             require_supported(table, "quantities", model, output.point, output.quantities)
+        if analysis.moving and output.known == tuple(OF_MODEL) and "stable" in output.quantities:
+            raise table.error("stable is asked of equilibria, and this analysis is a motion", "quantities")
         found.append(output)
     return found
 
 
 def require_supported(table: Table, key: str, model: Model, point: Point, quantities: Sequence[str]) -> None:
     """Raise ModelFileError where a reaction is asked for at a point without a support."""
-    reactions = [quantity for quantity in quantities if QUANTITIES[quantity][0] == "reaction"]
+    reactions = [quantity for quantity in quantities if QUANTITIES.get(quantity, ("",))[0] == "reaction"]
     supported = {(id(support.point.beam), support.point.fraction) for support in model.point_supports}
     if reactions and (id(point.beam), point.fraction) not in supported:
         raise table.error(f"{reactions[0]} is a reaction, but there is no support at {point}", key)
@@ -176,9 +189,10 @@ def _output(number: int) -> Any:
         point: Point | None = None,
         beam: Beam | None = None,
         at: Any = "last",
+        connector: Contribution | None = None,
     ) -> Output:
         if not isinstance(name, str):
             raise InputError(f"name must be a text, got {name!r}")
-        return Output(quantities, name, point, beam, at)
+        return Output(quantities, name, point, beam, at, connector)
 
     return make

@@ -2,17 +2,22 @@
 
 import re
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
 from beamfem.cli.modelfile import actions, parts
+from beamfem.cli.modelfile.actions import Structure
 from beamfem.cli.modelfile.analyses import Analysis, Found, analysis
+from beamfem.cli.modelfile.code import Code, run_code
 from beamfem.cli.modelfile.curves import OutputCurve, curves
 from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.files import OutputFile, files
 from beamfem.cli.modelfile.imperfection import Imperfection, imperfection
 from beamfem.cli.modelfile.lines import key_lines
 from beamfem.cli.modelfile.outputs import Output, outputs
+from beamfem.cli.modelfile.places import moved
 from beamfem.cli.modelfile.table import Source, Table
 from beamfem.cli.modelfile.varied import Varied, varied
 from beamfem.errors import InputError
@@ -22,33 +27,38 @@ from beamfem.model.model import Model
 _KEYS = (
     "title",
     "units",
+    "code",
     "materials",
     "sections",
     "elements",
     "functions",
     "beams",
+    "frames",
     "supports",
     "joints",
+    "connectors",
     "imperfection",
     "loads",
     "analysis",
     "outputs",
     "curves",
+    "files",
     "sweep",
 )
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a model file describes: the model with its beams by name, the analysis, what to print, draw and vary."""
+    """What a model file describes: the model with its beams by name, the analysis, what to print, write and vary."""
 
     title: str
-    beams: dict[str, Beam]
+    structure: Structure
     model: Model
     kind: str
     analysis: Analysis
     outputs: tuple[Output, ...]
     curves: tuple[OutputCurve, ...]
+    files: tuple[OutputFile, ...]
     varied: tuple[Varied, ...]
     root: Table
     imperfection: Imperfection | None = None
@@ -57,6 +67,11 @@ class Job:
     def file(self) -> Path:
         """The model file."""
         return self.root.source.file
+
+    @property
+    def beams(self) -> Mapping[str, Beam]:
+        """The beams by name; those of a frame are NAME[1], NAME[2], ..."""
+        return {name: self.structure.moved.beam(beam) for name, beam in self.structure.beams.items()}
 
     def imperfect(self) -> "Job":
         """Return the job of the imperfect model, where the file asks for one. Raises ModelFileError, ConvergenceError.
@@ -69,8 +84,7 @@ class Job:
             model = self.imperfection.of_model(self.model)
         except InputError as error:
             raise self.root.table("imperfection").refused(error) from error
-        beams = dict(zip(self.beams, model.beams, strict=True))
-        return _job(self.root, beams, model, self.title, None)
+        return _job(self.root, replace(self.structure, moved=moved(self.model, model)), model, self.title, None)
 
     def solve(self) -> Found:
         """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
@@ -83,7 +97,10 @@ class Job:
 
 
 def read_model_file(path: str | PathLike[str]) -> Job:
-    """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key."""
+    """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key.
+
+    Runs the Python file that it names in `code`, if it names one.
+    """
     file = Path(path)
     if file.is_char_device():
         raise ModelFileError("this is a device, not a model file", file, None, None)
@@ -107,7 +124,19 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         raise ModelFileError(f"a number cannot be read: {error}", file, None, None) from None
     except RecursionError:
         raise ModelFileError("arrays or tables are nested too deeply", file, None, None) from None
-    return job_of(Table(Source(file, lines), (), values))
+    bare = Table(Source(file, lines), (), values)
+    return job_of(Table(Source(file, lines, _code(bare)), (), values))
+
+
+def _code(root: Table) -> Code | None:
+    """Run the Python that a file names, if it names any. Raises ModelFileError."""
+    if "code" not in root.values:
+        return None
+    name = root.text("code")
+    try:
+        return run_code(root.source.file.parent, name)
+    except InputError as error:
+        raise root.error(str(error), "code") from error
 
 
 def job_of(root: Table) -> Job:
@@ -116,14 +145,15 @@ def job_of(root: Table) -> Job:
     title = root.text("title") if "title" in root.values else root.source.file.stem
     function = parts.functions(root)
     function.check_all()
-    beams = actions.beams(root, function)
-    moving = analysis(root, actions.Places(beams)).moving
-    return _job(root, beams, actions.model(root, beams, function, moving), title, imperfection(root))
+    known = actions.structure(root, function)
+    moving = analysis(root, known.places).moving
+    return _job(root, known, actions.model(root, known, function, moving), title, imperfection(root))
 
 
-def _job(root: Table, beams: dict[str, Beam], model: Model, title: str, crooked: Imperfection | None) -> Job:
-    places = actions.Places(beams)
-    chosen = analysis(root, places)
+def _job(root: Table, known: Structure, model: Model, title: str, crooked: Imperfection | None) -> Job:
+    chosen = analysis(root, known.places)
     kind = root.values.get("analysis", {}).get("kind", "static")
-    asked, drawn = tuple(outputs(root, places, model, chosen)), curves(root, places, model, chosen)
-    return Job(title, beams, model, kind, chosen, asked, drawn, varied(root), root, crooked)
+    connectors = dict(zip(root.values.get("connectors", {}), model.connectors, strict=True))
+    asked = tuple(outputs(root, known.places, model, chosen, connectors))
+    drawn, written = curves(root, known.places, model, chosen), files(root, known.places, model, chosen)
+    return Job(title, known, model, kind, chosen, asked, drawn, written, varied(root), root, crooked)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from beamfem.cli.modelfile.analyses import Found
 from beamfem.cli.modelfile.errors import ModelFileError
+from beamfem.cli.modelfile.found import Found
 from beamfem.cli.modelfile.outputs import Output
 from beamfem.cli.modelfile.read import Job, job_of
 from beamfem.cli.modelfile.table import Table
@@ -68,8 +68,10 @@ def _require_single_rows(job: Job) -> None:
     """Raise ModelFileError for an output that has more than a number for each quantity of a point of the sweep."""
     for number, output in enumerate(job.outputs, 1):
         where = f"outputs[{number}]"
-        if output.beam is not None:
-            raise ModelFileError(_refused(output, "point, not along a beam"), job.file, None, where)
+        if output.beam is not None or output.connector is not None:
+            raise ModelFileError(
+                _refused(output, "point or of the model, not along a beam or of a connector"), job.file, None, where
+            )
         if output.at != "last" and (output.at == "all" or len(output.at) != 1):
             raise ModelFileError(_refused(output, 'single state: at = "last" or one number'), job.file, None, where)
         if output.name in [other.name for other in job.outputs[: number - 1]]:

@@ -8,20 +8,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from beamfem.cli.modelfile.code import Code
 from beamfem.cli.modelfile.errors import ModelFileError
 from beamfem.cli.modelfile.lines import Path as KeyPath
 from beamfem.errors import InputError
 from beamfem.validation import nearest
 
+Kinds = Mapping[str, Callable[..., Any]]
 Reader = Callable[["Table", str], Any]  # takes a table and one of its keys
 
 
 @dataclass(frozen=True)
 class Source:
-    """The file that is read and the line of each of its keys."""
+    """The file that is read, the line of each of its keys, and the Python that it names."""
 
     file: Path
     lines: Mapping[KeyPath, int]
+    code: Code | None = None
 
     def error(self, path: KeyPath, message: str) -> ModelFileError:
         """Return the error of a key; of one that is not there, with the line of what it should be in."""
@@ -37,7 +40,7 @@ class Table:
 
     source: Source
     path: KeyPath
-    values: Mapping[str, Any]
+    values: Mapping[Any, Any]
 
     def error(self, message: str, key: str | None = None) -> ModelFileError:
         """Return the error of the table, or of one of its keys."""
@@ -68,10 +71,20 @@ class Table:
             raise self.error(f"must be an array of tables, each headed [[{key}]], got {shown(values)}", key)
         return [self.sub(value, key, i) for i, value in enumerate(values)]
 
+    def items(self, key: str) -> list[tuple["Table", Any]]:
+        """Return each item of the array at a key as a table and its key in it. Raises ModelFileError."""
+        values = self.values[key]
+        if not isinstance(values, list):
+            raise self.error(f"must be an array, got {shown(values)}", key)
+        return [(Table(self.source, (*self.path, key), {i: value}), i) for i, value in enumerate(values)]
+
     def named(self, key: str) -> dict[str, "Table"]:
         """Return the tables [key.name] by name. Raises ModelFileError."""
         if key not in self.values:
             return {}
+        values = self.values[key]
+        if not isinstance(values, dict):
+            raise self.error(f"must be tables with a name, each headed [{key}.NAME], got {shown(values)}", key)
         found = self.table(key)
         return {name: found.table(name) for name in found.values}
 
@@ -113,9 +126,7 @@ def build(table: Table, make: Callable[..., Any], readers: Mapping[str, Reader] 
         raise table.refused(error) from None
 
 
-def build_kind(
-    table: Table, kinds: Mapping[str, Callable[..., Any]], readers: Mapping[str, Reader], default: str | None = None
-) -> Any:
+def build_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], default: str | None = None) -> Any:
     """Return what a table with a `kind` describes; without one of the default kind. Raises ModelFileError."""
     if "kind" not in table.values:
         if default is not None:

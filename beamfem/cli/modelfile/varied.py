@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beamfem.cli.modelfile.lines import Path
-from beamfem.cli.modelfile.table import Source, Table, shown
+from beamfem.cli.modelfile.table import Table, shown
 
 _PART = re.compile(r"(?:^|\.)(?P<key>[^.\[\]]+)|\[(?P<item>[1-9]\d*)\]")
 
@@ -49,7 +49,7 @@ def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
         for part in path[:-1]:
             within = within[part]
         within[path[-1]] = copy.deepcopy(value)
-    return Table(Source(root.source.file, root.source.lines), (), changed)
+    return Table(root.source, (), changed)
 
 
 def _path(table: Table, root: Table) -> Path:
@@ -62,7 +62,7 @@ def _path(table: Table, root: Table) -> Path:
         path.append(found["key"] if found["key"] else int(found["item"]) - 1)
     if not path or end != len(name):
         raise table.error(f'must be a key such as "sections.NAME.height" or "loads[1].vector[2]", got "{name}"', "key")
-    if path[0] in ("sweep", "title", "units", "outputs", "curves"):
+    if path[0] in ("sweep", "title", "units", "code", "outputs", "curves", "files"):
         raise table.error(f"{path[0]} cannot be varied", "key")
     if tuple(path) not in root.source.lines:
         raise table.error(f"{name} is not in the file; write it there with one of its values", "key")

@@ -1,0 +1,84 @@
+"""Python that a model file names in its `code`: classes and functions of the user's, beside the model file."""
+
+import sys
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from beamfem.errors import InputError
+from beamfem.validation import nearest
+
+
+@dataclass(frozen=True)
+class Code:
+    """A Python file that has been run, and what it defines."""
+
+    file: Path
+    module: ModuleType
+
+    def named(self, name: str) -> Callable[..., Any]:
+        """Return a class or function by its name. Raises InputError where there is none."""
+        public = {key: value for key, value in vars(self.module).items() if callable(value) and key[0] != "_"}
+        if name in public:
+            return public[name]
+        own = [key for key, value in public.items() if getattr(value, "__module__", None) == self.module.__name__]
+        raise InputError(f"{self.file.name} has no class or function {name!r}; {nearest(name, own)}")
+
+
+def run_code(folder: Path, name: str) -> Code:
+    """Run a Python file of a folder, once, and return what it defines. Raises InputError.
+
+    Nothing else is run: neither files of other folders nor installed modules can be named, so that a model file alone
+    runs nothing.
+    """
+    file = folder / name
+    if Path(name).name != name or file.suffix != ".py" or not file.stem.isidentifier():
+        raise InputError(f'must be the name of a Python file beside the model file, such as "parts.py", got "{name}"')
+    if not file.is_file():
+        raise InputError(f"there is no {name} in {folder.resolve()}; Python that a model file runs lies beside it")
+    _require_own_name(file)
+    return Code(file, _run(file))
+
+
+def _require_own_name(file: Path) -> None:
+    """Raise InputError where another module has the name, which would be taken in its place somewhere."""
+    installed = PathFinder.find_spec(file.stem)
+    origin = installed.origin if installed is not None else None
+    if file.stem in sys.stdlib_module_names or (origin is not None and Path(origin).resolve() != file.resolve()):
+        raise InputError(f"{file.name} has the name of an installed module; give it another one")
+
+
+def _run(file: Path) -> ModuleType:
+    spec = spec_from_file_location(file.stem, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    before = sys.modules.get(file.stem)
+    sys.modules[file.stem] = module  # classes are looked up there, by dataclasses and by pickle
+    folder = str(file.parent.resolve())
+    sys.path.append(folder)  # for files beside it, which take the place of no other module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[file.stem]
+        if before is not None:
+            sys.modules[file.stem] = before
+        raise InputError(f"{file.name} cannot be run: {_where(error, file)}") from error
+    finally:
+        sys.path.remove(folder)
+    return module
+
+
+def _where(error: Exception, file: Path) -> str:
+    """Return an error with its line in the file."""
+    said = f"{type(error).__name__}: {error}"
+    steps = traceback.extract_tb(error.__traceback__)
+    lines = [step.lineno for step in steps if Path(step.filename).resolve() == file.resolve()]
+    if isinstance(error, SyntaxError) or not lines:
+        return said
+    return f"line {lines[-1]}: {said}"

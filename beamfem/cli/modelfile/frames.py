@@ -1,0 +1,59 @@
+"""Frames of a model file: beams along the lines of a mesh file, with the joints between them."""
+
+from pathlib import Path
+from typing import Any
+
+from beamfem.cli.modelfile.table import Reader, Table, build
+from beamfem.errors import FileError, InputError
+from beamfem.io.frame import Frame
+from beamfem.io.mesh import LineMesh, read_mesh
+from beamfem.validation import items, require_known
+
+_OF_PART = ("kind", "class", "youngs_modulus")  # keys of a part of its own, not names of member sets
+
+
+def frame(table: Table, readers: dict[str, Reader]) -> Frame:
+    """Return the frame of a table [frames.NAME]; readers: of element, section and material. Raises ModelFileError."""
+
+    def by_set(read: Reader) -> Reader:
+        def value(own: Table, key: str) -> Any:
+            given = own.values[key]
+            if not isinstance(given, dict) or any(part in given for part in _OF_PART):
+                return read(own, key)
+            sets = own.table(key)
+            return {name: read(sets, name) for name in sets.values}
+
+        return value
+
+    def plain(own: Table, key: str) -> Any:
+        return own.values[key]
+
+    def file(own: Table, key: str) -> Path:
+        return own.source.file.parent / own.text(key)
+
+    made: dict[str, Reader] = {key: by_set(readers[key]) for key in ("element", "section", "material")}
+    made |= {"elements": by_set(plain), "file": file}
+    found: Frame = build(table, _of_file, made)
+    return found
+
+
+def _of_file(
+    file: Path,
+    elements: Any,
+    element: Any,
+    section: Any,
+    material: Any = None,
+    members: str = "cells",
+    hinges: Any = (),
+) -> Frame:
+    try:
+        mesh: LineMesh = read_mesh(file)
+    except FileError as error:
+        raise InputError(f"file: {error}") from error
+    given = {"elements": elements, "element": element, "section": section, "material": material}
+    for key, value in given.items():
+        for name in value if isinstance(value, dict) else ():
+            require_known(f"{key} has no member set {name!r}", name, mesh.member_sets)
+    for name in [hinges] if isinstance(hinges, str) else items("hinges", hinges):
+        require_known(f"hinges has no point set {name!r}", name, mesh.point_sets)
+    return mesh.frame(elements, element, section, material, members, hinges)  # type: ignore[arg-type]

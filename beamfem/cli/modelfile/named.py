@@ -1,0 +1,57 @@
+"""Parts that a model file gives a name, and numbers or functions in their place."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beamfem.cli.modelfile.table import Reader, Table, shown
+from beamfem.validation import nearest
+
+
+@dataclass(frozen=True)
+class Named:
+    """Parts that a file gives a name, to be used by it; each is made once."""
+
+    kind: str
+    tables: Mapping[str, Table]
+    made: dict[str, Any]
+    make: Callable[[Table], Any]
+    short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name alone will do
+
+    def __call__(self, table: Table, key: str) -> Any:
+        """Return the part at a key: a name, a table of its own, or a kind alone. Raises ModelFileError."""
+        value = table.values[key]
+        if isinstance(value, dict):
+            return self.make(table.table(key))
+        if not isinstance(value, str):
+            raise table.error(f"must be a name or a table, got {shown(value)}", key)
+        if value in self.tables:
+            return self.part(value)
+        if value in self.short:
+            return self.make(Table(table.source, (*table.path, key), {"kind": value}))
+        raise table.error(f"there is no {self.kind} {value!r}; {nearest(value, [*self.tables, *self.short])}", key)
+
+    def part(self, name: str) -> Any:
+        if name not in self.made:
+            self.made[name] = self.make(self.tables[name])
+        return self.made[name]
+
+    def check_all(self) -> None:
+        """Make every part, so that a mistake in one that is not used is found too."""
+        for name in self.tables:
+            self.part(name)
+
+
+def value_by(function: Named) -> Reader:
+    """Return what reads a number, or a function by name or as a table."""
+
+    def value(table: Table, key: str) -> Any:
+        given = table.values[key]
+        if isinstance(given, bool) or not isinstance(given, int | float | str | dict):
+            raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
+        if isinstance(given, str) and given not in function.tables:
+            known = nearest(given, function.tables) if function.tables else "the file has none"
+            raise table.error(f"must be a number or the name of a function, got {shown(given)}; {known}", key)
+        return given if isinstance(given, int | float) else function(table, key)
+
+    return value

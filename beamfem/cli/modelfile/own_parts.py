@@ -1,0 +1,95 @@
+"""Parts of a model file that are made by classes of the user's: parameters are keys, read by their types."""
+
+import inspect
+import typing
+from collections.abc import Callable, Mapping
+from types import UnionType
+from typing import Any
+
+from beamfem.cli.modelfile.table import Kinds, Reader, Table, build, build_kind
+from beamfem.errors import InputError
+
+Types = Mapping[Any, Reader]  # how values are read of parameters of a type; Callable: functions of one number
+
+
+def build_own_or_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], types: Types) -> Any:
+    """Return what a table with a `class` of the user's describes, or one with a `kind`. Raises ModelFileError."""
+    return build_own(table, types) if "class" in table.values else build_kind(table, kinds, readers)
+
+
+def build_own(table: Table, types: Types) -> Any:
+    """Return what the class that a table names makes of its other keys. Raises ModelFileError."""
+    if "class" not in table.values:
+        raise table.error("the key class is missing: the name of a class in the file that `code` names")
+    name = table.text("class")
+    maker = own_code(table, "class")
+    try:
+        signature, hints = inspect.signature(maker), _hints(maker)
+    except (TypeError, ValueError, NameError) as error:
+        raise table.error(f"the parameters of {name} cannot be read: {error}", "class") from None
+    named = [each for each in signature.parameters.values() if each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)]
+
+    def made(**given: Any) -> Any:
+        try:
+            return maker(**given)
+        except InputError:
+            raise
+        except Exception as error:
+            raise InputError(f"{name} cannot be made: {type(error).__name__}: {error}") from error
+
+    made.__signature__ = signature.replace(parameters=named)  # type: ignore[attr-defined]
+    made.__annotations__ = hints
+    readers = {each.name: reader for each in named if (reader := _reader(hints.get(each.name), types))}
+    rest = Table(table.source, table.path, {key: value for key, value in table.values.items() if key != "class"})
+    return build(rest, made, readers)
+
+
+def own_code(table: Table, key: str) -> Callable[..., Any]:
+    """Return the class or function of the user's that a key names. Raises ModelFileError."""
+    name, code = table.text(key), table.source.code
+    if code is None:
+        raise table.error(
+            f'"{name}" is Python of your own: name its file, beside this one, at the top: code = "FILE.py"', key
+        )
+    try:
+        return code.named(name)
+    except InputError as error:
+        raise table.error(str(error), key) from None
+
+
+def _hints(maker: Callable[..., Any]) -> dict[str, Any]:
+    return typing.get_type_hints(maker.__init__ if isinstance(maker, type) else maker)  # type: ignore[misc]
+
+
+def _reader(hint: Any, types: Types) -> Reader | None:
+    """Return what reads a value of a type, or None where it is taken as it is."""
+    parts = typing.get_args(hint) if typing.get_origin(hint) in (typing.Union, UnionType) else (hint,)
+    if Callable in types and any(_is_function(part) for part in parts):
+        return types[Callable]
+    for part in parts:
+        if part in types:
+            return types[part]
+        items = {item for item in typing.get_args(part) if item is not Ellipsis}
+        if len(items) == 1 and items <= set(types):
+            return _list_of(types[items.pop()])
+    return _tuple if any(part is tuple or typing.get_origin(part) is tuple for part in parts) else None
+
+
+def _is_function(hint: Any) -> bool:
+    return hint is Callable or typing.get_origin(hint) is Callable
+
+
+def _list_of(reader: Reader) -> Reader:
+    def read(table: Table, key: str) -> tuple[Any, ...]:
+        return tuple(reader(item, place) for item, place in table.items(key))
+
+    return read
+
+
+def _tuple(table: Table, key: str) -> Any:
+    """Return arrays as tuples, which dataclasses that are compared by value need."""
+
+    def tuples(value: Any) -> Any:
+        return tuple(map(tuples, value)) if isinstance(value, list) else value
+
+    return tuples(table.values[key])

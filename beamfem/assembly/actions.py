@@ -6,6 +6,7 @@ import numpy as np
 
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
+from beamfem.model.along_beam import table_along
 from beamfem.model.beam import Beam
 from beamfem.model.load import LineLoad, PointLoad, factor
 from beamfem.model.mesh import BeamMesh
@@ -71,7 +72,7 @@ def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
     """Rows of the point loads for a load along a beam."""
     element, xi, weight = length_points(mesh)
     unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
-    unit[:, :2] = weight[:, None] * load.forces(mesh.arc_length(element, xi))
+    unit[:, :2] = weight[:, None] * table_along(load, "forces", mesh.arc_length(element, xi), 2)
     if load.axes != "axis":
         return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
     # along and across the derivative of the position, which takes the place of the section's direction

@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import function_of_one
+from beamfem.validation import called, function_of_one
 
 
 class AlongBeam(ABC):
@@ -51,3 +52,13 @@ def check_along(load: AlongBeam) -> None:
     for name, function in functions_along(load).items():
         function_of_one(f"{name} of {kind}", function, "arc length")
         load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)
+
+
+def table_along(load: AlongBeam, name: str, arc_length: np.ndarray, columns: int) -> np.ndarray:
+    """Return what a method of a load gives at arc lengths (n,) [m]. Raises InputError unless finite (n, columns)."""
+    what = f"{name} of {type(load).__name__}"
+    found, shape = np.asarray(called(what, getattr(load, name), arc_length)), (len(arc_length), columns)
+    if found.dtype.kind not in "fiu" or found.shape != shape or not np.isfinite(found).all():
+        got = f"shape {found.shape} of {found.dtype}" if found.shape != shape else "others"
+        raise InputError(f"{what} must return finite numbers {shape} at {len(arc_length)} arc lengths, got {got}")
+    return np.asarray(found, dtype=float)

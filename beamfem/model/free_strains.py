@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element.coordinates import Gradients
-from beamfem.model.along_beam import jumps_along
+from beamfem.model.along_beam import jumps_along, table_along
 from beamfem.model.grid import Grid
 from beamfem.model.load import ImposedStrain
 from beamfem.model.reference import energy_points, reference_axis
@@ -22,7 +22,9 @@ def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray
     own = grid.beam.element
     element, xi, _ = energy_points(grid)
     reference = reference_axis(grid, element, xi)
-    free = np.array([load.free_strain(grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
+    free = np.array(
+        [table_along(load, "free_strain", grid.arc_length_inside(element, xi, jumps_along(load)), 4) for load in loads]
+    )
     if not isinstance(own.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
     first, second = own.forces.imposed(free, reference)

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from beamfem.model.beam import Point, require_point
 from beamfem.model.shapes import Ring
+from beamfem.validation import flag
 
 
 class Joint:
@@ -20,6 +21,7 @@ class Joint:
         kind = type(self).__name__
         require_point(kind, self.a, "a")
         require_point(kind, self.b, "b")
+        flag(f"keeps_angle of {kind}", self.keeps_angle)
 
     def shapes(self) -> tuple[Ring, ...]:
         """Return what it looks like: a ring where the angle may change."""

@@ -23,6 +23,7 @@ from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
+from beamfem.model.own_checks import require_own
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.registry import offered
@@ -82,6 +83,8 @@ class Model:
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
         for item in parts:
             self._require(item, item.place)
+            if not type(item).__module__.startswith("beamfem."):
+                require_own(item)
         for joint in self.joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)

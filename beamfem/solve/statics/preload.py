@@ -1,7 +1,7 @@
 """The equilibrium at load factor 0, under the loads that do not scale and what is prescribed there."""
 
+from copy import copy
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -85,8 +85,10 @@ def _in_step(support: PointSupport) -> Prescribed:
     return Prescribed(support.point, **values)
 
 
-def _in_proportion(load: Any) -> Load:
+def _in_proportion(load: Load) -> Load:
     """Return a load with its size at load factor 0 in proportion to the load factor."""
     weight = factor(load, 0.0, True)
-    found: Load = replace(load, amplitude=lambda load_factor: weight * load_factor)
+    found: Load = copy(load)
+    # whether its class has it as a field or not
+    object.__setattr__(found, "amplitude", lambda load_factor: weight * load_factor)
     return found

@@ -80,6 +80,7 @@ METHODS = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:VTK cannot render here:UserWarning")  # then it is drawn flat
 @pytest.mark.parametrize("kind", FILES)
 def test_a_file_is_written_with_its_options(kind, tmp_path):
     analysis = {"load-displacement": "", "mode-shapes": MODES}.get(kind, MOTION)

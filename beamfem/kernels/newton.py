@@ -2,7 +2,8 @@
 
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.pointers import caller, reals, wholes
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
+from beamfem.kernels.pointers import at, caller, reals, wholes
 
 _balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", "d")
 _factor, _solve = caller("iiiirrr", "d"), caller("iiirr")
@@ -11,13 +12,18 @@ _hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 @routine("irrr", "d", fastmath={"contract", "reassoc", "nsz"})
 def take_step(n, step, p, scale):
-    """Add a step (n,) to p; return its size relative to scale, infinite where it is no number."""
-    size = 0.0
-    for i in range(n):
+    """Add a step (n,) to p; return its size relative to scale, no number where a part of it is none."""
+    change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(scale), zeros(), n // WIDTH * WIDTH
+    for i in range(0, whole, WIDTH):
+        own = change[i]
+        lanes[i] += own
+        sizes = larger(sizes, own / weight[i])
+    size = largest(sizes)
+    for i in range(whole, n):
         p[i] += step[i]
-        own = abs(step[i]) / scale[i]
-        if not own <= size:
-            size = own
+        last = abs(step[i]) / scale[i]
+        if not last <= size and size == size:  # what is no number is the largest
+            size = last
     return size
 
 
@@ -50,7 +56,7 @@ def iterate(system, solver, calls):
         reals(b[r.PRESCRIBED_STEP]),
         reals(b[r.PRESCRIBED_FORCE]),
     )
-    linear = reals(b[r.LINEAR])
+    linear, in_a_row = reals(b[r.LINEAR]), b[r.FIRST_FREE]
     residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
     first, done = True, False
     while True:
@@ -59,8 +65,15 @@ def iterate(system, solver, calls):
         _balance(call[r.BALANCE], system)
         if done:
             break
-        for i in range(unknown):
-            right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
+        if in_a_row >= 0 and not first:
+            whole, lanes, given = unknown // WIDTH * WIDTH, as_rows(right), as_rows(at(residual, in_a_row))
+            for i in range(0, whole, WIDTH):
+                lanes[i] = -given[i]
+            for i in range(whole, unknown):
+                right[i] = -residual[in_a_row + i]
+        else:
+            for i in range(unknown):
+                right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
             _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
             _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
@@ -84,8 +97,15 @@ def iterate(system, solver, calls):
             _turn(call[r.ROTATE_BACK], rollers, first_of, normal, right)
         for i in range(n):
             step[i] = prescribed_step[i] if first else 0.0
-        for i in range(unknown):
-            step[free[i]] = right[i]
+        if in_a_row >= 0:
+            whole, lanes, to = unknown // WIDTH * WIDTH, as_rows(right), as_rows(at(step, in_a_row))
+            for i in range(0, whole, WIDTH):
+                to[i] = lanes[i]
+            for i in range(whole, unknown):
+                step[in_a_row + i] = right[i]
+        else:
+            for i in range(unknown):
+                step[free[i]] = right[i]
         first = False
         if limits[5] > 0.0:
             for group in range(s[r.GROUPS]):

@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import function_of_one
+from beamfem.validation import function_of_one, shown
 
 
 class AlongBeam(ABC):
@@ -45,9 +46,20 @@ def jumps_along(load: AlongBeam) -> tuple[float, ...]:
     return (*load.beam.jumps, *(kink for found in kinks for kink in found))
 
 
+def require_names(load: AlongBeam) -> None:
+    """Raise InputError where `along` is no tuple of names that the load has."""
+    kind = type(load).__name__
+    if not isinstance(load.along, tuple):
+        raise InputError(f'along of {kind} must be a tuple of names, such as ("size",), got {shown(load.along)}')
+    for name in load.along:
+        if not isinstance(name, str) or not hasattr(load, name):
+            raise InputError(f"along of {kind} names {shown(name)}, which is none of its fields")
+
+
 def check_along(load: AlongBeam) -> None:
     """Raise InputError for functions of the arc length that are none."""
     kind = type(load).__name__
+    require_names(load)
     for name, function in functions_along(load).items():
         function_of_one(f"{name} of {kind}", function, "arc length")
         load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)

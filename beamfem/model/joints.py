@@ -18,8 +18,8 @@ class Joint:
 
     def __post_init__(self) -> None:
         kind = type(self).__name__
-        require_point(kind, self.a, "a")
-        require_point(kind, self.b, "b")
+        require_point(kind, getattr(self, "a", None), "a")
+        require_point(kind, getattr(self, "b", None), "b")
 
     def shapes(self) -> tuple[Ring, ...]:
         """Return what it looks like: a ring where the angle may change."""

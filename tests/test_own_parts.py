@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
+from beamfem.assembly.system import system_of
+from beamfem.solve.motion.unresolved import courses
 from tests.own_parts import Bracket, Growth, Guide, HalfWave, Traction, Weld
 
 ELEMENTS = [bf.CRBF(order=2), bf.ANCFCRBF(), bf.ANCF(forces=bf.Structural()), bf.ShearRigid()]
@@ -124,3 +126,195 @@ def test_parts_that_no_equation_would_see_are_refused():
 @dataclass(frozen=True)
 class Scaled(HalfWave):
     scale: object = 1
+
+
+@dataclass(frozen=True)
+class Push(bf.PointSupport):
+    """Prescribes a displacement from the start, along with a spring that turns back."""
+
+    point: bf.Point
+    size: float
+    stiffness: float
+
+    def prescribed(self):
+        return {"uy": lambda time: self.size}
+
+    def springs(self):
+        return {"rotation": self.stiffness}
+
+
+@dataclass(frozen=True)
+class Turned(bf.PointSupport):
+    """Slides along an inclined line, turned from the start."""
+
+    point: bf.Point
+    angle: float
+
+    def prescribed(self):
+        return {"normal": 0.0, "rotation": lambda time: self.angle}
+
+    @property
+    def direction(self):
+        return np.array([0.6, 0.8])
+
+
+def arch():
+    section = bf.Rectangle(0.05, 0.02)
+    return bf.Beam(bf.Arc((0.0, 0.0), 1.0, np.pi, 0.0), 12, bf.CRBF(order=2), section, STEEL)
+
+
+def test_supports_that_are_moved_far_from_the_start_keep_their_springs():
+    """Their first equilibrium is found by a path along which they grow, as no step of Newton reaches it."""
+
+    def first(supports):
+        beam = arch()
+        moved = bf.Prescribed(beam.end, ux=lambda time: -2.2)
+        model = bf.Model([beam], [bf.Clamp(beam.start), moved, *supports(beam.end)], [])
+        return bf.solve_static(model).p[0]
+
+    own = first(lambda at: [Push(at, -0.7, 50.0)])
+    ours = first(lambda at: [bf.Prescribed(at, uy=lambda time: -0.7), bf.Spring(at, (0.0, 0.0), 50.0)])
+    assert own == pytest.approx(ours, abs=1e-9)
+
+
+def test_supports_that_are_turned_far_from_the_start_keep_their_direction():
+    def first(supports):
+        beam = arch()
+        return bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start), *supports(beam.end)], [])).p[0]
+
+    own = first(lambda at: [Turned(at, -4.0)])
+    ours = first(lambda at: [bf.Roller(at, (0.6, 0.8)), bf.Prescribed(at, rotation=lambda time: -4.0)])
+    assert own == pytest.approx(ours, abs=1e-9)
+
+
+@dataclass(frozen=True)
+class Standing(Bracket):
+    """A weight that acts from the start."""
+
+    scale: bool = False
+
+
+def test_large_loads_without_an_amplitude_among_their_fields_grow_from_nothing():
+    own, ours = bar(bf.CRBF(order=2)), bar(bf.CRBF(order=2))
+    a = bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [Standing(own.end, 5000.0, 0.0)]))
+    force = bf.PointForce(ours.end, (0.0, -5000.0), scale=False)
+    b = bf.solve_static(bf.Model([ours], [bf.Clamp(ours.start)], [force]))
+    assert a.p == pytest.approx(b.p, abs=1e-9)
+
+
+@dataclass(frozen=True)
+class Size(bf.LineLoad):
+    """A force [N/m] in y whose size is a function of the arc length."""
+
+    beam: bf.Beam
+    size: object
+    along = ("size",)
+    axes = "plane"
+
+    def forces(self, arc_length):
+        return np.column_stack([np.zeros_like(arc_length), [self.size(s) for s in arc_length.tolist()]])
+
+
+def test_sizes_along_a_beam_are_saved_as_what_they_are(tmp_path):
+    own = bar(bf.CRBF(order=2))
+    load = Size(own, lambda s: -20.0 if s < 0.43 else -5.0)
+    solution = bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [load]))
+    solution.save(tmp_path / "own.h5")
+    loaded = bf.load(tmp_path / "own.h5")
+    assert bf.solve_static(loaded.model).p == pytest.approx(solution.p, abs=1e-12)
+    assert loaded.energy().potential == pytest.approx(solution.energy().potential, rel=1e-12)
+
+
+@dataclass(frozen=True)
+class Degrees(bf.PointLoad):
+    """Turns its field into radians, again whenever it is made."""
+
+    point: bf.Point
+    angle: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "angle", float(np.radians(self.angle)))
+
+    @property
+    def value(self):
+        return np.cos(self.angle), np.sin(self.angle), 0.0
+
+
+class Heavy(Bracket):
+    """Has arguments of its own."""
+
+    def __init__(self, point):
+        super().__init__(point, 5.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        (lambda at: Degrees(at, 80.0), "Degrees cannot be .*: its field angle changes each time"),
+        (lambda at: Heavy(at), "Heavy cannot be .*: it cannot be made anew from its fields"),
+    ],
+)
+def test_parts_that_differ_when_made_anew_are_neither_saved_nor_moved(tmp_path, load, message):
+    own = bar(bf.CRBF(order=2))
+    model = bf.Model([own], [bf.Clamp(own.start)], [load(own.end)])
+    solution = bf.solve_static(model)
+    with pytest.raises(bf.InputError, match=message):
+        solution.save(tmp_path / "a.h5")
+    with pytest.raises(bf.InputError, match=message):
+        model.with_imperfection(bf.solve_modes(model, 1), 0.01)
+
+
+@dataclass(frozen=True)
+class Beside(bf.PointLoad):
+    """Knows another beam, and numbers in a tuple."""
+
+    point: bf.Point
+    other: object
+    value = (0.0, -1.0, 0.0)
+
+
+def test_what_parts_hold_is_saved_as_it_is_or_refused(tmp_path):
+    own = bar(bf.CRBF(order=2))
+
+    def saved(other):
+        model = bf.Model([own], [bf.Clamp(own.start)], [Beside(own.end, other)])
+        bf.solve_static(model).save(tmp_path / "a.h5")
+        return bf.load(tmp_path / "a.h5").model.loads[0].other
+
+    assert [type(part) for part in saved((np.ones(2), 3.0))] == [np.ndarray, float]
+    with pytest.raises(bf.InputError, match=r"refers to the beam .*, which is not in the model"):
+        saved(bar(bf.CRBF(order=2)))
+    with pytest.raises(bf.InputError, match="its field other is a function"):
+        saved(((np.sin,),))
+
+
+def test_files_name_a_class_that_has_changed_or_is_missing(tmp_path, monkeypatch):
+    own = bar(bf.CRBF(order=2))
+    bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [Standing(own.end, 5.0, 0.0)])).save(tmp_path / "a.h5")
+    monkeypatch.setitem(globals(), "Standing", Degrees)
+    with pytest.raises(bf.InputError, match=r"class .*:Standing is no longer that which the file was saved with"):
+        bf.load(tmp_path / "a.h5")
+    monkeypatch.delitem(globals(), "Standing")
+    with pytest.raises(bf.InputError, match="the file holds a Standing of the module"):
+        bf.load(tmp_path / "a.h5")
+
+
+def test_amplitudes_that_are_methods_are_each_their_own():
+    @dataclass(frozen=True)
+    class Blow(bf.LineLoad):
+        beam: bf.Beam
+        period: float
+        axes = "axis"
+        uniform = True
+
+        def amplitude(self, time):
+            return np.sin(time / self.period)
+
+        def forces(self, arc_length):
+            return np.tile([0.0, 20.0], (len(arc_length), 1))
+
+    one, two = bar(bf.CRBF(order=2)), bar(bf.CRBF(order=2), (1.0, 0.0))
+    loads = [Blow(one, 1.0), Blow(two, 2.0)]
+    model = bf.Model([one, two], [bf.Clamp(one.start), bf.Clamp(two.end)], loads, [bf.Rigid(one.end, two.start)])
+    assert not system_of(model, static=True).symmetric
+    assert len(courses(system_of(model, static=False))) == 2

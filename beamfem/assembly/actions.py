@@ -6,12 +6,12 @@ import numpy as np
 
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
-from beamfem.model.along_beam import table_along
 from beamfem.model.beam import Beam
 from beamfem.model.load import LineLoad, PointLoad, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
+from beamfem.model.returned import forces_of
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Actions:
 
 def build_actions(model: Model, block: int) -> Actions:
     """Return everything that acts at points of the elements of a block."""
-    points, lines = model.point_loads, [load for load in model.line_loads if not (load.uniform and load.conservative)]
+    points = model.point_loads
+    lines = [load for load in model.line_loads if not (load.uniform and load.axes == "plane")]
     parts: list[dict[str, np.ndarray]] = []
     for number, load in enumerate(points):
         mesh = _mesh(model, load.point.beam, block)
@@ -72,7 +73,7 @@ def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
     """Rows of the point loads for a load along a beam."""
     element, xi, weight = length_points(mesh)
     unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
-    unit[:, :2] = weight[:, None] * table_along(load, "forces", mesh.arc_length(element, xi), 2)
+    unit[:, :2] = weight[:, None] * forces_of(load, mesh.arc_length(element, xi))
     if load.axes != "axis":
         return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
     # along and across the derivative of the position, which takes the place of the section's direction

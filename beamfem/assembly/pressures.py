@@ -5,6 +5,7 @@ from collections import defaultdict
 import numpy as np
 
 from beamfem.model.model import Model
+from beamfem.model.returned import forces_of
 
 
 def pressures_have_potential(model: Model, held: set[int]) -> bool:
@@ -14,15 +15,16 @@ def pressures_have_potential(model: Model, held: set[int]) -> bool:
     that at its start. It is none where x or y is held, and cancels where a ring closes or another beam goes on under
     the same pressure. Where p changes along the beam, it remains at every point.
     """
+    amplitudes = [load.amplitude for load in model.line_loads]  # kept, so that no two have one identity
     ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
-    for load in model.line_loads:
+    for load, amplitude in zip(model.line_loads, amplitudes, strict=True):
         if load.axes != "axis":
             continue
-        along, across = load.forces(np.zeros(1))[0].tolist()
+        along, across = forces_of(load, np.zeros(1))[0].tolist()
         if not load.uniform or along != 0.0:
             return False
         mesh = model.mesh_of(load.beam.start)
         first, last = mesh.carried.dof[mesh.node[0, 0], 0], mesh.carried.dof[mesh.node[-1, -1], 0]
         for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
-            ends[id(load.amplitude), load.scale, dof] += sign * across
+            ends[id(amplitude), load.scale, dof] += sign * across
     return all(left == 0.0 or dof in held or dof + 1 in held for (_, _, dof), left in ends.items())

@@ -36,6 +36,7 @@ from beamfem.kernels.block import (
 )
 from beamfem.model.load import factor
 from beamfem.model.model import Model
+from beamfem.model.returned import forces_of
 from beamfem.validation import shown
 
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
@@ -194,9 +195,9 @@ class System:
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
         for line in self.model.line_loads:
-            if line.uniform and line.conservative:
+            if line.uniform and line.axes == "plane":
                 row = self.model.number_of(line.beam)
-                result[row, 2:] += line.forces(np.zeros(1))[0] * factor(line, time, self.static)
+                result[row, 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, self.static)
         return result
 
     @cached_property

@@ -12,7 +12,7 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
-from beamfem.io.own_parts import class_of, dataclasses_of, name_of
+from beamfem.io.own_parts import dataclasses_of, made, name_of
 from beamfem.material import Material
 from beamfem.model import imposed_strains, joints, loads, supports
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
@@ -139,11 +139,22 @@ class _Writer:
         described: dict[str, Any] = {"class": name_of(value)}
         for field in fields(value):
             given = getattr(value, field.name)
-            for item in given if isinstance(given, tuple | list) else (given,):
-                if callable(item) and not self.known(item) and field.name != _OF_TIME:
-                    raise InputError(f"a {type(value).__name__} cannot be saved: its field {field.name} is a function")
-            described[field.name] = {"array": given.tolist()} if isinstance(given, np.ndarray) else self.write(given)
+            if field.name != _OF_TIME and self.has_function(given):
+                raise InputError(f"a {type(value).__name__} cannot be saved: its field {field.name} is a function")
+            described[field.name] = self.own_field(given)
         return described
+
+    def own_field(self, given: Any) -> Any:
+        if isinstance(given, np.ndarray) and given.dtype.kind in "biufU":
+            return {"array": given.tolist()}
+        if isinstance(given, tuple | list):
+            return [self.own_field(item) for item in given]
+        return self.write(given)
+
+    def has_function(self, given: Any) -> bool:
+        if isinstance(given, tuple | list):
+            return any(map(self.has_function, given))
+        return callable(given) and not self.known(given)
 
     @staticmethod
     def known(value: Any) -> bool:
@@ -153,7 +164,10 @@ class _Writer:
         if isinstance(value, Parametric):
             value = value.spline()
         if isinstance(value, Beam):
-            return {"beam": next(i for i, beam in enumerate(self.beams) if beam is value)}
+            number = next((i for i, beam in enumerate(self.beams) if beam is value), None)
+            if number is None:
+                raise InputError(f"a part of the model refers to the beam {value!r}, which is not in the model")
+            return {"beam": number}
         if self.known(value):
             return self.members(value)
         if isinstance(value, np.ndarray | np.generic):
@@ -190,4 +204,4 @@ def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:
     if name not in _CLASSES and ":" not in name:
         raise InputError(f"this version of beamfem knows no {name}; a newer one may")
     members = {key: _read(item, beams, functions) for key, item in value.items() if key != "class"}
-    return (class_of(name) if ":" in name else _CLASSES[name])(**members)
+    return made(name, members) if ":" in name else _CLASSES[name](**members)

@@ -6,6 +6,7 @@ from types import ModuleType
 from typing import Any
 
 from beamfem.errors import InputError
+from beamfem.model.remade import require_remade
 
 
 def name_of(part: Any) -> str:
@@ -19,6 +20,7 @@ def name_of(part: Any) -> str:
     hidden = [field.name for field in fields(part) if not field.init]
     if hidden:
         raise InputError(f"{what}: its field {hidden[0]} is not an argument of the class")
+    require_remade(what, part)
     return f"{kind.__module__}:{kind.__qualname__}"
 
 
@@ -27,8 +29,19 @@ def class_of(name: str) -> Any:
     found = find(name)
     if not (isinstance(found, type) and is_dataclass(found)):
         module, _, kind = name.partition(":")
+        if module == "__main__":
+            raise InputError(f"the file holds a {kind} of the script that saved it: define it in this one as it was")
         raise InputError(f"the file holds a {kind} of the module {module}: import that module before loading the file")
     return found
+
+
+def made(name: str, members: dict[str, Any]) -> Any:
+    """Return a part of the class of "module:Class". Raises InputError where the class is not there or has changed."""
+    kind = class_of(name)
+    try:
+        return kind(**members)
+    except TypeError as error:
+        raise InputError(f"the class {name} is no longer that which the file was saved with: {error}") from error
 
 
 def dataclasses_of(module: ModuleType) -> list[type]:

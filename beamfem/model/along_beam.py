@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
-from beamfem.validation import called, function_of_one
+from beamfem.validation import function_of_one, shown
 
 
 class AlongBeam(ABC):
@@ -46,19 +46,20 @@ def jumps_along(load: AlongBeam) -> tuple[float, ...]:
     return (*load.beam.jumps, *(kink for found in kinks for kink in found))
 
 
+def require_names(load: AlongBeam) -> None:
+    """Raise InputError where `along` is no tuple of names that the load has."""
+    kind = type(load).__name__
+    if not isinstance(load.along, tuple):
+        raise InputError(f'along of {kind} must be a tuple of names, such as ("size",), got {shown(load.along)}')
+    for name in load.along:
+        if not isinstance(name, str) or not hasattr(load, name):
+            raise InputError(f"along of {kind} names {shown(name)}, which is none of its fields")
+
+
 def check_along(load: AlongBeam) -> None:
     """Raise InputError for functions of the arc length that are none."""
     kind = type(load).__name__
+    require_names(load)
     for name, function in functions_along(load).items():
         function_of_one(f"{name} of {kind}", function, "arc length")
         load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)
-
-
-def table_along(load: AlongBeam, name: str, arc_length: np.ndarray, columns: int) -> np.ndarray:
-    """Return what a method of a load gives at arc lengths (n,) [m]. Raises InputError unless finite (n, columns)."""
-    what = f"{name} of {type(load).__name__}"
-    found, shape = np.asarray(called(what, getattr(load, name), arc_length)), (len(arc_length), columns)
-    if found.dtype.kind not in "fiu" or found.shape != shape or not np.isfinite(found).all():
-        got = f"shape {found.shape} of {found.dtype}" if found.shape != shape else "others"
-        raise InputError(f"{what} must return finite numbers {shape} at {len(arc_length)} arc lengths, got {got}")
-    return np.asarray(found, dtype=float)

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.element.coordinates import Gradients
-from beamfem.model.along_beam import jumps_along, table_along
+from beamfem.model.along_beam import jumps_along
 from beamfem.model.grid import Grid
 from beamfem.model.load import ImposedStrain
 from beamfem.model.reference import energy_points, reference_axis
+from beamfem.model.returned import free_strain_of
 
 _THICKNESS = 3  # column of the thickness stretch
 
@@ -22,9 +23,7 @@ def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray
     own = grid.beam.element
     element, xi, _ = energy_points(grid)
     reference = reference_axis(grid, element, xi)
-    free = np.array(
-        [table_along(load, "free_strain", grid.arc_length_inside(element, xi, jumps_along(load)), 4) for load in loads]
-    )
+    free = np.array([free_strain_of(load, grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
     if not isinstance(own.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
     first, second = own.forces.imposed(free, reference)

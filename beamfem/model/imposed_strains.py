@@ -36,7 +36,7 @@ class Actuation(ImposedStrain):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _require_followed(self)
+        require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
@@ -77,7 +77,7 @@ class Temperature(ImposedStrain):
                 "Temperature of layers that expand differently needs Structural() or ElasticLine() forces and a linear "
                 f"section, got {beam.element.forces.name} forces"
             )
-        _require_followed(self)
+        require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
@@ -99,7 +99,7 @@ def _places(beam: Beam) -> np.ndarray:
     return np.array([0.0, 0.5, 1.0]) * beam.curve.length
 
 
-def _require_followed(load: ImposedStrain) -> None:
+def require_followed(load: ImposedStrain) -> None:
     """Raise InputError where nodes cannot take what they are given."""
     coordinates, name = load.beam.element.coordinates, load.beam.element.name
     if not isinstance(coordinates, ShearFree):

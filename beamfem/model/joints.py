@@ -5,7 +5,6 @@ from typing import ClassVar
 
 from beamfem.model.beam import Point, require_point
 from beamfem.model.shapes import Ring
-from beamfem.validation import flag
 
 
 class Joint:
@@ -19,9 +18,8 @@ class Joint:
 
     def __post_init__(self) -> None:
         kind = type(self).__name__
-        require_point(kind, self.a, "a")
-        require_point(kind, self.b, "b")
-        flag(f"keeps_angle of {kind}", self.keeps_angle)
+        require_point(kind, getattr(self, "a", None), "a")
+        require_point(kind, getattr(self, "b", None), "b")
 
     def shapes(self) -> tuple[Ring, ...]:
         """Return what it looks like: a ring where the angle may change."""

@@ -2,15 +2,18 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from contextlib import suppress
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from beamfem.element.coordinates import across
-from beamfem.model.along_beam import AlongBeam, check_along
+from beamfem.errors import InputError
+from beamfem.model.along_beam import AlongBeam, check_along, require_names
 from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.returned import forces_of
 from beamfem.model.shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Placed, Strains, rotated
-from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, squared
+from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, shown, squared
 
 Amplitude = Callable[[float], float] | None
 _ARROWS = 11  # along a beam
@@ -73,7 +76,7 @@ class PointLoad(Load):
     follower: bool = False
 
     def __post_init__(self) -> None:
-        require_point(type(self).__name__, self.point)
+        require_point(type(self).__name__, getattr(self, "point", None))
         super().__post_init__()
         flag(f"follower of {type(self).__name__}", self.follower)
 
@@ -112,7 +115,7 @@ class LineLoad(AlongBeam, Load):
     uniform: bool = False
 
     def __post_init__(self) -> None:
-        require_beam(type(self).__name__, self.beam)
+        require_beam(type(self).__name__, getattr(self, "beam", None))
         check_along(self)
         super().__post_init__()
 
@@ -126,8 +129,13 @@ class LineLoad(AlongBeam, Load):
         """Return the forces (n, 2) [N/m] at arc lengths (n,) [m] of the reference."""
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return what is named in `along` at arc lengths (n,) [m]: the forces."""
-        return self.forces(arc_length)
+        """Return the function named in `along` at arc lengths (n,) [m]. Raises InputError where it gives no numbers."""
+        given, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        found = [called(what, given, s) for s in arc_length.tolist()]
+        with suppress(ValueError):  # of different shapes
+            if (values := np.array(found)).dtype.kind in "iuf" and np.isfinite(values).all():
+                return values
+        raise InputError(f"{what} must give finite numbers, as many at every arc length, got {shown(found)}")
 
     @property
     def place(self) -> Beam:
@@ -142,7 +150,7 @@ class LineLoad(AlongBeam, Load):
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
         """Return what it looks like, times a weight, in a state."""
         at = _arrows(self, placed)
-        vectors, points = weight * self.forces(at), [self.beam.at(part) for part in at / self.beam.curve.length]
+        vectors, points = weight * forces_of(self, at), [self.beam.at(part) for part in at / self.beam.curve.length]
         if self.axes == "section":
             vectors = rotated(vectors, np.array([placed.rotation(point) for point in points]))
         elif self.axes == "axis":
@@ -160,7 +168,8 @@ class ImposedStrain(AlongBeam, Load):
     units: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
-        require_beam(type(self).__name__, self.beam)
+        require_beam(type(self).__name__, getattr(self, "beam", None))
+        require_names(self)
         convert(self, squared(finite), *(name for name in self.along if not callable(getattr(self, name))))
         check_along(self)
         super().__post_init__()
@@ -218,5 +227,5 @@ def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
     if load.uniform:
         return even
     at = placed.stations(load.beam)
-    sizes = [np.abs(load.forces(own)).max(axis=1) for own in (at, even)]
+    sizes = [np.abs(forces_of(load, own)).max(axis=1) for own in (at, even)]
     return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even

@@ -64,6 +64,10 @@ class DistributedLoad(LineLoad):
         """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2)."""
         return self.values(arc_length)
 
+    def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
+        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2)."""
+        return self.values(arc_length)
+
     def values(self, arc_length: np.ndarray) -> np.ndarray:
         """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError where a function gives none."""
         if not callable(self.vector):

@@ -23,7 +23,7 @@ from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.numbering import number_nodes
-from beamfem.model.own_checks import require_own
+from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.registry import offered
@@ -74,17 +74,18 @@ class Model:
             for item in getattr(self, name):
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
-                if name != "connectors" and not is_dataclass(item):
-                    raise InputError(f"{type(item).__name__}, one of the {name} of a Model, must be a frozen dataclass")
+                kind: Any = type(item)
+                if name != "connectors" and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
+                    raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
         if not self.beams:
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
+        for part in (*parts, *self.joints):
+            require_part(part)
         for item in parts:
             self._require(item, item.place)
-            if not type(item).__module__.startswith("beamfem."):
-                require_own(item)
         for joint in self.joints:
             self._require(joint, joint.a)
             self._require(joint, joint.b)
@@ -170,7 +171,7 @@ class Model:
 
     def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
         """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
-        joints = [joint for joint in self.joints if joint.keeps_angle is keeps_angle]
+        joints = [joint for joint in self.joints if joint.keeps_angle == keeps_angle]
         a, b = [joint.a for joint in joints], [joint.b for joint in joints]
         return np.hstack([self._places(grids, a), self._places(grids, b)])
 

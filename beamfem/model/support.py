@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.model.beam import Beam, Point, require_beam, require_point
 from beamfem.model.shapes import Constraint, Springs, SpringsAlong, SupportShape
 
+DIRECTIONS = ("ux", "uy", "rotation")
 Value = float | Callable[[float], float]
 
 
@@ -33,12 +34,12 @@ class PointSupport(Support):
     point: Point
 
     def __post_init__(self) -> None:
-        require_point(type(self).__name__, self.point)
+        require_point(type(self).__name__, getattr(self, "point", None))
 
     def prescribed(self) -> Mapping[str, Value]:
         """Return what is prescribed, by direction: numbers, which grow with the load factor, or functions of time.
 
-        "normal": 0.0 is the displacement along `direction`.
+        "normal": 0.0 is the displacement along `direction`, which cannot be moved.
         """
         return {}
 
@@ -48,7 +49,7 @@ class PointSupport(Support):
 
     @property
     def direction(self) -> np.ndarray | None:
-        """Unit vector (2,) along which "normal" is prescribed."""
+        """Unit vector (2,) along which "normal" is prescribed, None where it is not."""
         return None
 
     @property
@@ -63,7 +64,7 @@ class PointSupport(Support):
         if prescribed:
             found = (Constraint(self.point, prescribed, self.direction),)
         if springs:
-            kx, ky, rotational = (springs.get(name, 0.0) for name in ("ux", "uy", "rotation"))
+            kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
             found = (*found, Springs(self.point, (kx, ky), rotational))
         return found
 
@@ -75,7 +76,7 @@ class LineSupport(Support):
     stiffness: tuple[float, float]
 
     def __post_init__(self) -> None:
-        require_beam(type(self).__name__, self.beam)
+        require_beam(type(self).__name__, getattr(self, "beam", None))
 
     @property
     def place(self) -> Beam:

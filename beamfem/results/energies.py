@@ -11,6 +11,7 @@ from beamfem.model.beam import Beam
 from beamfem.model.load import Load, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
+from beamfem.model.returned import forces_of
 from beamfem.results import postprocess
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.loading import loading
@@ -69,7 +70,7 @@ def _of_loads(solution: "Solution") -> np.ndarray:
         if spread.conservative:
             weights = _factors(solution, spread)
             moved, weight, arc = _along(solution, spread.beam)
-            result -= weights * np.einsum("sqc,qc,q->s", moved, spread.forces(arc), weight)
+            result -= weights * np.einsum("sqc,qc,q->s", moved, forces_of(spread, arc), weight)
     return result
 
 

@@ -16,6 +16,7 @@ from beamfem.model.along_beam import AlongBeam, functions_along
 from beamfem.model.beam import Beam, Point
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.remade import require_remade
 from beamfem.results.postprocess import axis, nodal_velocities
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, shown, squared
@@ -179,6 +180,8 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
         return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
     if not is_dataclass(item) or isinstance(item, type):
         return item
+    if not type(item).__module__.startswith("beamfem."):
+        require_remade(f"a {type(item).__name__} cannot be placed on crooked beams", item)
     changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
     if isinstance(item, AlongBeam):
         own = crooked[id(item.beam)]

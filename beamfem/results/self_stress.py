@@ -6,6 +6,7 @@ import numpy as np
 
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.returned import heat_of
 from beamfem.results.loading import loading
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
@@ -41,7 +42,7 @@ def self_stress(
     result = np.zeros((len(factors), *y.shape))
     for number, load in imposed:
         there = mesh.arc_length_inside(element, xi, jumps_along(load))
-        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, load.heat(there))
+        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, there))
     return result
 
 

@@ -73,8 +73,9 @@ def courses(system: System) -> list[Course]:
     model = system.model
     found: dict[int, Course] = {}
     for load in model.loads:
-        if load.amplitude is not None:
-            found.setdefault(id(load.amplitude), Course(f"amplitude of {_name(load, model)}", load.amplitude, True))
+        amplitude = load.amplitude  # a method is another object each time
+        if amplitude is not None:
+            found.setdefault(id(amplitude), Course(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
         if callable(item.value):
             found.setdefault(id(item.value), Course(f"motion prescribed at {item.point}", item.value, False))

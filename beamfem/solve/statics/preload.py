@@ -11,8 +11,8 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError
 from beamfem.model.load import Load, factor
 from beamfem.model.model import Model
-from beamfem.model.support import PointSupport
-from beamfem.model.supports import Prescribed
+from beamfem.model.support import DIRECTIONS, PointSupport
+from beamfem.model.supports import Prescribed, Roller, Spring
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_steps import reach
@@ -67,7 +67,7 @@ def _growing(model: Model) -> Model:
     """Return the model with what acts at load factor 0 in proportion to the load factor, and nothing else."""
     loads = [_in_proportion(load) for load in model.loads]
     moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
-    supports = [moved.get(id(support), support) for support in model.supports]
+    supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
     return replace(model, supports=supports, loads=loads)
 
 
@@ -76,13 +76,20 @@ def _moves(support: PointSupport) -> bool:
     return any(callable(value) or value != 0.0 for value in support.prescribed().values())
 
 
-def _in_step(support: PointSupport) -> Prescribed:
-    """Return a support with what it prescribes at load factor 0 in proportion to the load factor."""
+def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
+    """Return supports like one, with what it prescribes at load factor 0 in proportion to the load factor."""
     values = {
         name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
         for name, value in support.prescribed().items()
+        if name != "normal"
     }
-    return Prescribed(support.point, **values)
+    found: tuple[PointSupport, ...] = (Prescribed(support.point, **values),)
+    if support.direction is not None:
+        found = (*found, Roller(support.point, tuple(support.direction)))
+    if springs := support.springs():
+        kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
+        found = (*found, Spring(support.point, (kx, ky), rotational))
+    return found
 
 
 def _in_proportion(load: Load) -> Load:

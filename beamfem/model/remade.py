@@ -1,0 +1,30 @@
+"""Parts of users are made anew from their fields: at other beams, and when a file is loaded."""
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from beamfem.errors import InputError
+
+
+def require_remade(what: str, part: Any) -> None:
+    """Raise InputError, which begins with `what`, where a dataclass made anew from its fields is not the same."""
+    try:
+        again = replace(part)
+    except Exception as error:
+        raise InputError(f"{what}: it cannot be made anew from its fields: {error}") from error
+    for field in fields(part):
+        if not _same(getattr(part, field.name), getattr(again, field.name)):
+            raise InputError(
+                f"{what}: its field {field.name} changes each time that it is made anew from its fields; keep what is "
+                "given there, and derive the rest in properties or methods"
+            )
+
+
+def _same(one: Any, other: Any) -> bool:
+    if one is other:
+        return True
+    if isinstance(one, tuple | list) and isinstance(other, tuple | list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(np.all(one == other))

@@ -1,0 +1,40 @@
+"""What loads return along a beam, whoever has written them, as arrays of the shape that the equations take."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.validation import called, number_table
+
+if TYPE_CHECKING:
+    from beamfem.model.load import ImposedStrain, LineLoad
+
+
+def forces_of(load: "LineLoad", arc_length: np.ndarray) -> np.ndarray:
+    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError where it gives others."""
+    return _table(load, "forces", load.forces, arc_length, 2)
+
+
+def free_strain_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
+    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError where it gives others."""
+    return _table(load, "free_strain", load.free_strain, arc_length, 4)
+
+
+def heat_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
+    """Return temperature [K] and gradient [K/m] (n, 2) at arc lengths (n,) [m]. Raises InputError likewise."""
+    return _table(load, "heat", load.heat, arc_length, 2)
+
+
+def _table(
+    load: object, member: str, function: Callable[[np.ndarray], np.ndarray], arc_length: np.ndarray, columns: int
+) -> np.ndarray:
+    what = f"{member} of {type(load).__name__}"
+    found = number_table(what, called(what, function, arc_length), columns)
+    if len(found) != len(arc_length):
+        raise InputError(
+            f"{what} must have a row for each of the {len(arc_length)} arc lengths that it is asked for, "
+            f"got {len(found)} rows"
+        )
+    return found

@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 Geometry = Literal["deformed", "reference"]
+# numbers of cell types, from vtkCellType.h
+VERTEX, POLY_LINE, LAGRANGE_QUADRILATERAL = 1, 4, 70
 _NAMED = 10  # beams that a warning names
 
 
@@ -45,6 +47,44 @@ class Content:
 WHOLE = Content()
 
 
+class Grid(Protocol):
+    """What is written: cells of one type that share no points, the fields at the points, and numbers of the cells."""
+
+    @property
+    def cell_type(self) -> int:
+        """Number of the type of the cells in VTK."""
+        ...
+
+    @property
+    def points(self) -> int:
+        """Number of points."""
+        ...
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """First point of each cell, and the number of points."""
+        ...
+
+    @property
+    def degrees(self) -> np.ndarray | None:
+        """Degrees of the Lagrange cells (cells, 3), None for other cells."""
+        ...
+
+    @property
+    def numbers(self) -> dict[str, np.ndarray]:
+        """Cell data (cells,) by name."""
+        ...
+
+    @property
+    def legend(self) -> dict[str, list[str]]:
+        """What numbers of cells stand for, by name."""
+        ...
+
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return points and fields (steps, points) and (steps, points, 3 or 6) of some rows of a solution."""
+        ...
+
+
 class Cells:
     """The cells of all beams of one kind, one an element and layer, which shares no points with others.
 
@@ -63,15 +103,19 @@ class Cells:
         self.material, self.section = np.repeat(material, cells), np.repeat(section, cells)
         self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
         self.degree = np.repeat([(part.points.pieces, part.across) for part in self.samples], cells, axis=0)
+        self.cell_type = LAGRANGE_QUADRILATERAL if whole else POLY_LINE
         self.offsets = np.append(0, np.cumsum(np.repeat([len(part.order) for part in self.samples], cells)))
 
     @property
     def points(self) -> int:
+        """Number of points."""
         return int(self.offsets[-1])
 
     @property
-    def degrees(self) -> np.ndarray:
-        """Degrees of the Lagrange cells (cells, 3)."""
+    def degrees(self) -> np.ndarray | None:
+        """Degrees of the Lagrange cells (cells, 3), None for lines."""
+        if not self.whole:
+            return None
         return np.column_stack([self.degree, np.ones(len(self.degree))]).astype(float)
 
     @property
@@ -117,7 +161,12 @@ class Cells:
         if self.content.geometry == "reference":
             still = np.concatenate([part.at_rest for part in self.samples], axis=1)
             found["points"] = np.repeat(still, len(found["points"]), axis=0)
-        return {name: values.astype(np.float32) for name, values in found.items()} if self.content.single else found
+        return by_precision(found, self.content)
+
+
+def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, np.ndarray]:
+    """Return arrays with numbers of four bytes where `content` asks for them."""
+    return {name: values.astype(np.float32) for name, values in arrays.items()} if content.single else arrays
 
 
 def _distinct(items: Sequence[Any]) -> tuple[list[Any], list[int]]:

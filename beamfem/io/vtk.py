@@ -11,12 +11,13 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from beamfem.errors import FileError, InputError
 from beamfem.files import make_folder, path_of, whole
-from beamfem.io.cells import Cells, Content, Geometry, times
+from beamfem.io.boundary import Boundary
+from beamfem.io.cells import Cells, Content, Geometry, Grid, times
 from beamfem.validation import items
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def write_vtk(
     fields: Sequence[str] | None = None,
     single: bool = False,
 ) -> None:
-    """Write the body into `path` and the centrelines into <stem>_centreline beside it; folders are made.
+    """Write the body into `path`; beside it centrelines and supports and loads, <stem>_centreline and <stem>_boundary.
 
     .vtkhdf, also where `path` has no suffix: all steps in one file, for ParaView 5.12 or newer; .pvd: a collection
     of .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be
@@ -56,12 +57,14 @@ def write_vtk(
     content = Content(geometry, chosen, single)
     bodies = Cells(solution.model, True, suffix == ".vtkhdf", content)
     bodies.warn_of_unknown_stress()
+    boundary = Boundary(solution.model, content)
     if chosen is not None:
-        content.require_known(Cells(solution.model, True).names(solution))
-    for target, cells in (
-        (path, bodies),
-        (path.with_stem(path.stem + "_centreline"), Cells(solution.model, False, content=content)),
-    ):
+        content.require_known([*Cells(solution.model, True).names(solution), *boundary.names])
+    grids: dict[str, Grid] = {"": bodies, "_centreline": Cells(solution.model, False, content=content)}
+    if boundary.points:
+        grids["_boundary"] = boundary
+    for name, cells in grids.items():
+        target = path.with_stem(path.stem + name)
         if suffix == ".pvd":
             _write_series(solution, target, cells)
         else:
@@ -70,7 +73,7 @@ def write_vtk(
             write_vtkhdf(solution, target, cells, max(1, VALUES_IN_MEMORY // cells.points))
 
 
-def _write_series(solution: "Solution", path: Path, cells: Cells) -> None:
+def _write_series(solution: "Solution", path: Path, cells: Grid) -> None:
     series = _Series(path, cells, "load_factor" if solution.static else "time", times(solution.at))
     chunk = max(1, VALUES_IN_MEMORY // cells.points)
     try:
@@ -85,7 +88,7 @@ def _write_series(solution: "Solution", path: Path, cells: Cells) -> None:
 class _Series:
     """A .pvd file and the folder of its steps."""
 
-    def __init__(self, path: Path, cells: Cells, name: str, at: np.ndarray) -> None:
+    def __init__(self, path: Path, cells: Grid, name: str, at: np.ndarray) -> None:
         self.path, self.cells, self.folder = path, cells, path.with_suffix("")
         self.name, self.times = name, at
         make_folder(self.folder)
@@ -94,8 +97,8 @@ class _Series:
         table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, np.arange(cells.points))))
         self.grid = vtkUnstructuredGrid()
         self.grid.SetPoints(vtkPoints())
-        self.grid.SetCells(VTK_LAGRANGE_QUADRILATERAL if cells.whole else VTK_POLY_LINE, table)
-        if cells.whole:
+        self.grid.SetCells(cells.cell_type, table)
+        if cells.degrees is not None:
             self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
         for name_of_cells, values in cells.numbers.items():
             self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))

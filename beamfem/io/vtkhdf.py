@@ -9,18 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.io.cells import Cells, times
+from beamfem.io.cells import Grid, times
 from beamfem.io.hdf5 import written_hdf5
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-# numbers of cell types, from vtkCellType.h
-_LAGRANGE_QUADRILATERAL, _POLY_LINE = 70, 4
 _CHUNK_BYTES = 2**16
 
 
-def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> None:
+def write_vtkhdf(solution: "Solution", path: Path, cells: Grid, chunk: int) -> None:
     """Write the cells of a solution, `chunk` rows at a time; readers see the old file or the whole new one.
 
     Cells are stored once, points and point data for every step. Raises MissingPackageError without h5py.
@@ -29,17 +27,17 @@ def write_vtkhdf(solution: "Solution", path: Path, cells: Cells, chunk: int) -> 
         _write(file.create_group("VTKHDF", track_order=True), solution, cells, chunk, require_written)
 
 
-def _write(root: Any, solution: "Solution", cells: Cells, chunk: int, require_written: Callable[[], None]) -> None:
+def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_written: Callable[[], None]) -> None:
     root.attrs["Version"] = np.array([2, 6])
     # a string of fixed length, as the format demands
     root.attrs.create("Type", np.bytes_("UnstructuredGrid"))
-    steps, number = len(solution), len(cells.beam)
+    steps, number = len(solution), len(cells.offsets) - 1
     root["NumberOfPoints"] = np.array([cells.points])
     root["NumberOfCells"] = np.array([number])
     root["NumberOfConnectivityIds"] = np.array([cells.points])
     root["Connectivity"] = np.arange(cells.points)
     root["Offsets"] = cells.offsets
-    root["Types"] = np.full(number, _LAGRANGE_QUADRILATERAL if cells.whole else _POLY_LINE, dtype=np.uint8)
+    root["Types"] = np.full(number, cells.cell_type, dtype=np.uint8)
     cell_data = root.create_group("CellData")
     for numbers, values in cells.numbers.items():
         cell_data[numbers] = values.astype(np.int32)
@@ -72,7 +70,7 @@ def _write(root: Any, solution: "Solution", cells: Cells, chunk: int, require_wr
 
 
 def _write_steps(
-    group: Any, solution: "Solution", cells: Cells, point_data: list[str], cell_data: list[str], name: str
+    group: Any, solution: "Solution", cells: Grid, point_data: list[str], cell_data: list[str], name: str
 ) -> None:
     """Say where in the arrays each step begins; one part and one set of cells for all."""
     steps = len(solution)

@@ -14,6 +14,7 @@ from beamfem.cli.modelfile.places import Places
 from beamfem.cli.modelfile.table import Kinds, Reader, Table, build_kind
 from beamfem.cli.targets import require_target
 from beamfem.errors import InputError
+from beamfem.io.boundary import Boundary
 from beamfem.io.cells import Cells, Content
 from beamfem.io.description import describe
 from beamfem.model.beam import Point
@@ -77,8 +78,9 @@ class Vtk(_OfAny):
         """Refuse fields that there are not."""
         if self.fields is not None:
             moving = analysis.moving or isinstance(analysis, Modes)
+            content = Content(fields=tuple(self.fields))
             known = Cells(model, True).names(_at_rest(model, not moving))
-            Content(fields=tuple(self.fields)).require_known(known)
+            content.require_known([*known, *Boundary(model, content).names])
 
     def write(self, found: Found) -> None:
         shown = found.solution if self.every == 1 else found.solution[:: self.every]

@@ -1,0 +1,91 @@
+"""Supports, loads and connectors in ParaView files: a vertex for each place, with what acts on the beam there."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.io.cells import VERTEX, Content, by_precision
+from beamfem.io.vertices import ROLES, flat, vertices
+from beamfem.model.model import Model
+from beamfem.model.reference import reference_position
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+# values of a vertex by name, and how many components each has
+_COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
+
+
+class Boundary:
+    """The vertices of a model, written as `Cells` are."""
+
+    cell_type = VERTEX
+
+    def __init__(self, model: Model, content: Content) -> None:
+        self.content = content
+        self.groups = vertices(model)
+        numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
+        self.kinds = list(dict.fromkeys(group.kind for group in self.groups))
+        self._sizes = [len(group.xi) for group in self.groups]
+        self._beam = [numbers[id(group.mesh)] for group in self.groups]
+
+    @property
+    def points(self) -> int:
+        """Number of vertices."""
+        return sum(self._sizes)
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """First point of each cell, and their number."""
+        return np.arange(self.points + 1)
+
+    @property
+    def degrees(self) -> None:
+        """Vertices have no degree."""
+        return
+
+    @property
+    def numbers(self) -> dict[str, np.ndarray]:
+        """Cell data (cells,) by name."""
+        kind = [self.kinds.index(group.kind) for group in self.groups]
+        values = {"beam": self._beam, "kind": kind, "role": [group.role for group in self.groups]}
+        return {name: np.repeat(np.array(each, dtype=np.int64), self._sizes) for name, each in values.items()}
+
+    @property
+    def legend(self) -> dict[str, list[str]]:
+        """What the numbers of kinds and roles stand for, by name."""
+        return {"kinds": self.kinds, "roles": list(ROLES)}
+
+    @property
+    def names(self) -> list[str]:
+        """The fields that there are."""
+        present = {name for group in self.groups for name in group.fields}
+        return ["displacement", *(name for name in _COMPONENTS if name in present)]
+
+    def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
+        """Return points and fields (steps, points) and (steps, points, 3) of some rows; what nothing has is left out.
+
+        A displacement is that of the axis; what does not apply at a vertex is zero there.
+        """
+        part, chosen = solution[rows], self.content.chosen(self.names)
+        position = flat(np.concatenate([group.positions(part.p) for group in self.groups], axis=1))
+        found = {"points": position, "displacement": position - self._reference}
+        if self.content.geometry == "reference":
+            found["points"] = np.repeat(self._reference[None], len(part), axis=0)
+        values = [group.values(part) for group in self.groups]
+        for name in chosen:
+            if name in _COMPONENTS:
+                found[name] = self._table(name, values, len(part))
+        return by_precision({name: found[name] for name in ("points", *chosen)}, self.content)
+
+    def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
+        components = _COMPONENTS[name]
+        sizes = zip(values, self._sizes, strict=True)
+        parts = [each[name] if name in each else np.zeros((steps, size, components)) for each, size in sizes]
+        table = np.concatenate(parts, axis=1)
+        return table if components == 3 else table[..., 0]
+
+    @cached_property
+    def _reference(self) -> np.ndarray:
+        return flat(np.concatenate([reference_position(group.mesh, group.element, group.xi) for group in self.groups]))

@@ -1,0 +1,192 @@
+"""Places at which supports, loads and connectors act on beams, and what they do there in the rows of a solution."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.element.coordinates import across
+from beamfem.model.beam import Beam, Point
+from beamfem.model.contribution import Contribution
+from beamfem.model.load import BodyLoad, LineLoad, Load, PointLoad, factor
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.model.reference import length_points, reference_position
+from beamfem.model.returned import forces_of
+from beamfem.model.support import DIRECTIONS, LineSupport, PointSupport
+from beamfem.results import postprocess
+from beamfem.results.loading import loading
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+ROLES = ("support", "load", "connector")
+_SUPPORT, _LOAD, _CONNECTOR = range(3)
+_ACTION = ("force", "moment")
+_Values = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Vertices:
+    """Places (n,) of a beam at which something acts: its class, its role and its values (steps, n, components).
+
+    fields: names of the values.
+    """
+
+    kind: str
+    role: int
+    fields: tuple[str, ...]
+    mesh: BeamMesh
+    element: np.ndarray
+    xi: np.ndarray
+    values: Callable[["Solution"], _Values]
+
+    def positions(self, p: np.ndarray) -> np.ndarray:
+        """Return where they are (steps, n, 2) [m] in states (steps, coordinates)."""
+        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi).r
+
+
+def vertices(model: Model) -> list[Vertices]:
+    """Return the vertices of all that acts on the beams of a model."""
+    return [*_supports(model), *_loads(model), *_connectors(model)]
+
+
+def flat(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors of the plane (..., 2) with a third component, zero."""
+    return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, 1)])
+
+
+def _at(model: Model, point: Point) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
+    mesh = model.mesh_of(point)
+    element, xi = mesh.locate(point.fraction)
+    return mesh, np.array([element]), np.array([xi])
+
+
+def _along(model: Model, beam: Beam) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
+    mesh = model.meshes[model.number_of(beam)]
+    element, xi, _ = length_points(mesh)
+    return mesh, element, xi
+
+
+def _supports(model: Model) -> Iterator[Vertices]:
+    """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
+    at_point: dict[tuple[int, float], list[PointSupport]] = {}
+    for support in model.point_supports:
+        at_point.setdefault((id(support.point.beam), support.point.fraction), []).append(support)
+    for supports in at_point.values():
+        kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
+        fixed = _fixed(supports)
+        place = _at(model, supports[0].point)
+        yield Vertices(kind, _SUPPORT, (*_ACTION, *fixed), *place, _reaction(supports[0].point, fixed))
+    for foundation in model.line_supports:
+        place = _along(model, foundation.beam)
+        yield Vertices(type(foundation).__name__, _SUPPORT, ("line_force",), *place, _of_foundation(foundation, *place))
+
+
+def _fixed(supports: list[PointSupport]) -> _Values:
+    """Return which directions the supports of a point prescribe, and the stiffness of their springs (3,), if any."""
+    prescribed, stiffness = np.zeros(3), np.zeros(3)
+    for support in supports:
+        for name in support.prescribed():
+            if support.direction is not None and name == "normal":
+                prescribed[:2] = support.direction
+            else:
+                prescribed[DIRECTIONS.index(name)] = 1.0
+        for name, value in support.springs().items():
+            stiffness[DIRECTIONS.index(name)] += value
+    return {name: each for name, each in (("prescribed", prescribed), ("stiffness", stiffness)) if each.any()}
+
+
+def _reaction(point: Point, fixed: _Values) -> Callable[["Solution"], _Values]:
+    def values(part: "Solution") -> _Values:
+        found = part.reaction(point)[:, None]
+        constant = {name: np.tile(each, (len(part), 1, 1)) for name, each in fixed.items()}
+        return {"force": flat(found[..., :2]), "moment": found[..., 2:], **constant}
+
+    return values
+
+
+def _of_foundation(
+    foundation: LineSupport, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
+) -> Callable[["Solution"], _Values]:
+    stiffness = np.array(foundation.stiffness)
+    start = reference_position(mesh, element, xi)
+
+    def values(part: "Solution") -> _Values:
+        position = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi).r
+        return {"line_force": flat(-stiffness * (position - start))}
+
+    return values
+
+
+def _loads(model: Model) -> Iterator[Vertices]:
+    """Yield the vertices of the loads; strains that are imposed act nowhere from outside."""
+    for load in model.loads:
+        kind = type(load).__name__
+        match load:
+            case PointLoad():
+                yield Vertices(kind, _LOAD, _ACTION, *_at(model, load.point), _of_point_load(load))
+            case LineLoad():
+                place = _along(model, load.beam)
+                yield Vertices(kind, _LOAD, ("line_force",), *place, _of_line_load(load, *place))
+            case BodyLoad():
+                for beam in model.beams:
+                    yield Vertices(kind, _LOAD, ("acceleration",), *_at(model, beam.at(0.5)), _of_body_load(load))
+
+
+def _factors(load: Load, part: "Solution") -> np.ndarray:
+    system, at = loading(part)
+    return np.array([factor(load, float(time), system.static) for time in at])
+
+
+def _of_point_load(load: PointLoad) -> Callable[["Solution"], _Values]:
+    def values(part: "Solution") -> _Values:
+        table = _factors(load, part)[:, None] * np.array(load.value)
+        force = table[:, :2]
+        if load.follower:
+            angle = part.rotation(load.point)[:, None]
+            force = np.cos(angle) * force + np.sin(angle) * across(force)
+        return {"force": flat(force[:, None]), "moment": table[:, None, 2:]}
+
+    return values
+
+
+def _of_line_load(
+    load: LineLoad, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
+) -> Callable[["Solution"], _Values]:
+    forces = forces_of(load, mesh.arc_length(element, xi))
+
+    def values(part: "Solution") -> _Values:
+        table = _factors(load, part)[:, None, None] * forces
+        now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi)
+        if load.axes == "section":
+            angle = postprocess.turning(mesh, part.p, now, element, xi)[..., None]
+            table = np.cos(angle) * table + np.sin(angle) * across(table)
+        elif load.axes == "axis":
+            table = table[..., :1] * now.r_s + table[..., 1:] * across(now.r_s)
+        return {"line_force": flat(table)}
+
+    return values
+
+
+def _of_body_load(load: BodyLoad) -> Callable[["Solution"], _Values]:
+    def values(part: "Solution") -> _Values:
+        return {"acceleration": flat(_factors(load, part)[:, None, None] * np.array(load.vector))}
+
+    return values
+
+
+def _connectors(model: Model) -> Iterator[Vertices]:
+    for connector in model.connectors:
+        for number, point in enumerate(connector.points):
+            values = _of_connector(connector, number)
+            yield Vertices(type(connector).__name__, _CONNECTOR, _ACTION, *_at(model, point), values)
+
+
+def _of_connector(connector: Contribution, number: int) -> Callable[["Solution"], _Values]:
+    def values(part: "Solution") -> _Values:
+        found = part.connector_force(connector)[:, number : number + 1]
+        return {"force": flat(found[..., :2]), "moment": found[..., 2:]}
+
+    return values

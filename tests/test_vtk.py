@@ -9,7 +9,7 @@ import pytest
 from drawn import EI, arch, cantilever
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_POLY_LINE
+from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_QUADRILATERAL, VTK_LINE
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkMassProperties, vtkTriangleFilter
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
@@ -69,11 +69,12 @@ def written(solution, tmp_path_factory):
 
 
 def test_a_file_a_step_at_the_times_of_the_solution(solution, written):
-    for path in (written, written.with_name("swing_centreline.pvd")):
+    for path in (written, *(written.with_name(f"swing_{part}.pvd") for part in ("centreline", "boundary"))):
         times, files = collection(path)
         np.testing.assert_array_equal(times, solution.at)
         assert all(file.is_file() for file in files)
-    names = ("swing", "swing.pvd", "swing_centreline", "swing_centreline.pvd")
+    parts = ("swing", "swing_centreline", "swing_boundary")
+    names = [f"{part}{suffix}" for part in parts for suffix in ("", ".pvd")]
     assert sorted(file.name for file in written.parent.iterdir()) == sorted(names)
 
 
@@ -148,7 +149,7 @@ def test_velocity_is_the_rate_of_the_points():
 
 def test_centreline(solution, written):
     grid = read(collection(written.with_name("swing_centreline.pvd"))[1][-1])
-    assert {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())} == {VTK_POLY_LINE}
+    assert {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())} == {VTK_LINE}
     points, data = vtk_to_numpy(grid.GetPoints().GetData()), point_data(grid)
     half = len(points) // 2
     for beam, last in zip(solution.model.beams, (half - 1, -1), strict=True):
@@ -176,7 +177,8 @@ def test_rotation_counts_full_turns_over_chunks(element, tmp_path, monkeypatch):
 def test_a_path_without_a_suffix_becomes_one_file_of_all_steps(solution, tmp_path):
     pytest.importorskip("h5py")
     solution.to_vtk(tmp_path / "folder" / "fall")
-    assert sorted(file.name for file in (tmp_path / "folder").iterdir()) == ["fall.vtkhdf", "fall_centreline.vtkhdf"]
+    names = ["fall.vtkhdf", "fall_boundary.vtkhdf", "fall_centreline.vtkhdf"]
+    assert sorted(file.name for file in (tmp_path / "folder").iterdir()) == names
 
 
 def test_other_suffixes_are_refused(solution, tmp_path):
@@ -276,7 +278,7 @@ def test_vtkhdf_holds_what_the_vtu_files_hold(make, tmp_path, monkeypatch):
     monkeypatch.setattr(vtk, "VALUES_IN_MEMORY", 200)  # several chunks of rows
     solution.to_vtk(tmp_path / "a.pvd")
     solution.to_vtk(tmp_path / "b.vtkhdf")
-    for name in ("", "_centreline"):
+    for name in ("", "_centreline", "_boundary"):
         times, files = collection(tmp_path / f"a{name}.pvd")
         reader = vtkHDFReader()
         reader.SetFileName(str(tmp_path / f"b{name}.vtkhdf"))
@@ -305,8 +307,9 @@ def test_vtkhdf_holds_what_the_vtu_files_hold(make, tmp_path, monkeypatch):
             at = "load_factor" if solution.static else "time"
             assert found.GetFieldData().GetArray(at).GetNumberOfTuples() == 1
             assert found.GetFieldData().GetArray(at).GetValue(0) == solution.at[row]
-    names = (f"{name}{suffix}" for name in ("a", "a_centreline") for suffix in ("", ".pvd"))
-    assert sorted(file.name for file in tmp_path.iterdir()) == sorted([*names, "b.vtkhdf", "b_centreline.vtkhdf"])
+    parts = ("", "_centreline", "_boundary")
+    names = [f"a{part}{suffix}" for part in parts for suffix in ("", ".pvd")] + [f"b{part}.vtkhdf" for part in parts]
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(names)
 
 
 def common_points(grid, line):
@@ -336,6 +339,6 @@ def test_vtkhdf_without_h5py_names_the_extra(tmp_path, monkeypatch):
 
 def test_documented_fields_are_those_that_are_written(solution, written):
     text = (Path(__file__).parent.parent / "docs" / "paraview.md").read_text()
-    for path in (written, written.with_name("swing_centreline.pvd")):
+    for path in (written, *(written.with_name(f"swing_{part}.pvd") for part in ("centreline", "boundary"))):
         for name in point_data(read(collection(path)[1][0])):
             assert f"`{name}`" in text or f"`{name.rsplit('_', 1)[0]}_xx`" in text

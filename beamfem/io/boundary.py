@@ -36,8 +36,13 @@ class Boundary:
         return sum(self._sizes)
 
     @property
+    def connectivity(self) -> np.ndarray:
+        """Points of all cells, one each."""
+        return np.arange(self.points)
+
+    @property
     def offsets(self) -> np.ndarray:
-        """First point of each cell, and their number."""
+        """Where in the connectivity each cell begins, and its length."""
         return np.arange(self.points + 1)
 
     @property

@@ -9,8 +9,10 @@ import numpy as np
 
 from beamfem.errors import UnknownStressWarning
 from beamfem.io.samples import Samples, body, centreline
+from beamfem.material import Material
 from beamfem.model.classes import by_value
 from beamfem.model.model import Model
+from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 
 if TYPE_CHECKING:
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 Geometry = Literal["deformed", "reference"]
 # numbers of cell types, from vtkCellType.h
-VERTEX, POLY_LINE, LAGRANGE_QUADRILATERAL = 1, 4, 70
+VERTEX, LINE, LAGRANGE_QUADRILATERAL = 1, 3, 70
 _NAMED = 10  # beams that a warning names
 
 
@@ -48,7 +50,7 @@ WHOLE = Content()
 
 
 class Grid(Protocol):
-    """What is written: cells of one type that share no points, the fields at the points, and numbers of the cells."""
+    """What is written: cells of one type, the fields at their points, and numbers of the cells."""
 
     @property
     def cell_type(self) -> int:
@@ -61,8 +63,13 @@ class Grid(Protocol):
         ...
 
     @property
+    def connectivity(self) -> np.ndarray:
+        """Points of all cells, one cell after the other."""
+        ...
+
+    @property
     def offsets(self) -> np.ndarray:
-        """First point of each cell, and the number of points."""
+        """Where in the connectivity each cell begins, and its length."""
         ...
 
     @property
@@ -86,7 +93,7 @@ class Grid(Protocol):
 
 
 class Cells:
-    """The cells of all beams of one kind, one an element and layer, which shares no points with others.
+    """The cells of all beams: bodies, one cell an element and layer, or lines; elements share no points with others.
 
     alike: of one degree in both directions; readers of VTKHDF files before VTK 9.7 take no others.
     """
@@ -96,20 +103,29 @@ class Cells:
         by_beam = [body(mesh, alike) if whole else centreline(mesh) for mesh in model.meshes]
         self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
         numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
-        cells = [len(part.element) for part in self.samples]
+        pieces = [1 if whole else part.points.pieces for part in self.samples]
+        cells = [len(part.element) * each for part, each in zip(self.samples, pieces, strict=True)]
         self.beam = np.repeat(numbers, cells)
-        self.materials, material = _distinct([part.material for part in self.samples])
-        self.sections, section = _distinct([part.mesh.beam.section for part in self.samples])
+        self.materials = _distinct(_materials(model))
+        self.sections = _distinct([beam.section for beam in model.beams])
+        material = _numbers([part.material for part in self.samples], self.materials)
+        section = _numbers([part.mesh.beam.section for part in self.samples], self.sections)
         self.material, self.section = np.repeat(material, cells), np.repeat(section, cells)
         self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
         self.degree = np.repeat([(part.points.pieces, part.across) for part in self.samples], cells, axis=0)
-        self.cell_type = LAGRANGE_QUADRILATERAL if whole else POLY_LINE
-        self.offsets = np.append(0, np.cumsum(np.repeat([len(part.order) for part in self.samples], cells)))
-
-    @property
-    def points(self) -> int:
-        """Number of points."""
-        return int(self.offsets[-1])
+        self.cell_type = LAGRANGE_QUADRILATERAL if whole else LINE
+        self.points = sum(part.size for part in self.samples)
+        if whole:
+            corners = np.repeat([len(part.order) for part in self.samples], cells)
+            self.connectivity, self.offsets = np.arange(self.points), np.append(0, np.cumsum(corners))
+        else:
+            # the last point of an element begins no line
+            count = [
+                np.tile(np.arange(part.points.pieces + 1) < part.points.pieces, len(part.element))
+                for part in self.samples
+            ]
+            first = np.flatnonzero(np.concatenate(count))
+            self.connectivity, self.offsets = np.column_stack([first, first + 1]).ravel(), 2 * np.arange(len(first) + 1)
 
     @property
     def degrees(self) -> np.ndarray | None:
@@ -126,7 +142,9 @@ class Cells:
 
     @property
     def legend(self) -> dict[str, list[str]]:
-        """What the numbers of materials and sections stand for, by name."""
+        """What the numbers of materials and sections stand for; lines have none, since meshio reads no texts."""
+        if not self.whole:
+            return {}
         return {"materials": list(map(_written, self.materials)), "sections": list(map(_written, self.sections))}
 
     def warn_of_unknown_stress(self) -> None:
@@ -169,13 +187,28 @@ def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, n
     return {name: values.astype(np.float32) for name, values in arrays.items()} if content.single else arrays
 
 
-def _distinct(items: Sequence[Any]) -> tuple[list[Any], list[int]]:
-    """Return different items in the order of their first, and the number of each."""
+def _materials(model: Model) -> list[Material | None]:
+    """Return the materials of beams and layers; last, so that lines count as bodies do, None for what has its own."""
+    found: list[Material | None] = []
+    for beam in model.beams:
+        layers = beam.section.layers if isinstance(beam.section, Layered) else ()
+        found += [layer.material for layer in layers] or [beam.material]
+    lines = [None for beam in model.beams if beam.material is None or isinstance(beam.section, Layered)]
+    return [*(material for material in found if material is not None), *lines]
+
+
+def _distinct(items: Sequence[Any]) -> list[Any]:
+    """Return different items in the order of their first."""
     first: dict[Any, Any] = {}
     for item in items:
         first.setdefault(by_value(item), item)
-    places = {key: number for number, key in enumerate(first)}
-    return list(first.values()), [places[by_value(item)] for item in items]
+    return list(first.values())
+
+
+def _numbers(items: Sequence[Any], distinct: Sequence[Any]) -> list[int]:
+    """Return the place of each item among different ones."""
+    places = {by_value(item): number for number, item in enumerate(distinct)}
+    return [places[by_value(item)] for item in items]
 
 
 def _written(part: Any) -> str:

@@ -14,9 +14,9 @@ from beamfem.files import readable
 from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
-from beamfem.io.touching import divided, parts_of, warn_of_gaps
+from beamfem.io.touching import divided, merged, parts_of, warn_of_gaps
 from beamfem.material import Material
-from beamfem.validation import LARGEST, holds_truth_values, items, number_table, shown, text
+from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
 
 # distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
 _SAME = 1e-9
@@ -76,7 +76,7 @@ class LineMesh:
         return build_frame(self, elements, element, section, material, members, hinges)
 
 
-def read_mesh(path: str | PathLike[str]) -> LineMesh:
+def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     """Return the lines of a mesh file, in its units.
 
     Gmsh .msh (physical groups of curves and points are the sets, by number where they have no name), Abaqus and
@@ -84,20 +84,22 @@ def read_mesh(path: str | PathLike[str]) -> LineMesh:
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
     its end. A `NotJoinedWarning` names ends that stand within 30 times that of another line and are not joined to it.
-    A `NotReadWarning` names what else an .inp holds: sections, materials, supports, loads.
+    A `NotReadWarning` names what else an .inp holds: sections, materials, supports, loads. merge: ends of lines at one
+    place become one node, as in the centrelines that `to_vtk` writes, whose elements share no points.
     Raises FileError, FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another
-    kind, nodes off the plane z = 0, lines of no length or given twice, lines that end inside a line3, and nodes at one
-    place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
+    kind, nodes off the plane z = 0, lines of no length or given twice, lines that end inside a line3, and, without
+    merge, nodes at one place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
     """
+    flag("merge", merge)
     source = readable(path)
     content = read_abaqus(source) if source.suffix.lower() == ".inp" else read_through_meshio(source)
     try:
-        return _line_mesh(content)
+        return _line_mesh(content, merge)
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
 
 
-def _line_mesh(content: MeshFile) -> LineMesh:
+def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
     _refuse_other_cells(content)
     tables, numbers = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     vertices: dict[int, int] = {}
@@ -129,7 +131,13 @@ def _line_mesh(content: MeshFile) -> LineMesh:
     size = float(np.max(np.ptp(points, axis=0)))
     _check_nodes(points, size)
     nodes = points[:, :2].copy()
-    near = _check_ends(nodes, cells, size)
+    near = _distance(nodes, cells, size)
+    if merge:
+        first = merged(nodes, np.unique(cells[:, :2]), near)
+        kept, number_of = np.unique(first, return_inverse=True)
+        nodes, cells = nodes[kept], np.append(number_of, -1)[cells]
+        place[used] = number_of
+    _check_ends(nodes, cells, near)
     parts, owner = divided(nodes, cells, near)
     warn_of_gaps(nodes, parts, _GAPS * near)
     _refuse_repeated(nodes, parts, owner, size)
@@ -173,17 +181,21 @@ def _check_nodes(points: np.ndarray, size: float) -> None:
         raise InputError(f"beams lie in the plane z = 0, but {count} node(s) do not, such as ({x:g}, {y:g}, {z:g})")
 
 
-def _check_ends(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
-    """Return the distance [m] below which places are the same. Raises InputError for ends that are not joined."""
-    from scipy.spatial import cKDTree  # slow to import
-
+def _distance(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
+    """Return the distance [m] below which places are the same. Raises InputError for lines of no length."""
     chord = np.linalg.norm(nodes[cells[:, 1]] - nodes[cells[:, 0]], axis=1)
     short = np.flatnonzero(chord <= _SAME * size)
     if len(short):
         raise InputError(
             f"line {short[0]} (counted from 0) has no length, both ends are at {_at(nodes, cells[short[0], 0])}"
         )
-    near = min(GAP * size, _SHORT * float(chord.min()))
+    return min(GAP * size, _SHORT * float(chord.min()))
+
+
+def _check_ends(nodes: np.ndarray, cells: np.ndarray, near: float) -> None:
+    """Raise InputError for ends that are within a distance `near` [m] and are not one node."""
+    from scipy.spatial import cKDTree  # slow to import
+
     ends = np.unique(cells[:, :2])
     pairs = cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")
     if len(pairs):
@@ -191,13 +203,13 @@ def _check_ends(nodes: np.ndarray, cells: np.ndarray, size: float) -> float:
         apart = np.linalg.norm(nodes[one] - nodes[other])
         raise InputError(
             f"two nodes are at {_at(nodes, one)}, {apart:.1g} apart, so that lines which meet there are not joined "
-            f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, in Gmsh by Coherence; for a hinge, name it"
+            f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, by `merge` or in Gmsh by Coherence; for "
+            "a hinge, name it"
         )
     middle = cells[:, 2][cells[:, 2] >= 0]
     crossed = np.intersect1d(middle, ends)
     if len(crossed):
         raise InputError(f"a line ends in the middle of a line3 at {_at(nodes, crossed[0])}; split the line3 there")
-    return near
 
 
 def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, size: float) -> None:

@@ -11,7 +11,7 @@ from beamfem.model.reference import reference_axis
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
 from beamfem.results.self_stress import self_stress
-from beamfem.results.stresses import in_the_plane, von_mises
+from beamfem.results.stresses import in_the_plane, second_piola_kirchhoff, von_mises
 from beamfem.section import Layered
 
 if TYPE_CHECKING:
@@ -85,6 +85,9 @@ class Samples:
         result["cauchy_stress"] = in_the_plane(
             result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
         )
+        result["second_piola_kirchhoff_stress"] = second_piola_kirchhoff(
+            result["cauchy_stress"], now, self.axis, self.y
+        )
         for name, values in forces.items():
             result[_FORCES[name]] = np.repeat(values[..., None], self.y.shape[-1], axis=-1)
         return {name: self._by_cell(values) for name, values in result.items()}
@@ -95,7 +98,7 @@ class Samples:
         one = np.ones((1, len(self.points.xi)))
         unit = self._stress({"normal": one, "shear": one, "moment": one})
         told = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
-        return told | {"cauchy_stress": told["von_mises_stress"]}
+        return told | dict.fromkeys(("cauchy_stress", "second_piola_kirchhoff_stress"), told["von_mises_stress"])
 
     def _stress(self, forces: dict[str, np.ndarray], self_stress: np.ndarray | float = 0.0) -> dict[str, np.ndarray]:
         """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis).

@@ -9,6 +9,19 @@ import numpy as np
 from beamfem.errors import InputError, NotJoinedWarning
 
 
+def merged(nodes: np.ndarray, ends: np.ndarray, near: float) -> np.ndarray:
+    """Return for each node (n,) the first of the ends that are within `near` [m] of it, or itself."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree  # slow to import
+
+    a, b = ends[cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")].reshape(-1, 2).T
+    together = coo_array((np.ones(len(a)), (a, b)), shape=(len(nodes), len(nodes)))
+    _, group = connected_components(together, directed=False)
+    _, first = np.unique(group, return_index=True)
+    return np.asarray(first[group])
+
+
 def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the cells (m, 3) with straight lines divided where others end on them, and which cell each is a part of.
 

@@ -1,4 +1,4 @@
-"""ParaView files: the deformed body as curved quadrilaterals and the centreline as lines, one .vtu a step."""
+"""ParaView files: the deformed body as curved quadrilaterals, centrelines as lines, supports and loads as vertices."""
 
 import os
 import re
@@ -94,7 +94,7 @@ class _Series:
         make_folder(self.folder)
         self.lines: list[str] = []
         table = vtkCellArray()
-        table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, np.arange(cells.points))))
+        table.SetData(*(numpy_to_vtkIdTypeArray(ids, deep=True) for ids in (cells.offsets, cells.connectivity)))
         self.grid = vtkUnstructuredGrid()
         self.grid.SetPoints(vtkPoints())
         self.grid.SetCells(cells.cell_type, table)

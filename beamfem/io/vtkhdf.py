@@ -34,13 +34,16 @@ def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_wri
     steps, number = len(solution), len(cells.offsets) - 1
     root["NumberOfPoints"] = np.array([cells.points])
     root["NumberOfCells"] = np.array([number])
-    root["NumberOfConnectivityIds"] = np.array([cells.points])
-    root["Connectivity"] = np.arange(cells.points)
+    root["NumberOfConnectivityIds"] = np.array([len(cells.connectivity)])
+    root["Connectivity"] = cells.connectivity
     root["Offsets"] = cells.offsets
     root["Types"] = np.full(number, cells.cell_type, dtype=np.uint8)
     cell_data = root.create_group("CellData")
     for numbers, values in cells.numbers.items():
         cell_data[numbers] = values.astype(np.int32)
+        if numbers + "s" in cells.legend:
+            # readers of VTK 9.7 crash on texts among the field data
+            cell_data[numbers].attrs[numbers + "s"] = cells.legend[numbers + "s"]
     name = "load_factor" if solution.static else "time"
     root.create_group("FieldData")[name] = solution.at
     point_data = root.create_group("PointData")

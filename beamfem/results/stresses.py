@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from beamfem.element.axis import Axis
+
 
 def von_mises(along: np.ndarray, sheared: np.ndarray) -> np.ndarray:
     """Return von Mises' equivalent stress [Pa] of a stress along the beam and a shear stress; no other acts."""
@@ -18,3 +20,37 @@ def in_the_plane(along: np.ndarray, sheared: np.ndarray, normal: np.ndarray) -> 
     both = along * x * y + sheared * (x**2 - y**2)
     parts = (along * x**2 - 2.0 * sheared * x * y, along * y**2 + 2.0 * sheared * x * y, zero, both, zero, zero)
     return np.stack(parts, axis=-1)
+
+
+def second_piola_kirchhoff(cauchy: np.ndarray, now: Axis, reference: Axis, y: np.ndarray) -> np.ndarray:
+    """Return the second Piola-Kirchhoff stress (steps, points, heights, 6) [Pa] of a Cauchy stress, components alike.
+
+    S = det(F) F^-1 sigma F^-T in the axes of the plane, with F = (r0' + y d', d) J^-1 and J the same of the reference;
+    nan where F is singular.
+    """
+    (ax, ay), (bx, by) = _derivatives(now, y)
+    (jx, jy), (kx, ky) = _derivatives(reference, y)
+    xx, yy, xy = (cauchy[..., component] for component in (0, 1, 3))
+    # det(G) G^-1 sigma G^-T det(G) with the columns a and b of G: the inverse is written with its minors
+    first = by**2 * xx - 2.0 * bx * by * xy + bx**2 * yy
+    second = ay**2 * xx - 2.0 * ax * ay * xy + ax**2 * yy
+    mixed = (ax * by + ay * bx) * xy - ay * by * xx - ax * bx * yy
+    size = (ax * by - ay * bx) * (jx * ky - jy * kx)
+    size = np.where(size == 0.0, np.nan, size)
+    zero = np.zeros_like(xx)
+    parts = (
+        (jx**2 * first + 2.0 * jx * kx * mixed + kx**2 * second) / size,
+        (jy**2 * first + 2.0 * jy * ky * mixed + ky**2 * second) / size,
+        zero,
+        (jx * jy * first + (jx * ky + jy * kx) * mixed + kx * ky * second) / size,
+        zero,
+        zero,
+    )
+    return np.stack(parts, axis=-1)
+
+
+def _derivatives(axis: Axis, y: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return components x and y (..., points, heights) of the derivatives of the position by arc length and height."""
+    along = axis.r_s[..., None, :] + y[..., None] * axis.d_s[..., None, :]
+    up = np.broadcast_to(axis.d[..., None, :], along.shape)
+    return [along[..., 0], along[..., 1]], [up[..., 0], up[..., 1]]

@@ -45,9 +45,10 @@ def _of_file(
     material: Any = None,
     members: str = "cells",
     hinges: Any = (),
+    merge: bool = False,
 ) -> Frame:
     try:
-        mesh: LineMesh = read_mesh(file)
+        mesh: LineMesh = read_mesh(file, merge=merge)
     except FileError as error:
         raise InputError(f"file: {error}") from error
     given = {"elements": elements, "element": element, "section": section, "material": material}

@@ -10,6 +10,7 @@ import beamfem as bf
 from beamfem.element.axis import Axis
 from beamfem.model.reference import length_points
 from beamfem.results.stresses import second_piola_kirchhoff
+from tests.connectors import SpringDamper
 from tests.own_parts import Bracket, Guide, HalfWave, Traction
 
 MATERIAL = bf.Material(2e7, 0.3, 1000.0)
@@ -201,3 +202,15 @@ def test_the_second_piola_kirchhoff_stress_does_not_rotate_with_the_body(tmp_pat
     assert data["cauchy_stress"] == pytest.approx(np.tile(expected, (len(data["cauchy_stress"]), 1)), abs=1e-6 * along)
     reference = np.tile([along / stretch, 0, 0, 0, 0, 0], (len(data["cauchy_stress"]), 1))
     assert data["second_piola_kirchhoff_stress"] == pytest.approx(reference, abs=1e-6 * along)
+
+
+def test_connectors_are_vertices_with_their_forces(tmp_path):
+    lower, upper = (bf.Beam(bf.Line((0, y), (1, y)), 4, bf.CRBF(3), SECTION, MATERIAL) for y in (0.0, 0.5))
+    spring = SpringDamper(lower.end, upper.end, stiffness=200.0)
+    clamps = [bf.Clamp(lower.start), bf.Clamp(upper.start)]
+    solution = bf.solve_static(bf.Model([lower, upper], clamps, [bf.PointForce(upper.end, (0.0, 9.0))], (), [spring]))
+    _, data, kind, _ = boundary(solution, tmp_path)
+    own = data["force"][kind == "SpringDamper"]
+    assert own == pytest.approx(np.pad(solution.connector_force(spring)[-1][:, :2], ((0, 0), (0, 1))))
+    assert abs(own).max() > 1.0
+    assert own.sum(axis=0) == pytest.approx(0.0, abs=1e-9)

@@ -16,9 +16,11 @@ h1, h2 { line-height: 1.2 } figure { margin: 1.5rem 0; display: grid; gap: .5rem
 grid-template-columns: minmax(18rem, 3fr) 2fr; align-items: center } figure img { width: 100% }
 figcaption b { display: block } table { border-collapse: collapse; margin: 1rem 0 } td, th { padding: .2rem .8rem;
 border-bottom: 1px solid #ddd; text-align: right } td:first-child, th:first-child { text-align: left }
-.word { white-space: nowrap }
+.word { white-space: nowrap } .wide { overflow-x: auto } nav ul { columns: 18rem; padding-left: 1.2rem }
+figcaption { overflow-wrap: anywhere }
 .no { color: #b02030 } .yes { color: #207040 }
-@media (max-width: 45rem) { figure { grid-template-columns: 1fr } }
+@media (max-width: 45rem) { figure { grid-template-columns: minmax(0, 1fr) } h1 { font-size: 1.6rem }
+td, th { padding: .2rem .4rem; font-size: .85rem } }
 """
 
 
@@ -54,9 +56,9 @@ class Part:
 
 
 def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> Path:
-    """Write one self-contained HTML file with the SVG figures inside; return its path."""
+    """Write one self-contained HTML file with the SVG figures inside, and a table of contents; return its path."""
     target = path_of(path)
-    body = "".join(_part(part) for part in parts)
+    body = _contents(parts) + "".join(_part(part, number) for number, part in enumerate(parts))
     head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{escape(title)}</title>'
     page = f"<!doctype html><html lang='en'><head>{head}<style>{_STYLE}</style></head>"
     with whole(target) as partial:
@@ -64,10 +66,17 @@ def write_page(path: str | PathLike[str], title: str, parts: Sequence[Part]) -> 
     return WrittenFile(target)
 
 
-def _part(part: Part) -> str:
+def _contents(parts: Sequence[Part]) -> str:
+    if len(parts) < 2:
+        return ""
+    links = [f"<li><a href='#part{number}'>{escape(part.heading)}</a></li>" for number, part in enumerate(parts)]
+    return f"<nav><ul>{''.join(links)}</ul></nav>"
+
+
+def _part(part: Part, number: int) -> str:
     entries = "".join(_entry(entry) for entry in part.entries)
     tables = "".join(_table(table) for table in part.tables)
-    return f"<h2>{escape(part.heading)}</h2><p>{escape(part.text)}</p>{tables}{entries}"
+    return f"<h2 id='part{number}'>{escape(part.heading)}</h2><p>{escape(part.text)}</p>{tables}{entries}"
 
 
 def _entry(entry: Entry) -> str:
@@ -84,7 +93,7 @@ def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(cell)}</th>" for cell in table.header)
     rows = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
     title = f"<h3>{escape(table.title)}</h3>"
-    return f"{title}<table><tr>{head}</tr>{rows}</table><p>{escape(table.remark)}</p>"
+    return f"{title}<div class='wide'><table><tr>{head}</tr>{rows}</table></div><p>{escape(table.remark)}</p>"
 
 
 def _cell(text: str) -> str:

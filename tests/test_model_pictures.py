@@ -47,8 +47,25 @@ def test_actuation_and_heat_are_named_beside_their_beams():
     loads = [bf.Actuation(arm, curvature=1.5), bf.Temperature(arm, lambda s: 10.0 * s, gradient=2000.0)]
     model = bf.Model([arm], [bf.Clamp(arm.start)], loads)
     for figure in (model.plot(), bf.solve_static(model).plot()):
-        words = {text.get_text() for text in figure.axes[0].texts}
+        words = {text.get_text().replace("\n", " ") for text in figure.axes[0].texts}
         assert {"actuation: curvature 1.5 1/m", "temperature: change varies, gradient 2000 K/m"} <= words
+
+
+@pytest.mark.parametrize("curvature", [0.2, -0.2, 1e-6])
+@pytest.mark.parametrize("end", [(0.0, 1.0), (0.3, 3.0), (1.0, 0.0)])
+def test_words_of_actuation_stay_inside_the_axes_and_beside_each_other(curvature, end):
+    """On an upright beam they ran over the beam, the edge of the axes and the colour bar."""
+    arm = bf.Beam(bf.Line((0, 0), end), 4, bf.CRBF(order=3), SECTION, STEEL)
+    loads = [bf.Actuation(arm, curvature=curvature, stretch=1e-4), bf.Actuation(arm, shear=1e-4)]
+    model = bf.Model([arm], [bf.Clamp(arm.start)], loads)
+    figure = bf.solve_static(model).plot(colour="moment")
+    axes = figure.axes[0]
+    one, other = (text.get_window_extent() for text in axes.texts if text.get_text().startswith("actuation"))
+    assert not one.overlaps(other)
+    room = axes.get_window_extent()
+    for box in (one, other):
+        assert room.x0 < box.x0
+        assert box.x1 < room.x1
 
 
 @pytest.mark.parametrize("height", [0.2, 5.0])

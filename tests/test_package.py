@@ -67,7 +67,7 @@ def test_pendulum_study_draws_every_figure(tmp_path):
 
 
 def test_the_motion_for_paraview_takes_few_files(tmp_path, monkeypatch):
-    """Of 201 states 11 in one file for bodies and one for centrelines; 3 in as many files each for ParaView 5.11."""
+    """Of 201 states 11 in a file each of bodies, centrelines, supports and loads; 2 in as many files for ParaView 5.11."""
     runs = pendulum.main(duration=0.1, meshes=(6, 12))
     monkeypatch.setattr(pendulum, "main", lambda second_moment: runs)
     monkeypatch.setattr(pendulum_page, "FIGURES", pendulum_figures.FIGURES[:2])
@@ -75,7 +75,7 @@ def test_the_motion_for_paraview_takes_few_files(tmp_path, monkeypatch):
     assert [len(part.entries), len(part.tables)] == [2, 1]
     files = [path for path in (tmp_path / "paraview").rglob("*") if path.is_file()]
     kinds = [path.suffix for path in files]
-    assert (kinds.count(".vtkhdf"), kinds.count(".pvd"), kinds.count(".vtu")) == (6, 6, 6 * 3)
+    assert (kinds.count(".vtkhdf"), kinds.count(".pvd"), kinds.count(".vtu")) == (9, 9, 9 * 2)
     reader = vtkHDFReader()
     reader.SetFileName(str(tmp_path / "paraview" / "ANCF.vtkhdf"))
     reader.UpdateInformation()

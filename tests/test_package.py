@@ -67,7 +67,7 @@ def test_pendulum_study_draws_every_figure(tmp_path):
 
 
 def test_the_motion_for_paraview_takes_few_files(tmp_path, monkeypatch):
-    """Of 201 states 11 in a file each of bodies, centrelines, supports and loads; 2 in as many files for ParaView 5.11."""
+    """Of 201 states 11 in a file each of bodies, axes, supports and loads; 2 in as many files for ParaView 5.11."""
     runs = pendulum.main(duration=0.1, meshes=(6, 12))
     monkeypatch.setattr(pendulum, "main", lambda second_moment: runs)
     monkeypatch.setattr(pendulum_page, "FIGURES", pendulum_figures.FIGURES[:2])

@@ -10,7 +10,7 @@ _held: ContextVar[bool] = ContextVar("_held", default=False)
 
 
 def in_notebook() -> bool:
-    """Tell whether this runs in the kernel of a notebook, which shows below a cell what is written to stderr."""
+    """Return whether this runs in the kernel of a notebook, which shows below a cell what is written to stderr."""
     return type(sys.stderr).__module__ == "ipykernel.iostream"
 
 

@@ -146,7 +146,7 @@ def number_table(name: str, values: Any, columns: int) -> np.ndarray:
 
 
 def holds_truth_values(values: Any) -> bool:
-    """Tell whether there is True or False in nested lists or arrays, which NumPy takes for 1 and 0 beside numbers."""
+    """Return whether there is True or False in nested lists or arrays, which NumPy takes for 1 and 0 beside numbers."""
     if isinstance(values, list | tuple):
         return any(map(holds_truth_values, values))
     return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
@@ -205,7 +205,7 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 
 
 def fulfils(item: object, protocol: type) -> bool:
-    """Tell whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
+    """Return whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
     kind = type(item)
     return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
 

@@ -53,12 +53,12 @@ def require_analytic(item: Connector) -> None:
 
 
 def resists_rates(item: Connector) -> bool:
-    """Tell whether the force depends on velocities."""
+    """Return whether the force depends on velocities."""
     return bool(item.tangent(_somewhere(item)[0], _TIMES[0], _GRAVITY, (0.0, 1.0, 0.0)).any())
 
 
 def follows_time(item: Connector) -> tuple[bool, bool]:
-    """Tell whether the force depends on time, and whether the conditions do."""
+    """Return whether the force depends on time, and whether the conditions do."""
     motion = _somewhere(item)[0]
     first, *others = (item.force(item.at(motion, time, _GRAVITY)).real for time in _TIMES)
     changed = np.any([other != first for other in others], axis=0)

@@ -19,7 +19,7 @@ _KEPT = 200_000  # numbers of a work space up to which making it takes a part of
 
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
-    """Return inertia + elastic - external generalized forces (n,) [N, N m]; at held coordinates, the reactions."""
+    """Return inertia + elastic - external generalized forces (n,) [N, N m]: reactions at prescribed coordinates."""
     result, assembler = np.empty(len(p)), _borrowed(system)
     assembler.take(system.loads_at(time))
     assembler.weigh((1.0, 1.0, 1.0))
@@ -186,11 +186,11 @@ def load_slope(system: System, p: np.ndarray, load_factor: float, width: float =
     A central difference of the given width for loads, exact to round-off where they are proportional to the load
     factor; for prescribed motions one of fourth order at small strains, since slender parts stiffen within any width.
     """
-    zeros, held = np.zeros(len(p)), system.prescribed_dofs
+    zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
     ahead, behind = (residual(system, p, zeros, zeros, load_factor + at) for at in (width, -width))
     slope = (ahead - behind) / (2.0 * width)
     motion = np.zeros(len(p))
-    motion[held] = system.prescribed_values(load_factor + width) - system.prescribed_values(load_factor - width)
+    motion[prescribed] = system.prescribed_values(load_factor + width) - system.prescribed_values(load_factor - width)
     if not motion.any():
         return np.asarray(slope)
     moved = differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, motion / (2.0 * width))

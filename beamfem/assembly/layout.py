@@ -20,9 +20,9 @@ _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse fact
 class Unknowns:
     """Order of the unknown coordinates.
 
-    free (n,): number of a coordinate among the unknown ones, -1 where it is held; dofs (unknown,): the coordinates in
-    that order; layouts: one a block; pattern: the sparse matrix with places for its data, None for a band; coupled:
-    where the entries (k, k) of what couples coordinates besides elements go, -1 for nowhere.
+    free (n,): equation number of each coordinate, -1 where it is prescribed; dofs (unknown,): the coordinates in the
+    order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
+    coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one.
     """
 
     free: np.ndarray
@@ -44,18 +44,18 @@ class Unknowns:
 def order_unknowns(
     blocks: Sequence[Block],
     size: int,
-    held: np.ndarray,
+    prescribed: np.ndarray,
     joined: bool,
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
 ) -> Unknowns:
-    """Return the order of the coordinates (size,) that are not held; a chain keeps its own, joined beams get a new.
+    """Return the order of the unknown coordinates: a single chain keeps its own, joined beams are renumbered.
 
-    coupled: numbers (k,) of coordinates that are coupled besides by elements, which takes a sparse matrix; multipliers:
-    numbers of those that come last, for they have no stiffness of their own.
+    coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
+    coordinates that come last, since they have no stiffness.
     """
     mask = np.ones(size, dtype=bool)
-    mask[held] = False
+    mask[prescribed] = False
     dofs = np.flatnonzero(mask)
     if joined:
         reordered = _narrow(blocks, size)

@@ -141,7 +141,7 @@ class MixedTangent:
         return float(np.max(np.abs(plain.solve(force) - exact)) / np.max(np.abs(exact)))
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         return self.plain.sparse(rotated)
 
 

@@ -8,12 +8,12 @@ from beamfem.model.model import Model
 from beamfem.model.returned import forces_of
 
 
-def pressures_have_potential(model: Model, held: set[int]) -> bool:
-    """Tell whether the work of all pressures of a model depends on where its beams are only; held: coordinates.
+def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
+    """Return whether the work of all pressures depends on the configuration only; prescribed: coordinates.
 
     A pressure p does the work p (x dy - y dx) / 2 besides p times the change of area at the end of its beam, and less
-    that at its start. It is none where x or y is held, and cancels where a ring closes or another beam goes on under
-    the same pressure. Where p changes along the beam, it remains at every point.
+    that at its start. It vanishes where x or y is prescribed, and cancels where a ring closes or another beam continues
+    under the same pressure. Where p varies along the beam, it remains at every point.
     """
     amplitudes = [load.amplitude for load in model.line_loads]  # kept, so that no two have one identity
     ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
@@ -27,4 +27,4 @@ def pressures_have_potential(model: Model, held: set[int]) -> bool:
         first, last = mesh.carried.dof[mesh.node[0, 0], 0], mesh.carried.dof[mesh.node[-1, -1], 0]
         for dof, sign in ((int(first), -1.0), (int(last), 1.0)):
             ends[id(amplitude), load.scale, dof] += sign * across
-    return all(left == 0.0 or dof in held or dof + 1 in held for (_, _, dof), left in ends.items())
+    return all(left == 0.0 or dof in prescribed or dof + 1 in prescribed for (_, _, dof), left in ends.items())

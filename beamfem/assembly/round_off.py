@@ -102,7 +102,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 
 def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
-    """Tell whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
+    """Return whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
     if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
         return False
     try:
@@ -134,8 +134,8 @@ def load_size(system: System, loads: LoadsAt) -> float:
 
 def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
     """Return the largest force, times the size of the model, or moment [N m] of loads, supports and springs."""
-    held, springs = system.prescribed_dofs, system.springs
-    reactions = float(np.max(np.abs(unbalanced[held] * system.scale[held]), initial=0.0))
+    prescribed, springs = system.prescribed_dofs, system.springs
+    reactions = float(np.max(np.abs(unbalanced[prescribed] * system.scale[prescribed]), initial=0.0))
     for dof, normal in system.inclined:
         reactions = max(reactions, system.extent * abs(float(normal @ unbalanced[dof : dof + 2])))
     connected, zeros = np.zeros(len(p)), np.zeros(len(p))

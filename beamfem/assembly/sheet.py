@@ -132,7 +132,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         batch //= 2
     place = _places(block.node, chunk_rows)
     number = np.where(block.dof >= 0, layout.free[block.dof], -1)[block.node].reshape(elements, -1)
-    held = {
+    arrays = {
         record.TABLES: tables,
         record.DIRECTOR: block.director,
         record.CLASS: block.kind,
@@ -159,7 +159,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.ROUTINES: own.addresses,
     }
     kept = []
-    for field, values in held.items():
+    for field, values in arrays.items():
         kind = np.int32 if field == record.SLOT else (np.float64 if values.dtype.kind == "f" else np.int64)
         kept.append(np.ascontiguousarray(values, dtype=kind))
         table[field] = address_of(kept[-1])
@@ -169,7 +169,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends
     table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, tables.shape[1], coordinates
     table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = (
-        len(held[record.RUNS]),
+        len(arrays[record.RUNS]),
         layout.half_width,
         len(loads.element),
     )

@@ -50,7 +50,7 @@ def require_target(option: str, path: Path | None) -> None:
 
 
 def writable(folder: Path) -> bool:
-    """Tell whether a file can be made in a folder, or in the nearest one above that exists."""
+    """Return whether a file can be made in a folder, or in the nearest one above that exists."""
     while not folder.exists():
         folder = folder.parent
     try:

@@ -120,4 +120,4 @@ class Springs(NamedTuple):
     dof: np.ndarray  # (ns,) coordinate
     stiffness: np.ndarray  # (ns,) [N/m] or [N m/rad]
     rest: np.ndarray  # (ns,) coordinate of the spring at rest
-    place: np.ndarray  # (ns,) of the coordinate's diagonal entry in the matrix, -1 where it is held
+    place: np.ndarray  # (ns,) of the coordinate's diagonal entry in the matrix, -1 where it is prescribed

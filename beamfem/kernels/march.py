@@ -84,7 +84,7 @@ def _predict_resultants(s, b, call, system):
 
 @inlined
 def _is_inside_out(s, call):
-    """Tell whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
+    """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
@@ -109,7 +109,7 @@ def march(system, solver, calls):
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    n, unknown, half, held = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
+    n, unknown, half, fixed = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
     free, prescribed_dofs, rows, right = (
         wholes(b[r.FREE_DOFS]),
         wholes(b[r.PRESCRIBED_DOFS]),
@@ -152,8 +152,10 @@ def march(system, solver, calls):
                 record = wholes(groups[group])
                 strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
                 record[r.NATURAL] = naturals[group] + 8 * step * strains
-        prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * held * step)
-        _predict(call[r.PREDICT], n, held, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule)
+        prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * fixed * step)
+        _predict(
+            call[r.PREDICT], n, fixed, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule
+        )
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(space, n)
@@ -201,7 +203,7 @@ def march(system, solver, calls):
                     state[i] = before[i]
                 stays = statistics[6] < 0.0 or statistics[7] == 0.0  # of the first step nothing is known
                 low = -1.0 if stays == (full == 0) else 0.0
-                _predict(call[r.PREDICT], n, held, low, state, before, differences, prescribed_dofs, prescribed, rule)
+                _predict(call[r.PREDICT], n, fixed, low, state, before, differences, prescribed_dofs, prescribed, rule)
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
@@ -210,7 +212,7 @@ def march(system, solver, calls):
                 state[i] = before[i]
             return step
         order = at(statistics, 6)
-        change = _complete(call[r.COMPLETE], n, held, state, before, differences, scale, prescribed_dofs, rule, order)
+        change = _complete(call[r.COMPLETE], n, fixed, state, before, differences, scale, prescribed_dofs, rule, order)
         statistics[8] = change / factors[2]
         _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
         if (b[r.FIRST_STEP] + step) % every == 0:

@@ -1,4 +1,4 @@
-"""Pairs of unknowns (x, y) of which only one direction is held: a roller on an inclined plane."""
+"""Pairs of unknowns (x, y) of which only one direction is prescribed: a roller on an inclined plane."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at

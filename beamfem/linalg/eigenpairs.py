@@ -18,7 +18,7 @@ _LANCZOS_VECTORS = (1, 3)  # times the usual number
 
 
 class Solver(Protocol):
-    """The factors of a matrix; `solve` leaves directions that are held at zero."""
+    """The factors of a matrix; `solve` leaves constrained directions at zero."""
 
     def solve(self, right: np.ndarray) -> np.ndarray: ...
 

@@ -64,5 +64,5 @@ class SaddleTangent:
         return self.factorised(rotated).solve(right)
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         return self.whole.sparse(rotated)

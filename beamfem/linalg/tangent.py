@@ -54,7 +54,7 @@ class Tangent(Protocol):
         ...
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         ...
 
 
@@ -62,7 +62,7 @@ class Tangent(Protocol):
 class BandFactors:
     """Factors of a band.
 
-    rows: the matrix, inclined rollers held; plain: whether lu may be used, or pivots are needed.
+    rows: the matrix, inclined rollers constrained; plain: whether lu may be used, or pivots are needed.
     """
 
     rows: np.ndarray
@@ -120,7 +120,7 @@ class BandTangent:
         return self.factorised(rotated).solve(right)
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         rows = _held(self.rows, rotated)
         half = rows.shape[1] // 2
         return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
@@ -178,7 +178,7 @@ class SparseTangent:
         return self.factorised(rotated).solve(right)
 
     def sparse(self, rotated: Rotated) -> csr_array:
-        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and held there."""
+        """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
         first, _ = rotated
         if not len(first):
             return csr_array(self.matrix)
@@ -187,8 +187,8 @@ class SparseTangent:
         kept = np.ones(matrix.shape[0])
         kept[first] = 0.0
         keep = dia_array((kept[None], [0]), shape=matrix.shape)
-        held = np.where(kept == 0.0, np.abs(matrix.diagonal()).max(), 0.0)
-        return csr_array(keep @ matrix @ keep + dia_array((held[None], [0]), shape=matrix.shape))
+        diagonal = np.where(kept == 0.0, np.abs(matrix.diagonal()).max(), 0.0)
+        return csr_array(keep @ matrix @ keep + dia_array((diagonal[None], [0]), shape=matrix.shape))
 
 
 def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
@@ -199,7 +199,7 @@ def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
 
 
 def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
-    """Return a band with the normals of inclined rollers held."""
+    """Return a band with the normals of inclined rollers constrained."""
     result, (first, normal) = rows.copy(), rotated
     if len(first):
         hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)

@@ -26,7 +26,7 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
 
 
 def _at_ends(fractions: Sequence[float], elements: int) -> bool:
-    """Tell whether equal elements end at each of the fractions as they are."""
+    """Return whether equal elements end at each of the fractions as they are."""
     return all((fraction * elements).is_integer() for fraction in fractions)
 
 

@@ -194,7 +194,7 @@ class Model:
 
     @property
     def coordinates(self) -> int:
-        """Number of coordinates of the beams, held ones included, shared ones once."""
+        """Number of coordinates of the beams, prescribed ones included, shared ones once."""
         return self._numbered[1]
 
     @cached_property
@@ -285,7 +285,7 @@ def _kind(beam: Beam) -> tuple[Element, Hashable]:
 
 
 def _turns(support: PointSupport) -> bool:
-    """Tell whether a support has to do with the rotation."""
+    """Return whether a support has to do with the rotation."""
     return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 

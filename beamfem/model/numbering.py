@@ -31,7 +31,7 @@ def number_nodes(
 ) -> tuple[list[Nodes], int]:
     """Return the nodes of each grid and the number of coordinates in all.
 
-    angled (m, 2): (grid, node) whose rotation is held or sprung; such a node carries it as an angle.
+    angled (m, 2): (grid, node) whose rotation is prescribed or sprung; such a node carries it as an angle.
     moving, turning (n, 4): pairs (grid, node, grid, node) that move alike, and that turn alike.
     """
     first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])

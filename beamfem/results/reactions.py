@@ -58,14 +58,14 @@ def _supported(system: System) -> set[int]:
 def support_forces(solution: "Solution") -> np.ndarray:
     """Return the generalized forces (steps, n) that supports and springs exert on every coordinate."""
     system, times = loading(solution)
-    held = np.zeros(solution.model.size, dtype=bool)
-    held[list(_supported(system))] = True
+    prescribed = np.zeros(solution.model.size, dtype=bool)
+    prescribed[list(_supported(system))] = True
     springs = system.springs
 
     def forces(p: np.ndarray) -> np.ndarray:
         result = np.zeros(p.shape)
         for row, at in enumerate(times):
-            result[row] = np.where(held, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
+            result[row] = np.where(prescribed, residual(system, p[row], solution.v[row], solution.a[row], at), 0.0)
             np.subtract.at(result[row], springs.dof, springs.stiffness * (p[row, springs.dof] - springs.rest))
         return result
 

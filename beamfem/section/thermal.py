@@ -35,7 +35,7 @@ def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
 
 
 def expands_evenly(section: CrossSection, material: Material | None) -> bool:
-    """Tell whether all of a section has one coefficient of thermal expansion."""
+    """Return whether all of a section has one coefficient of thermal expansion."""
     return len({own.thermal_expansion for own, _ in _parts(section, material)}) == 1
 
 

@@ -1,4 +1,4 @@
-"""Drawings of a model before any solve: what is where, held and loaded."""
+"""Drawings of a model before any solve: geometry, supports and loads."""
 
 from os import PathLike
 from typing import Any

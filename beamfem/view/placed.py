@@ -47,7 +47,7 @@ class PlacedRow:
         return np.array([self.position(forces.beam.at(share)) for share in forces.arc_length / length])
 
     def touches(self, force: Force) -> bool:
-        """Tell whether an arrow's tip touches the beam: inside it, and where the force presses on an end."""
+        """Return whether an arrow's tip touches the beam: inside it, and where the force presses on an end."""
         share = force.point.fraction
         if 0.0 < share < 1.0:
             return True

@@ -115,7 +115,7 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
 
 
 def _shows(start: Condensed, end: Condensed, change: int, symmetric: bool) -> bool:
-    """Tell whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots.
+    """Return whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots.
 
     Of those that are not symmetric only the sign of the determinant counts.
     """

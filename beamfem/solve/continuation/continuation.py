@@ -17,7 +17,7 @@ from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
 
-_SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and held motions are smooth
+_SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and prescribed motions are smooth
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
 _STEEPER = 2.0  # times what loads do per load factor where a path begins, further on
@@ -80,7 +80,7 @@ class Continuation:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights (n + 1,) of the squared changes of y; held coordinates follow the load factor and have none."""
+        """Weights (n + 1,) of the squared changes of y; prescribed coordinates follow the load factor and have none."""
         free = self.system.free_dofs
         result = np.zeros(len(self.scale))
         result[free] = 1.0 / (len(free) * self.scale[free] ** 2)
@@ -94,7 +94,7 @@ class Continuation:
         return float(np.sqrt(self.dot(a, a)))
 
     def hold(self, y: np.ndarray) -> np.ndarray:
-        """Return y with the held coordinates of its load factor."""
+        """Return y with the prescribed coordinates of its load factor."""
         result = y.copy()
         result[self.system.prescribed_dofs] = self.system.prescribed_values(float(y[-1]))
         return result
@@ -103,7 +103,7 @@ class Continuation:
         """Return the normal (n + 1,) of the plane in which a step along a unit tangent is corrected.
 
         It is the tangent; but where the load factor moves supports and grows well, its axis: independent stresses tell
-        the tangent nothing of held coordinates, so that these had better rest during the correction.
+        the tangent nothing of prescribed coordinates, so that these had better rest during the correction.
         """
         moved = bool(np.any(tangent[self.system.prescribed_dofs]))
         if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
@@ -175,14 +175,15 @@ class Continuation:
         stresses: of the geometric tangent, None for those of the state. Raises LinAlgError.
         """
         system, p, at = self.system, y[:-1], float(y[-1])
-        zeros, free, held = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
+        zeros, free, prescribed = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
         width = _SLOPE_WIDTH * self.load_scale
         unbalanced, tangent = linearise(system, p, zeros, zeros, at, STATICS, stresses)
         factors = tangent.factorised(system.rotated)
         balance, along = np.zeros(len(y)), np.zeros(len(y))
         balance[free], _ = factors.correction(unbalanced[free])
         along[free] = factors.solve(-load_slope(system, p, at, width)[free])
-        along[held] = (system.prescribed_values(at + width) - system.prescribed_values(at - width)) / (2.0 * width)
+        change = system.prescribed_values(at + width) - system.prescribed_values(at - width)
+        along[prescribed] = change / (2.0 * width)
         along[-1] = 1.0
         if not (np.isfinite(balance).all() and np.isfinite(along).all()):
             raise LinAlgError("the tangent is singular")
@@ -291,9 +292,9 @@ def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: flo
     system, zeros, scale = line.system, np.zeros(len(p)), line.scale[:-1]
     ends = load_factor, load_factor + width
     forces = [residual(system, p, zeros, zeros, at)[system.free_dofs] for at in ends]
-    held = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
+    prescribed = [system.prescribed_values(at) / scale[system.prescribed_dofs] for at in ends]
     moved = float(np.abs(forces[1] - forces[0]) @ scale[system.free_dofs]) / stiffness
     if system.model.imposing:
         hindered = [imposed_forces(system, system.loads_at(at)) for at in ends]
         moved = max(moved, float(np.max(np.abs(hindered[1] - hindered[0]) * scale)) / stiffness)
-    return max(moved, float(np.max(np.abs(held[1] - held[0]), initial=0.0))) / width
+    return max(moved, float(np.max(np.abs(prescribed[1] - prescribed[0]), initial=0.0))) / width

@@ -84,7 +84,7 @@ def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
 
 
 def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
-    """Tell whether the count between two shares shows that so many eigenvalues have changed their sign before.
+    """Return whether the count between two shares shows that so many eigenvalues have changed their sign before.
 
     False where it does not because they are too close to be told apart. Raises SegmentLostError.
     """

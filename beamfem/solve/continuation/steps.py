@@ -70,7 +70,7 @@ def _deforming(line: Continuation, tangent: np.ndarray) -> float:
 
 
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
-    """Tell whether a step would be lost in the digits of the point."""
+    """Return whether a step would be lost in the digits of the point."""
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
 
 
@@ -105,7 +105,7 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
 
 
 def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:
-    """Tell whether the correction went through states of another count of negative pivots than those of both ends.
+    """Return whether the correction went through states of another count of negative pivots than those of both ends.
 
     So it does from one side of an imperfect bifurcation to the branch on the other side. Where loads follow, only the
     sign of the determinant counts, which an odd number of negative pivots makes negative.

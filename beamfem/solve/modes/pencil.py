@@ -19,7 +19,7 @@ _FELT = 1e-4  # of the work of random forces: what rounded stiffness may be befo
 
 
 def is_symmetric(matrix: csr_array) -> bool:
-    """Tell whether a tangent is symmetric to round-off, which the diagonal measures."""
+    """Return whether a tangent is symmetric to round-off, which the diagonal measures."""
     size = np.sqrt(np.abs(matrix.diagonal()))
     difference = (matrix - matrix.T).tocoo()
     scale = size[difference.row] * size[difference.col]
@@ -57,8 +57,8 @@ class Pencil:
     def balanced_stresses(self) -> Stresses | None:
         """The stress resultants (ne, nq, ns) of each block that balance the loads, as rounded strains may not.
 
-        None in the reference, where rounding is all there is, and where the state is not held by its stiffness: no
-        correction balances it then.
+        None in the reference, where all residuals are round-off, and in states that their stiffness does not
+        stabilise: no correction balances those.
         """
         if np.array_equal(self.p, self.system.reference):
             return None
@@ -134,7 +134,7 @@ class Pencil:
         return shift
 
     def clear_of(self, shift: float) -> bool:
-        """Tell whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
+        """Return whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
 
         What is at an eigenvalue is below it or above by round-off, and its factors lose the others: stiffness is odd in
         the load about a critical point, so that eigenvalues on one side of it are where a shift for the other is.

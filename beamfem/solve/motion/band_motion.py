@@ -28,10 +28,10 @@ class BandMotion:
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
 
-    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+    def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
-        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: rows
+        prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s]; saving: rows
         (steps, 3, n), number of the first step, and how many steps make a row; then x and y (m, 2) of vectors whose
         turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
         """
@@ -46,7 +46,7 @@ class BandMotion:
         states = place, place + 8 * n, place + 16 * n
         assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
         arrays = {
-            record.PRESCRIBED_VALUES: held,
+            record.PRESCRIBED_VALUES: prescribed,
             record.SAVED: saved,
             record.TURN_TABLE: counted,
             record.TURNED_BY: turned_by,
@@ -62,7 +62,7 @@ class BandMotion:
             record.BODY_STRIDE: body[0].size if varying else 0,
             record.LOADS_VARY: int(varying),
             record.NATURALS_VARY: int(varying),
-            record.STEPS: len(held),
+            record.STEPS: len(prescribed),
             record.FIRST_STEP: first,
             record.EVERY: every,
             record.TURN_COUNT: len(counted),

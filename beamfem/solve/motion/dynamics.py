@@ -63,12 +63,12 @@ def simulate(
     acting = courses(system)
     parts = stretches(times, [course for course in acting if course.amplitude])
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
-    held = prescribed_motion(system, ends)
+    prescribed = prescribed_motion(system, ends)
     unresolved = name_unresolved(acting, ends, SIDE * step)
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    state[:3, system.prescribed_dofs] = held[0]
+    state[:3, system.prescribed_dofs] = prescribed[0]
     for dof, normal in system.inclined:
         pair = slice(dof, dof + 2)
         state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
@@ -85,7 +85,7 @@ def simulate(
     further = len(ends) - len(times)
     last = Last((0, state[:3].copy(), record.turned[0].copy()))
     with kept(lambda: _solution(system, times, record, last, further, unresolved)):
-        failed = march(system, integrator, parts, held, state, record, last)
+        failed = march(system, integrator, parts, prescribed, state, record, last)
     solution = _solution(system, times, record, last, further, unresolved)
     if failed is not None:
         raise ConvergenceError(

@@ -67,15 +67,15 @@ def march(
     system: System,
     integrator: GeneralizedAlpha | Integrator,
     parts: tuple[Stretch, ...],
-    held: np.ndarray,
+    prescribed: np.ndarray,
     state: np.ndarray,
     record: Record,
     last: Last,
 ) -> Failure | None:
     """March from p, p', p'' and the auxiliary acceleration (4, n), in place, through stretches of steps.
 
-    held (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: is kept up to date. Return where and
-    why it failed, None where it did not.
+    prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step. Return
+    where and why it failed, or None.
     """
     statistics = record.statistics
     done, row, failed = 0, 0, None
@@ -105,7 +105,7 @@ def march(
                     which = (done + 1, record.every) if part.whole else (1, steps + 1)
                     saving = (record.states, *which, *counting)
                     started = clock.perf_counter()
-                    completed = motion.advance(state, held[row + 1 : row + now + 1], loaded[rows], saving)
+                    completed = motion.advance(state, prescribed[row + 1 : row + now + 1], loaded[rows], saving)
                     spent = clock.perf_counter() - started
                     row, begun = row + completed, begun + completed
                     done += completed if part.whole else 0
@@ -174,7 +174,7 @@ def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarr
 
 
 def initial_acceleration(system: System, state: np.ndarray, time: float, step: float = 0.0) -> np.ndarray:
-    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of held coordinates.
+    """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
 
     Multipliers among p are set as well. step [s]: (M + step D) p'' = what is unbalanced, the mean over a step that
     damping D may leave little of: from p'' itself, which a creeping beam has for an instant only, the

@@ -102,7 +102,7 @@ class OwnSteps:
         p, v, a, _ = state.copy()
         return State(p, v, a, self.time, self.system.model)
 
-    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+    def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' (4, n) in place; return how many steps were completed; see `BandMotion.advance`."""
         saved, first, every, counted, turned, saved_turns = saving
         for step, time in enumerate(times.tolist()):
@@ -122,7 +122,7 @@ class OwnSteps:
                 self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
                 return step
             state[:3] = found
-            state[:3, self.system.prescribed_dofs] = held[step]
+            state[:3, self.system.prescribed_dofs] = prescribed[step]
             state[3] = state[2]
             self.time = time
             state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), time)

@@ -16,7 +16,7 @@ _AT_END = np.arange(5), np.array([-25, 48, -36, 16, -3]) / 12.0, np.array([-5, 1
 
 
 def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
-    """Return values, velocities and accelerations (m + 1, 3, nh) of the held coordinates at times (m + 1,) [s].
+    """Return values, velocities and accelerations (m + 1, 3, nh) of the prescribed coordinates at times (m + 1,) [s].
 
     An acceleration is the mean of u'' under the hat that is 1 at the end of a step and 0 at those beside it: the change
     of the mean velocity from the step before to the step after, over the mean of both steps. So its sum over the steps

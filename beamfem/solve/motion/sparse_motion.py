@@ -47,17 +47,17 @@ class SparseMotion:
         self._multipliers = system.connectors.multipliers
         self._factors: Factorised | None = None
 
-    def advance(self, state: np.ndarray, held: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+    def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
-        held (steps, 3, nh): values of the held coordinates and their rates at the times (steps,) [s]; saving: see
+        prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s]; saving: see
         `BandMotion.advance`.
         """
         saved, first, every, counted, turned, saved_turns = saving
         dofs, statistics = self.system.prescribed_dofs, self.statistics
         for step, time in enumerate(times):
             before = state.copy()
-            if not self._solve(state, before, held[step], float(time)):
+            if not self._solve(state, before, prescribed[step], float(time)):
                 state[:] = before
                 return step
             differences, scale, order = self._differences, self._inverse_scale, statistics[6:8]
@@ -70,26 +70,26 @@ class SparseMotion:
                 saved_turns[(first + step) // every] = turned
         return len(times)
 
-    def _solve(self, state: np.ndarray, before: np.ndarray, held: np.ndarray, time: float) -> bool:
+    def _solve(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
         """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate.
 
         These start from the acceleration of before or from the positions of before, first from what was nearer.
         """
         order = float(self.statistics[6])
         kept = self.statistics[4] >= 0.0 and self._factors is not None
-        if kept and self._iterate(state, before, held, time, order, full=False, fresh=False):
+        if kept and self._iterate(state, before, prescribed, time, order, full=False, fresh=False):
             return True
-        solved = self._iterate(state, before, held, time, order, full=False, fresh=True)
+        solved = self._iterate(state, before, prescribed, time, order, full=False, fresh=True)
         near = -1.0 if order < 0.0 or self.statistics[7] == 0.0 else 0.0  # of the first step nothing is known
         return solved or any(
-            self._iterate(state, before, held, time, low, full=True, fresh=True) for low in (near, -1.0 - near)
+            self._iterate(state, before, prescribed, time, low, full=True, fresh=True) for low in (near, -1.0 - near)
         )
 
     def _iterate(
         self,
         state: np.ndarray,
         before: np.ndarray,
-        held: np.ndarray,
+        prescribed: np.ndarray,
         time: float,
         order: float,
         full: bool,
@@ -106,7 +106,7 @@ class SparseMotion:
         stresses: tuple[np.ndarray, ...] | None = None
         state[:] = before
         dofs = self.system.prescribed_dofs
-        predict(self._size, len(dofs), order, state, before, self._differences, dofs, held, self.rule)
+        predict(self._size, len(dofs), order, state, before, self._differences, dofs, prescribed, self.rule)
         state[0, self._multipliers] = before[0, self._multipliers]
         while iteration < most and not done:
             own = fresh or full or self._factors is None

@@ -93,7 +93,7 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
 
 
 def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
-    """Tell whether a further correction, if they shrink as before, is small against the movement or below a digit."""
+    """Return whether a further correction, if they shrink as before, is small against the movement or below a digit."""
     if correction.stagnates:
         return True
     size, before = correction.size, correction.before

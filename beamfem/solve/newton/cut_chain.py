@@ -41,7 +41,7 @@ class Substructure:
 
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
-    """Tell whether a model is one chain of so many elements, with two cores to work on it."""
+    """Return whether a model is one chain of so many elements, with two cores to work on it."""
     model = system.model
     single = len(model.beams) == 1 and not model.joints and not system.inclined
     return single and system.unknowns.pattern is None and len(system.blocks[0].node) >= elements and usable_cores() > 1

@@ -18,7 +18,7 @@ from beamfem.solve.newton.cut_chain import Substructure
 _NOTHING = np.empty(0)
 T = TypeVar("T")
 
-# a step (n,) of the held coordinates and what it changes in the residual (n,), on the first step only
+# a step (n,) of the prescribed coordinates and what it changes in the residual (n,), on the first step only
 Change = tuple[np.ndarray, np.ndarray] | None
 
 

@@ -49,7 +49,7 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
 
 
 def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
-    """Tell whether two changes of y (n + 1,) go the same way."""
+    """Return whether two changes of y (n + 1,) go the same way."""
     apart = one / line.length(one) - other / line.length(other)
     return line.length(apart) < _ALIKE
 

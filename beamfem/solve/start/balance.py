@@ -1,4 +1,4 @@
-"""Tell whether a state is an equilibrium."""
+"""Check whether a state is an equilibrium."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
 
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
-    """Tell whether a state (n,) balances what acts but for its last digits; where nothing acts, all rows tell."""
+    """Return whether a state (n,) balances what acts but for its last digits; where nothing acts, all rows tell."""
     if not system.loads_at(load_factor).any:
         zeros = np.zeros_like(p)
         left = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))

@@ -109,7 +109,7 @@ def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, Be
 
 
 def _alike(old: BeamMesh, new: BeamMesh) -> bool:
-    """Tell whether two beams have the same nodal vectors at the same places."""
+    """Return whether two beams have the same nodal vectors at the same places."""
     if old.vectors != new.vectors or old.nodes != new.nodes:
         return False
     near = _SAME * new.arc[-1]

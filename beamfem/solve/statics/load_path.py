@@ -122,7 +122,7 @@ class PathFollower:
 
 
 def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:
-    """Tell whether the load factor would not grow any more if the path went on as it did from the point before.
+    """Return whether the load factor would not grow any more if the path went on as it did from the point before.
 
     Where several paths cross in a limit point no step leads over it, as in a bar that softens everywhere at once.
     """

@@ -31,7 +31,7 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
 
 
 def _at_rest(system: System) -> bool:
-    """Tell whether nothing acts yet at load factor 0."""
+    """Return whether nothing acts yet at load factor 0."""
     if _AT_REST not in system.proven:
         # a load that is lost in the round-off of stiff rows may bend the beam all the same
         moved = system.prescribed_changes(0.0).any()
@@ -42,7 +42,7 @@ def _at_rest(system: System) -> bool:
 
 
 def _free_of_force(system: System) -> bool:
-    """Tell whether what users have written, laws of sections and connectors, resists nothing in the reference."""
+    """Return whether what users have written, laws of sections and connectors, resists nothing in the reference."""
     if not system.connectors.items and all(block.law is None for block in system.blocks):
         return True
     p = system.reference
@@ -72,7 +72,7 @@ def _growing(model: Model) -> Model:
 
 
 def _moves(support: PointSupport) -> bool:
-    """Tell whether a support prescribes more than zeros."""
+    """Return whether a support prescribes more than zeros."""
     return any(callable(value) or value != 0.0 for value in support.prescribed().values())
 
 

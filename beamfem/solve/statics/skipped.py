@@ -13,7 +13,7 @@ _SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models are at rest first and 
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
-    """Tell whether a load step to `target` may have gone over limit points.
+    """Return whether a load step to `target` may have gone over limit points.
 
     Either linearised stability expects a critical point before its end. Or the tangent at its start goes far beyond its
     end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
@@ -33,7 +33,7 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:
-    """Tell whether the state half-way has another count with the mean stress resultants of both ends.
+    """Return whether the state half-way has another count with the mean stress resultants of both ends.
 
     Its own would be those of a chord.
     """

@@ -68,7 +68,7 @@ def rest_state(
 
 
 def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
-    """Tell whether two limit points (n + 1,) are the same but for whole turns, which loads that follow may add.
+    """Return whether two limit points (n + 1,) are the same but for whole turns, which loads that follow may add.
 
     Slow loading never lowers the load factor, so that a limit point met again at the same one is where a cycle closes.
     """

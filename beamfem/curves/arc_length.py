@@ -11,14 +11,14 @@ Speed = Callable[[np.ndarray], np.ndarray]
 
 _NODES, _WEIGHTS = (values / 2 for values in np.polynomial.legendre.leggauss(16))
 _NODES = _NODES + 0.5
-# A panel is fine enough where halving it changes its length by less than this share of the whole: its halves, which are
-# kept, are then better by about 2^-32.
+# A panel is fine enough if halving it changes its length by less than this fraction of the total: the halves, which are
+# kept, are then more accurate by a factor of about 2^32.
 _CHANGE = 4e-15
 _HALVINGS = 48
-# a curve shorter than this share of its coordinates is a point and round-off
+# a curve shorter than this fraction of its coordinates is a point and round-off
 _POINT = 1e-13
 _NEWTON = 60
-# a speed below this share of the largest in its span counts as zero: the place of a minimum is known to 1e-8
+# a speed below this fraction of the largest in its span counts as zero: the place of a minimum is known to 1e-8
 _ZERO = 1e-7
 
 
@@ -125,7 +125,7 @@ def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, whe
         begin, end = u[max(i - 1, 0)], u[min(i + 1, len(u) - 1)]
         least, at = values[i], u[i]
         if least > _ZERO * largest[span[i]]:
-            # from `begin`, so that the place is found to a share of the bracket
+            # from `begin`, so that the place is found to a fraction of the bracket
             found = minimize_scalar(
                 lambda step, begin=begin: float(speed(np.array([begin + step]))[0]) ** 2,
                 bounds=(0.0, end - begin),

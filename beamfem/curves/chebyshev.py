@@ -16,8 +16,8 @@ DEGREE = 12
 _FIRST_PANELS = 8
 _HALVINGS = 17
 _MOST_PANELS = 4096  # at once; a corner needs two, noise all that there are
-# A panel is fine enough where its last coefficients, and its error between the nodes, fall to this share of the extent;
-# round-off of the values themselves cannot be asked for.
+# A panel is fine enough if its last coefficients and its error between the nodes are below this fraction of the extent;
+# nothing below the round-off of the values can be reached.
 _SMALL = 1e-14
 _ROUND_OFF = 16 * np.finfo(float).eps
 _BETWEEN_NODES = np.array([-0.77, 0.31])

@@ -1,4 +1,4 @@
-"""What every curve can be asked, and what the kinds of curve share."""
+"""What every curve can be asked, and what the kinds of curve have in common."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
@@ -10,7 +10,7 @@ from beamfem.validation import finite, items, vector
 # A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
 CORNER = 1e-8
 
-# Ends that meet may be apart by this share of the length, as drawings rounded to 6 decimals leave them.
+# Ends that meet may be apart by this fraction of the length, as drawings rounded to 6 decimals leave them.
 GAP = 1e-5
 
 

@@ -9,8 +9,8 @@ from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
 from beamfem.validation import shown
 
-# Largest distance between two splines, as a share of their largest coordinate (times the ratio of neighbouring spans),
-# up to which they are the same: about a hundred times the round-off that was measured.
+# Two splines are the same up to this distance, as a fraction of their largest coordinate (times the ratio of
+# neighbouring spans): about a hundred times the measured round-off.
 _SAME = 1e-13
 
 

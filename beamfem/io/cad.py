@@ -15,7 +15,7 @@ from beamfem.extras import needed_for
 from beamfem.files import readable
 from beamfem.validation import nearest, optional, text
 
-# distance from the plane z = 0, tilt against it and length of a piece that count as none, as a share of the coordinates
+# distance from the plane z = 0, tilt and length of a piece that count as zero, as a fraction of the coordinates
 _FLAT = 1e-9
 # below this bulge the center of an arc is so far away that a rational parabola is the more accurate circle
 _SMALL_BULGE = 1e-4

@@ -137,12 +137,12 @@ def _curve(points: Sequence[tuple[float, float]], cells: Sequence[Sequence[int]]
         return Line(first, last)
     a, b, between = np.array([first, last, points[middle]])
     chord, inner = b - a, between - a
-    share = inner @ chord / (chord @ chord)
+    fraction = inner @ chord / (chord @ chord)
     if abs(inner[0] * chord[1] - inner[1] * chord[0]) <= _STRAIGHT * (chord @ chord):
-        if not 0.25 < share < 0.75:
+        if not 0.25 < fraction < 0.75:
             raise InputError(
-                f"line {cell} (counted from 0) turns back: its middle node stands at {share:g} of the way between its "
-                "ends and must be between 0.25 and 0.75"
+                f"line {cell} (counted from 0) turns back: its middle node stands at {fraction:g} of the way between "
+                "its ends and must be between 0.25 and 0.75"
             )
         return Line(first, last)
     control = 2.0 * between - 0.5 * (a + b)

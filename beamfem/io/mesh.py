@@ -18,7 +18,7 @@ from beamfem.io.touching import divided, merged, parts_of, warn_of_gaps
 from beamfem.material import Material
 from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
 
-# distance from the plane z = 0 and length of a line that count as none, as a share of the size of the mesh
+# distance from the plane z = 0 and length of a line that count as none, as a fraction of the size of the mesh
 _SAME = 1e-9
 _SHORT = 1e-2  # of the shortest line: nodes further apart than this are two
 _GAPS = 30.0  # times the distance that is closed: wider gaps are meant

@@ -72,7 +72,7 @@ def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
 
 
 def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return cell, node and share of the way (n,) of ends that lie on a line between its own ends."""
+    """Return cell, node and fraction of the way (n,) of ends that lie on a line between its own ends."""
     from scipy.spatial import cKDTree  # slow to import
 
     ends = np.unique(cells[:, :2])

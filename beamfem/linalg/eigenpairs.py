@@ -111,7 +111,7 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
     values, x = first_that_works(dense, few, n, count + 1)
     order = np.argsort(-np.abs(values), kind="stable")[:count]
     values, x = values[order], x[:, order]
-    # Wielandt: deflation leaves the other values, and adds a share of the known directions to their vectors
+    # Wielandt: deflation leaves the other values, and adds components along the known directions to their vectors
     fractions = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
     return values, x + known[1] @ fractions
 
@@ -135,5 +135,5 @@ def lanczos_vectors(times: int, count: int, n: int) -> int:
 
 
 def first_vector(n: int) -> np.ndarray:
-    """Return a start of the iteration that is the same in every run and has a share of every mode."""
+    """Return a start of the iteration that is the same in every run and has a component along every mode."""
     return np.random.default_rng(0).standard_normal(n)

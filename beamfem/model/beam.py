@@ -65,8 +65,8 @@ class Beam:
         if not self.prismatic:
             function_of_one("section", self.section, "arc length")
         require_law_fits(self)
-        for share in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
-            section = self.section_at(share * self.curve.length)
+        for fraction in (0.0,) if self.prismatic else (0.0, 0.5, 1.0):
+            section = self.section_at(fraction * self.curve.length)
             require_magnitudes(self, section)
             retardation_time(section, self.material)
 
@@ -185,9 +185,9 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
             result[i] = points[i].reference
     if straight:
         own, lines = zip(*straight, strict=True)
-        share = np.array([points[i].fraction for i in own])[:, None]
+        fraction = np.array([points[i].fraction for i in own])[:, None]
         start, end = np.array([line.start for line in lines]), np.array([line.end for line in lines])
-        result[list(own)] = (1.0 - share) * start + share * end
+        result[list(own)] = (1.0 - fraction) * start + fraction * end
     return result
 
 

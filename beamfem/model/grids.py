@@ -41,8 +41,8 @@ def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[
     arc = np.empty((len(beams), node[-1, -1] + 1))
     arc[:, node] = vertices[:, :-1, None] + np.diff(vertices)[:, :, None] * field.nodes
     arc[:, -1] = vertices[:, -1]
-    share = (arc / length)[:, :, None]
-    position = (1.0 - share) * start + share * end
+    fraction = (arc / length)[:, :, None]
+    position = (1.0 - fraction) * start + fraction * end
     tangent = np.repeat((end - start) / length[:, :, None], arc.shape[1], axis=1)
     speed = np.ones(arc.shape[1])
     parts = zip(beams, vertices, arc, position, tangent, strict=True)

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.section.protocol import CrossSection
 
-_SAME = 1e-9  # share of the length within which an arc length is one that was saved
+_SAME = 1e-9  # fraction of the length within which an arc length is one that was saved
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class SampledSection:
 
 
 def _between(low: Any, high: Any, fraction: float) -> Any:
-    """Return the same object with numbers at a share of the way from one to the other; ValueError if they differ."""
+    """Return the same object with numbers at a fraction of the way from one to the other; ValueError if they differ."""
     if is_dataclass(low) and not isinstance(low, type) and type(low) is type(high):
         names = [field.name for field in fields(low)]
         return replace(low, **{name: _between(getattr(low, name), getattr(high, name), fraction) for name in names})

@@ -40,8 +40,9 @@ class BeamStress:
     lower, upper: along the beam at the two faces; tension, compression: the largest and the smallest along the beam
     over the height, at the faces of layers too; shear: the largest size over the height; von_mises: the largest
     sqrt(sigma^2 + 3 tau^2) over the height, of the faces alone where the shear stress inside is not known; utilisation
-    [-]: the largest share of the strength of the material there, nan where none is given (`Material`). Cauchy's stress,
-    as in `Fields`; nan where a section tells none. Between the two faces of a layer seven more heights are looked at.
+    [-]: the largest ratio of stress to the strength of the material there, nan where none is given (`Material`). Cauchy
+    stress, as in `Fields`; nan for sections that give none. Seven more heights are evaluated between the faces of a
+    layer.
     """
 
     arc_length: np.ndarray
@@ -110,7 +111,7 @@ def _of_rows(
         along = own.normal_stress(layer, y, normal, moment) + self_stress(solution, mesh, element, xi, layer, y, rows)
         sheared = own.shear_stress(layer, y, shear)
         equivalent = von_mises(along, sheared)
-        share = equivalent / strengths(mesh, element, xi, layer)[:, None]
+        fraction = equivalent / strengths(mesh, element, xi, layer)[:, None]
         found = {
             "lower": along[..., 0],
             "upper": along[..., -1],
@@ -119,7 +120,7 @@ def _of_rows(
             "shear": np.abs(sheared).max(axis=-1),
             # where the width inside is not known, nor is the shear stress there: the faces, without any, still count
             "von_mises": np.fmax.reduce(equivalent, axis=-1),
-            "utilisation": np.fmax.reduce(share, axis=-1),
+            "utilisation": np.fmax.reduce(fraction, axis=-1),
         }
         # a layer that a section has not is its upper face
         extremes = {name: _joined(name, extremes[name], found[name]) for name in found} if extremes else found

@@ -122,7 +122,7 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
 
 
 def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:
-    """Sum values (steps, m, ...) over m with the shares (points, m) of them."""
+    """Sum values (steps, m, ...) over m with weights (points, m)."""
     flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
     found = (fraction @ flat).reshape(fraction.shape[0], len(values), *values.shape[2:])
     return np.asarray(np.moveaxis(found, 0, 1))

@@ -1,4 +1,4 @@
-"""Models that are crooked by a share of a mode from the start, and free of stress so."""
+"""Models with geometric imperfections: a multiple of a mode, free of stress."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, is_dataclass, replace

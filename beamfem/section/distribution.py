@@ -9,7 +9,7 @@ from beamfem.section.law import SectionLaw
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import CrossSection, HasParts
 
-_SAME = 1e-12  # share of the height within which a height is that of a face
+_SAME = 1e-12  # fraction of the height within which a height is that of a face
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,7 +69,7 @@ def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[An
 
 
 def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:
-    """Return an arrow [pixels]: small forces are longer than their share, so that they are seen."""
+    """Return an arrow [pixels]: small forces are longer than to scale, so that they are seen."""
     size = float(np.linalg.norm(vector))
     return np.asarray(vector / size * max(_LONGEST * np.sqrt(size / largest), _SHORTEST))
 

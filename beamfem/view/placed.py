@@ -44,13 +44,13 @@ class PlacedRow:
     def along(self, forces: ForcesAlong) -> np.ndarray:
         """Return where forces along a beam are (n, 2) [m]."""
         length = forces.beam.curve.length
-        return np.array([self.position(forces.beam.at(share)) for share in forces.arc_length / length])
+        return np.array([self.position(forces.beam.at(fraction)) for fraction in forces.arc_length / length])
 
     def touches(self, force: Force) -> bool:
         """Return whether an arrow's tip touches the beam: inside it, and where the force presses on an end."""
-        share = force.point.fraction
-        if 0.0 < share < 1.0:
+        fraction = force.point.fraction
+        if 0.0 < fraction < 1.0:
             return True
         slope = self.slope(force.point)
-        outward = slope if share == 1.0 else -slope
+        outward = slope if fraction == 1.0 else -slope
         return bool(force.vector @ outward < -0.3 * np.linalg.norm(force.vector) * np.linalg.norm(slope))

@@ -108,7 +108,7 @@ class Shapes:
         return len(self.rows) * sum(len(points.xi) for points in self.points) <= _SLABS
 
     def draw(self, axes: Any, order: int, fraction: float = 1.0) -> list[Any]:
-        """Draw the shape of the row number `order`; share: 0 for a pale one, 1 for a strong one. Return the artists."""
+        """Draw the shape of the row number `order`; fraction: from 0 for pale to 1 for strong. Return the artists."""
         return self._by_field(axes, order, fraction) if self.colour else self._plain(axes, order, fraction)
 
     def _plain(self, axes: Any, order: int, fraction: float) -> list[Any]:

@@ -11,7 +11,7 @@ from beamfem.model.beam import Beam, Point
 from beamfem.model.model import Model
 from beamfem.validation import nearest
 
-_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<share>[^()]+?)\s*\))")
+_POINT = re.compile(r"(?P<beam>.+?)\.(?:(?P<end>start|end)|at\(\s*(?P<fraction>[^()]+?)\s*\))")
 _SET = re.compile(r"(?P<frame>[^.]+)\.(?P<set>.+)")
 
 
@@ -78,12 +78,12 @@ class Places:
         if not found:
             raise table.error(f'must be a point such as "NAME.start", "NAME.end" or "NAME.at(0.5)", got "{text}"', key)
         try:
-            if found["beam"] in self.frames and found["share"]:
-                return self.frames[found["beam"]].at(*_numbers(table, key, found["share"], 2))
+            if found["beam"] in self.frames and found["fraction"]:
+                return self.frames[found["beam"]].at(*_numbers(table, key, found["fraction"], 2))
             beam = self._beam(table, key, found["beam"])
             if found["end"]:
                 return beam.start if found["end"] == "start" else beam.end
-            return beam.at(*_numbers(table, key, found["share"], 1))
+            return beam.at(*_numbers(table, key, found["fraction"], 1))
         except InputError as error:
             raise table.error(getattr(error, "message", str(error)), key) from None
 

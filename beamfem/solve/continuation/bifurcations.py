@@ -16,7 +16,7 @@ from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, t
 
 _BESIDE = 1e-3  # of a segment: how far from a limit point signs of pivots and positions are trusted
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
-_JUMP = 1e-3  # of a segment: points that stay further apart however close their shares are lie on two paths
+_JUMP = 1e-3  # of a segment: points that stay further apart however close their fractions are lie on two paths
 _DISTANCE = 5e-3  # of the part of a segment that is searched: samples are no closer to a bifurcation
 _TOGETHER = 4.0  # of the distance: bifurcations closer than this are found together
 _SHARPNESS = 1e-5  # of a segment: parts that are not divided further
@@ -29,7 +29,7 @@ _GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiff
 def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
     """Return where the tangent is singular but the load factor has no extremum, or one as another path crosses.
 
-    In order; several modes that lose their stiffness at one point make as many bifurcations. limits: shares of the
+    In order; several modes that lose their stiffness at one point make as many bifurcations. limits: fractions of the
     limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
@@ -80,7 +80,7 @@ def _require_one_path(segment: Segment, start: float, end: float) -> None:
 
 
 def _together(segment: Segment, start: float, end: float, change: int) -> list[Crossing] | float:
-    """Return the bifurcations between two shares if they lie close together, or a share to divide the part at."""
+    """Return the bifurcations between two fractions if they lie close together, or a fraction to divide the part at."""
     line, middle, distance = segment.line, 0.5 * (start + end), _DISTANCE * (end - start)
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
@@ -137,7 +137,7 @@ def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarra
 
 
 def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[float, float]) -> np.ndarray:
-    """Return the shares where the polynomial through the stiffnesses at `shares` is singular, ascending.
+    """Return the fractions where the polynomial through the stiffnesses at `fractions` is singular, ascending.
 
     One of each eigenvalue that changes its sign, the nearest to the samples.
     """

@@ -21,7 +21,7 @@ _SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digit
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
 _STEEPER = 2.0  # times what loads do per load factor where a path begins, further on
-_GROWS_WELL = 0.3  # share of the load factor in the unit tangent
+_GROWS_WELL = 0.3  # fraction of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
 _STILL = 1e-7  # of a mode: what an iteration may still turn it by
 

@@ -26,9 +26,9 @@ class SegmentLostError(Exception):
 
 @dataclass(eq=False)
 class Segment:
-    """The path between two of its points, by the share x of the chord from one to the other.
+    """The path between two of its points, by the fraction x of the chord from one to the other.
 
-    turned: shares where the load factor has an extremum because another path crosses, filled by `limit_points`.
+    turned: fractions where the load factor has an extremum because another path crosses, filled by `limit_points`.
     """
 
     line: Continuation
@@ -47,7 +47,7 @@ class Segment:
         self.slopes = [point.tangent * squared / self.line.dot(point.tangent, self.chord) for point in points]
 
     def at(self, x: float, normal: np.ndarray | None = None) -> PathPoint:
-        """Return the point of the path at a share x in [0, 1]; normal: of the plane it is sought in, if not the chord.
+        """Return the point of the path at a fraction x in [0, 1]; normal: of the plane of the search, default the chord.
 
         Raises SegmentLostError.
         """
@@ -67,7 +67,7 @@ class Segment:
         return point
 
     def critical(self, x: float) -> np.ndarray:
-        """Return y (n + 1,) at the share of a limit point. Raises SegmentLostError.
+        """Return y (n + 1,) at the fraction of a limit point. Raises SegmentLostError.
 
         Interpolated where more than the load factor is critical and no equilibrium can be solved for.
         """
@@ -127,9 +127,9 @@ class Segment:
         )
 
     def limit_points(self) -> list[float]:
-        """Return the shares x where the load factor has an extremum, in order. Raises SegmentLostError.
+        """Return the fractions x where the load factor has an extremum, in order. Raises SegmentLostError.
 
-        Where another path crosses at an extremum, it is a bifurcation: its share goes to `turned`.
+        Where another path crosses at an extremum, it is a bifurcation: its fraction goes to `turned`.
         """
         stops = [0.0, 1.0]
         hidden = self._hidden_extremum()
@@ -160,7 +160,7 @@ class Segment:
         return bool(abs(one - other) < _EVEN * max(abs(one), abs(other)))
 
     def change(self, start: float, end: float) -> int:
-        """Return how many eigenvalues of the tangent more are negative at one share than at another.
+        """Return how many eigenvalues of the tangent more are negative at one fraction than at another.
 
         Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 where it differs.
         """
@@ -168,7 +168,7 @@ class Segment:
         return change if self.symmetric else change % 2
 
     def beside(self, low: float, high: float, distance: float, start: float, end: float) -> np.ndarray:
-        """Return shares in [start, end] that keep a distance from [low, high], two on each side if there is room."""
+        """Return fractions in [start, end] that keep a distance from [low, high], two on each side if there is room."""
         steps = distance * np.arange(1.0, 5.0)
         left, right = low - steps, high + steps
         left, right = left[left >= start], right[right <= end]
@@ -176,7 +176,7 @@ class Segment:
         return np.sort(np.append(left[:on_left], right[: max(2, 4 - len(left))]))
 
     def _extremum(self, start: float, end: float) -> tuple[float, bool]:
-        """Return the share between two others where the load factor has its extremum, and whether a path crosses there.
+        """Return the fraction between two others at which the load factor is extreme, and whether a path crosses there.
 
         A limit point changes the sign of one pivot. Where none changes, stiffness vanishes on both sides of the point
         as on a branch that comes back to the path it left: equilibria beside it are found, at it they are not.
@@ -195,7 +195,7 @@ class Segment:
         return x, False
 
     def _extremum_between(self, start: float, end: float) -> tuple[float, np.ndarray]:
-        """Return the share where the slope of the load factor vanishes, from shares at a distance, and those."""
+        """Return the fraction where the slope of the load factor vanishes, from fractions at a distance, and those."""
         samples = np.array([start, end])
         x = _zero([self.at(at).tangent[-1] for at in samples], samples)
         for _ in range(_TRIALS):

@@ -25,7 +25,7 @@ _BESIDE = 5e-3  # of a segment: samples around a turning point
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """A bifurcation: its share x of the segment, y (n + 1,), the tangent of the path and the unit mode."""
+    """A bifurcation: its fraction x of the segment, y (n + 1,), the tangent of the path and the unit mode."""
 
     fraction: float
     y: np.ndarray
@@ -35,7 +35,7 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Shares (s,) of a segment around bifurcations at a distance, the tangents condensed there, one share before them.
+    """Fractions (s,) of a segment around bifurcations, the tangents condensed there, and one fraction before them.
 
     change: how many eigenvalues of the tangent more are negative behind them.
     """
@@ -60,16 +60,16 @@ class Samples:
         return np.array([one.shapes for one in self.condensed])
 
     def stiffness(self, x: float) -> np.ndarray:
-        """Return the condensed tangent (k, k) at a share."""
+        """Return the condensed tangent (k, k) at a fraction."""
         return self.at(x, np.array([one.stiffness for one in self.condensed]))
 
     def at(self, x: float, values: np.ndarray) -> np.ndarray:
-        """Return values (s, ...) at the samples, interpolated at a share."""
+        """Return values (s, ...) at the samples, interpolated at a fraction."""
         return np.tensordot(interpolation_weights(self.fractions, x), values, axes=1)
 
 
 def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
-    """Return the bifurcations at shares (k,), ascending, where condensed tangents are singular.
+    """Return the bifurcations at fractions (k,), ascending, where condensed tangents are singular.
 
     Between any two of them the count of negative pivots must have changed by as many as lie before; where they are too
     close for that, they are one place with as many modes. Raises SegmentLostError.
@@ -84,7 +84,7 @@ def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
 
 
 def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
-    """Return whether the count between two shares shows that so many eigenvalues have changed their sign before.
+    """Return whether the count between two fractions shows that so many eigenvalues have changed their sign before.
 
     False where it does not because they are too close to be told apart. Raises SegmentLostError.
     """
@@ -103,7 +103,7 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
 
 
 def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
-    """Return the bifurcation at a share with each of `count` modes, orthonormal. Raises SegmentLostError."""
+    """Return the bifurcation at a fraction with each of `count` modes, orthonormal. Raises SegmentLostError."""
     line = samples.segment.line
     values, vectors = np.linalg.eigh(samples.stiffness(x))
     lost = vectors[:, np.argsort(np.abs(values), kind="stable")[:count]]
@@ -133,7 +133,7 @@ def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.nda
 def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float) -> None:
     """Raise SegmentLostError where the way of a path along the mode is a hyperbola: it bends aside, it is not crossed.
 
-    rate: of the stiffness of the mode over the share. Forces that were left unbalanced bend the path aside as well.
+    rate: of the stiffness of the mode over the fraction. Forces that were left unbalanced bend the path aside as well.
     """
     line = samples.segment.line
     fractions = (samples.fractions - x) / samples.distance
@@ -147,7 +147,7 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
 
 
 def turning(segment: Segment, x: float) -> Crossing:
-    """Return the bifurcation at a share where the load factor turns because another path crosses.
+    """Return the bifurcation at a fraction where the load factor turns because another path crosses.
 
     There the path goes along the mode. Raises SegmentLostError.
     """
@@ -167,7 +167,7 @@ def turning(segment: Segment, x: float) -> Crossing:
 
 
 def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:
-    """Return the bifurcations around a limit point at a share x, of which one or one mode is the limit point itself.
+    """Return the bifurcations around a limit point at a fraction x, of which one or one mode is the limit point itself.
 
     There the path goes along the mode. Raises SegmentLostError.
     """

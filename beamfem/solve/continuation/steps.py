@@ -24,7 +24,7 @@ _LARGEST_INCREASE = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step: the segment, the shares of its limit points, its bifurcations, and the length of the next."""
+    """An accepted step: the segment, the fractions at its limit points, its bifurcations, length of the next step."""
 
     segment: Segment
     limits: list[float]

@@ -78,7 +78,7 @@ def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: 
 
 
 def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, m) after inverse iterations, without their shares of known ones (n, k)."""
+    """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k)."""
     factors, own = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
     for _ in range(_SOLVES):
         own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
@@ -87,7 +87,7 @@ def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.nda
 
 
 def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, m) without their shares of known ones (n, k), and with x^T M x = 1."""
+    """Return vectors (n, m) without their components along known ones (n, k), and with x^T M x = 1."""
     vectors = vectors - known @ (known.T @ (pencil.mass @ vectors))
     return np.asarray(vectors / np.sqrt((vectors * (pencil.mass @ vectors)).sum(axis=0)))
 

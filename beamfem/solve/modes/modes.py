@@ -30,7 +30,7 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_REAL = 1e-8  # imaginary parts of lambda below this share are round-off
+_REAL = 1e-8  # imaginary parts of lambda below this fraction are round-off
 _SPARE = 4  # eigenvalues found beyond those asked for
 
 

@@ -66,7 +66,7 @@ class Newton:
         convert(self, flag, "independent_stresses")
         if max(self.tolerance, self.residual_tolerance) >= 1.0:
             raise InputError(
-                "tolerance and residual_tolerance of Newton are shares of the model and of its loads, below 1, got "
+                "tolerance and residual_tolerance of Newton are fractions of the model and of its loads, below 1, got "
                 f"{self.tolerance:g} and {self.residual_tolerance:g}"
             )
 

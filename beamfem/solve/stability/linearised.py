@@ -53,7 +53,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
 
 
 def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
-    """Return a basis (unknown, m) of the shapes that lose the largest shares of their stiffness per load.
+    """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
     The tangent's inverse times -K' is not symmetric, but sums of large parts that cancel appear nowhere.
     """

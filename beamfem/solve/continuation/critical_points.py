@@ -47,7 +47,7 @@ class Segment:
         self.slopes = [point.tangent * squared / self.line.dot(point.tangent, self.chord) for point in points]
 
     def at(self, x: float, normal: np.ndarray | None = None) -> PathPoint:
-        """Return the point of the path at a fraction x in [0, 1]; normal: of the plane of the search, default the chord.
+        """Return the point of the path at a fraction x in [0, 1]; normal: of the plane to search, or the chord.
 
         Raises SegmentLostError.
         """

@@ -46,7 +46,8 @@ class Buckling:
     or "limit point", the largest load factor of the path, with which it ends; linearised (k,), k <= count: where it
     would be singular if the path went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (m, n):
     critical shapes over all coordinates, their largest displacement of a node 1; states (m, n): the equilibria at
-    `load_factors`; uncertainty (m,): relative error of a load factor by round-off and interpolation; ended: why there are no more; status: STOPPED where the path was lost, or too long, before that could be known.
+    `load_factors`; uncertainty (m,): relative error of a load factor by round-off and interpolation; ended: why
+    there are no more; status: STOPPED where the path was lost, or too long, before that could be known.
     """
 
     model: Model

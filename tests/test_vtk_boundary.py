@@ -99,11 +99,13 @@ def test_vertices_are_where_the_beam_is(tmp_path):
 
 def test_supports_at_one_point_are_one_vertex(tmp_path):
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SECTION, MATERIAL)
+    near = beam.at(0.1 + 0.2), beam.at(0.3)  # one node, two fractions
     supports = [bf.Clamp(beam.start), bf.Roller(beam.end, (0.6, 0.8)), bf.Spring(beam.end, (0.0, 50.0))]
+    supports += [bf.Spring(point, (10.0, 10.0)) for point in near]
     model = bf.Model([beam], supports, [bf.PointForce(beam.at(0.5), (0.0, -20.0))])
     solution = bf.solve_static(model)
     _, data, kind, _ = boundary(solution, tmp_path)
-    assert kind.tolist() == ["Clamp", "Roller + Spring", "PointForce"]
+    assert kind.tolist() == ["Clamp", "Roller + Spring", "Spring", "PointForce"]
     assert data["prescribed"][1] == pytest.approx([0.6, 0.8, 0.0])
     assert data["force"].sum(axis=0) == pytest.approx(0.0, abs=1e-9)
 

@@ -71,10 +71,11 @@ def _along(model: Model, beam: Beam) -> tuple[BeamMesh, np.ndarray, np.ndarray]:
 
 def _supports(model: Model) -> Iterator[Vertices]:
     """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
-    at_point: dict[tuple[int, float], list[PointSupport]] = {}
+    at_node: dict[tuple[int, int], list[PointSupport]] = {}
     for support in model.point_supports:
-        at_point.setdefault((id(support.point.beam), support.point.fraction), []).append(support)
-    for supports in at_point.values():
+        own, fraction = support.point.beam, support.point.fraction
+        at_node.setdefault((id(own), model.mesh_of(support.point).node_at(fraction)), []).append(support)
+    for supports in at_node.values():
         kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
         fixed = _fixed(supports)
         place = _at(model, supports[0].point)

@@ -279,7 +279,7 @@ class Solution:
         fields: Sequence[str] | None = None,
         single: bool = False,
     ) -> None:
-        """Write body and centreline for ParaView, all fields or some; `path` ends in .pvd or .vtkhdf, its default."""
+        """Write bodies, centrelines, supports and loads for ParaView; `path` ends in .pvd or .vtkhdf, the default."""
         offered(Solution.to_vtk)(self, path, geometry=geometry, fields=fields, single=single)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:

@@ -60,7 +60,7 @@ class Results(_OfAny):
 
 @dataclass(frozen=True)
 class Vtk(_OfAny):
-    """Bodies and centrelines for ParaView (.pvd, .vtkhdf); every: so many-th state."""
+    """Bodies, centrelines, supports and loads for ParaView (.pvd, .vtkhdf); every: every n-th state."""
 
     file: Path
     geometry: Literal["deformed", "reference"] = "deformed"

@@ -1,4 +1,4 @@
-"""One curve of a convergence study: values over refinement and what they say."""
+"""One curve of a convergence study: values over refinement, and what follows from them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,13 +21,14 @@ from beamfem.convergence.orders import (
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values (n,) of one combination of the other parameters, from coarse to fine; failed points are left out.
+    """Values (n,) of one combination of the other parameters, from coarse to fine, without failed points.
 
-    size h (n,): 1/refinement of counts, the refinement itself of step sizes. error (n,): against `limit`, relative
-    where that is not zero; nan where the value is the limit itself. order (n,): of each point and the one before it.
-    gci (n,): grid convergence index, Roache. fit: order of the asymptotic part with its band, None where there is
-    none. estimated_error: of the finest value, nan where nothing can be said; notes tell what it stands on.
-    others: the function's other numbers (n,) by name. texts: what the varied parameters are called.
+    size h (n,): 1/refinement for counts, the refinement itself for step sizes. error (n,): from `limit`, relative
+    unless that is zero; nan if the value is the limit itself. order (n,): between each point and the one before it. gci
+    (n,): grid convergence index, Roache. fit: order of the asymptotic part with its confidence band, or None.
+    estimated_error: that of the finest value, nan if unknown; notes say what it is based on. others: the other numbers
+    (n,) of the function by name.
+    texts: the varied parameters as text.
     """
 
     refinement: tuple[Any, ...]
@@ -51,9 +52,9 @@ class Curve:
 def judge(
     refinement: tuple[Any, ...], size: np.ndarray, value: np.ndarray, reference: float | None, highest: float
 ) -> Curve:
-    """Return errors, orders, index and the fitted order of at least one value, without names and seconds.
+    """Return errors, orders, index and fitted order of one or more values, without names and seconds.
 
-    highest: no order above it is believed.
+    highest: orders above it are not accepted.
     """
     found = extrapolate(size, value, highest) if reference is None else Extrapolation(reference, np.nan, True, "")
     error = errors(value, found.limit)
@@ -81,7 +82,7 @@ def judge(
 def _notes(
     refinement: tuple[Any, ...], size: np.ndarray, error: np.ndarray, fit: OrderFit | None, highest: float
 ) -> list[str]:
-    """What is to be said of errors against a reference."""
+    """Return the notes on errors from a reference."""
     hits = [refinement[i] for i in np.flatnonzero(chance_hits(size, error, highest))]
     notes = [f"the error at {', '.join(map(str, hits))} is small by chance and left out of the order"] if hits else []
     if clean_points(size, error, highest) < len(error):

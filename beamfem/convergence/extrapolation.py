@@ -1,8 +1,8 @@
-"""The limit of values over falling sizes, and an estimate of the error of the finest that does not trust accidents.
+"""The limit of values over decreasing sizes, and an error estimate of the finest value that does not rely on accidents.
 
-An order is believed where two triples of values agree on it. All else is bounded by the changes between levels: the
-error of the finest value is at most its size times the steepest of the last changes, |q(h) - q(0)| <= h max |dq/dh|,
-as long as the steepness does not grow towards size 0.
+An order is accepted if two triples of values agree on it. Otherwise the changes between levels bound the error: that of
+the finest value is at most its size times the steepest of the last slopes, |q(h) - q(0)| <= h max |dq/dh|, as long as
+the slope does not grow towards size 0.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ _AGREE = 0.25  # orders of two triples that differ by less agree: they are still
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """Limit of values for size 0, the relative error of the finest value (nan where nothing can be said), and how.
+    """Limit of values for size 0, the relative error of the finest value (nan if unknown), and how they were found.
 
     settled: whether the limit is more than a guess.
     """
@@ -39,7 +39,7 @@ class Extrapolation:
 
 @dataclass(frozen=True)
 class _Triple:
-    """What three values in a row say: order (nan where they show none), limit, and whether they bracket the limit."""
+    """Result of three successive values: order (nan if they show none), limit, and whether they bracket the limit."""
 
     order: float
     limit: float
@@ -49,11 +49,10 @@ class _Triple:
 def extrapolate(h: np.ndarray, q: np.ndarray, highest: float = HIGHEST_ORDER) -> Extrapolation:
     """Return the limit of values q (n,) over sizes h (n,) and the estimated error of the finest.
 
-    Where the last two triples (and, less strictly, the third) agree on an order that is not above the highest: the
-    Richardson limit, and for error the distance to it plus what the limits of the two triples differ by; the last
-    change where values lie on either side of the limit in turn.
-    Where there are three values, or the triples differ: the changes between levels. No estimate (nan) where values run
-    away or turn, and of fewer than three.
+    If the last two triples (and, less strictly, the third) agree on an order that does not exceed the highest: the
+    Richardson limit; the error is the distance to it plus the difference between the limits of the two triples, or the
+    last change if values alternate about the limit. With three values, or if the triples differ: the changes between
+    levels. No estimate (nan) if values diverge or turn, and from fewer than three.
     """
     finest = float(q[-1])
     if len(q) < 3:
@@ -85,7 +84,7 @@ def _triple(h: np.ndarray, q: np.ndarray, highest: float) -> _Triple:
 
 
 def _agree(triples: list[_Triple]) -> bool:
-    """Whether the last two show one order within a quarter, and the one before them, if any, within half."""
+    """Return whether the last two orders agree within a quarter, and the one before them, if any, within half."""
     if len({triple.brackets for triple in triples}) > 1 or len(triples) < 2:
         return False
     orders = [triple.order for triple in triples[::-1]]
@@ -94,7 +93,7 @@ def _agree(triples: list[_Triple]) -> bool:
 
 
 def _bounded(h: np.ndarray, q: np.ndarray, change: np.ndarray, triples: list[_Triple], highest: float) -> Extrapolation:
-    """Return the estimate that the last changes (2 or 3,) between levels give, and why it is no better one."""
+    """Return the estimate from the last changes (2 or 3,) between levels, and why there is no better one."""
     finest, last = float(q[-1]), triples[-1]
     scale = scale_of(finest, q)
     rises = np.diff(change) >= 0.0

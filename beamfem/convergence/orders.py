@@ -1,7 +1,7 @@
 """Observed order of values or errors over sizes, and the grid convergence index.
 
-Sizes h (n,) fall, values q (n,) belong to them. Sources: P. J. Roache, Verification and Validation in Computational
-Science and Engineering, 1998; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001 for ratios that vary.
+Sizes h (n,) decrease, with values q (n,). Sources: P. J. Roache, Verification and Validation in Computational Science
+and Engineering, 1998; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001 for varying ratios.
 """
 
 from collections.abc import Callable
@@ -32,7 +32,7 @@ class OrderFit:
 
 
 def order_of_three(h: np.ndarray, q: np.ndarray) -> float:
-    """Solve (q1 - q2)/(q2 - q3) = (h1^p - h2^p)/(h2^p - h3^p) for p > 0; nan where the values do not close in."""
+    """Solve (q1 - q2)/(q2 - q3) = (h1^p - h2^p)/(h2^p - h3^p) for p > 0; nan if the values do not converge."""
     coarse, fine = q[0] - q[1], q[1] - q[2]
     up, down = np.log(h[0] / h[1]), np.log(h[2] / h[1])
     if fine == 0.0 or coarse / fine <= up / -down:  # the right side for p -> 0
@@ -41,7 +41,7 @@ def order_of_three(h: np.ndarray, q: np.ndarray) -> float:
 
 
 def order_of_bracket(h: np.ndarray, q: np.ndarray) -> float:
-    """Solve (q1 - q2)/(q3 - q2) = (h1^p + h2^p)/(h2^p + h3^p) for p > 0: values on either side of the limit in turn."""
+    """Solve (q1 - q2)/(q3 - q2) = (h1^p + h2^p)/(h2^p + h3^p) for p > 0: values that alternate about the limit."""
     coarse, fine = q[0] - q[1], q[2] - q[1]
     up, down = np.log(h[0] / h[1]), np.log(h[2] / h[1])
     if fine == 0.0 or coarse / fine <= 1.0:
@@ -58,14 +58,15 @@ def _root(mismatch: Callable[[float], float]) -> float:
 
 
 def believable(order: float, highest: float) -> bool:
-    """Whether elements whose highest order is given can show this order; what is above it is an accident."""
+    """Return whether elements of the given highest order can show this order; anything above it is an accident."""
     return bool(0.0 < order <= (1.0 + WINDOW) * highest)
 
 
 def chance_hits(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> np.ndarray:
-    """Return which relative errors (n,) are small by chance.
+    """Return which relative errors (n,) are small by accident.
 
-    They fall faster than elements can and either are the last or the errors come back above round-off.
+    They decrease faster than the elements allow, and are the last ones or are followed by larger errors above
+    round-off.
     """
     hit = np.zeros(len(error), dtype=bool)
     before = 0
@@ -80,10 +81,10 @@ def chance_hits(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER
 
 
 def clean_points(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> int:
-    """Return how many points, from the coarsest on, stand above the round-off plateau.
+    """Return how many points, from the coarsest on, are above the round-off plateau.
 
-    error: relative. The plateau begins where an error below 1e-6 falls with less than 0.7 times the order just before;
-    points that are small by chance are passed over.
+    error: relative. The plateau begins where an error below 1e-6 decreases with less than 0.7 times the previous order;
+    accidentally small errors are skipped.
     """
     order_before, before = 0.0, -1
     for i in np.flatnonzero(~chance_hits(h, error, highest)).tolist():
@@ -99,22 +100,22 @@ def clean_points(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDE
 
 
 def errors(q: np.ndarray, limit: float) -> np.ndarray:
-    """Return |q - limit| (n,), relative to the limit where that is not zero."""
+    """Return |q - limit| (n,), relative to the limit unless that is zero."""
     return np.abs(q - limit) / scale_of(limit, q)
 
 
 def is_relative(limit: float, q: np.ndarray) -> bool:
-    """Whether errors are relative to the limit; an extrapolated zero is not exactly zero."""
+    """Return whether errors are relative to the limit; an extrapolated zero is not exactly zero."""
     return bool(abs(limit) > 1e-10 * np.abs(q).max())
 
 
 def scale_of(limit: float, q: np.ndarray) -> float:
-    """What errors are taken relative to: the limit, or 1."""
+    """Return the number that errors are relative to: the limit, or 1."""
     return abs(limit) if is_relative(limit, q) else 1.0
 
 
 def neighbour_orders(h: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Return log(E1/E2)/log(h1/h2) (n,) of each point and the one before it; nan for the first and for zero errors."""
+    """Return log(E1/E2)/log(h1/h2) (n,) from each point to the next; nan for the first and for zero errors."""
     orders = np.full(len(h), np.nan)
     for i in range(1, len(h)):
         if error[i - 1] > 0.0 and error[i] > 0.0:
@@ -123,10 +124,10 @@ def neighbour_orders(h: np.ndarray, error: np.ndarray) -> np.ndarray:
 
 
 def fit_order(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) -> OrderFit | None:
-    """Fit the order of the finest points above round-off, back to where it differs by 15 % from that of the finest.
+    """Fit the order of the finest points above round-off, as far back as it stays within 15 % of that of the finest.
 
-    Points that are small by chance end the range. None where fewer than two points are left or the finest error does
-    not fall.
+    Accidentally small errors end the range. None if fewer than two points are left or the finest error does not
+    decrease.
     """
     from scipy.special import stdtrit  # slow to import
 
@@ -152,7 +153,7 @@ def fit_order(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) 
 
 
 def _finest_run(clean: int, hit: np.ndarray) -> tuple[int, int]:
-    """Return begin and end of the finest two or more points in a row that are clean and no hit."""
+    """Return first and end index of the finest run of two or more points that are neither noisy nor accidental."""
     end = clean
     while end > 0:
         hits = np.flatnonzero(hit[:end])
@@ -164,10 +165,10 @@ def _finest_run(clean: int, hit: np.ndarray) -> tuple[int, int]:
 
 
 def grid_convergence_index(h: np.ndarray, q: np.ndarray, highest: float = HIGHEST_ORDER) -> np.ndarray:
-    """Return 1.25 |q2 - q3| / |q3| / ((h2/h3)^p - 1) (n,), p of a point and the two before it; nan where it has none.
+    """Return 1.25 |q2 - q3| / |q3| / ((h2/h3)^p - 1) (n,), with p of a point and the two before it; nan without p.
 
-    Roache's estimate of the relative error of each value (absolute where the value is zero). Orders above the highest
-    that the elements can have give none.
+    Roache's estimate of the relative error of each value (absolute if the value is zero). Orders above the highest of
+    the elements give none.
     """
     index = np.full(len(h), np.nan)
     for i in range(2, len(h)):

@@ -1,4 +1,4 @@
-"""The result of a convergence study and its doors: table, Markdown, CSV, picture, page."""
+"""The result of a convergence study, as tables, Markdown, CSV, picture and page."""
 
 import textwrap
 from dataclasses import dataclass, field
@@ -28,8 +28,8 @@ EXPLANATION = (
 class Convergence:
     """Curves of a convergence study, one for each combination of the parameters that are not refined.
 
-    quantity: whose error is meant. refine: the parameter of refinement. reference: the given limit or None.
-    failures: calls that gave no value.
+    quantity: the one whose error is studied. refine: the parameter of refinement. reference: the given limit or None.
+    failures: the calls that failed.
     """
 
     function: str
@@ -57,7 +57,7 @@ class Convergence:
         return f"Convergence of {self.quantity} over {self.refine}"
 
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
-        """Return header and rows, one a point: parameters, refinement, value, error, order, GCI, others, seconds.
+        """Return header and rows, one per point: parameters, refinement, value, error, order, GCI, others, seconds.
 
         rounded: errors and orders as short text instead of numbers.
         """
@@ -83,7 +83,7 @@ class Convergence:
         return header, rows
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
-        """Return header and rows of text, one a curve: order with band, where it was fitted, limit, remarks."""
+        """Return header and rows of text, one per curve: order with confidence band, fitted range, limit, notes."""
         header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
         rows = []
         for curve in self.curves:
@@ -103,13 +103,13 @@ class Convergence:
         return header, rows
 
     def to_markdown(self) -> str:
-        """Return the table of points and that of curves as Markdown."""
+        """Return the tables of points and curves as Markdown."""
         points, curves = tabulate.as_markdown(*self.points(rounded=True)), tabulate.as_markdown(*self.summary())
         failed = "\n".join(f"- {failure}" for failure in self.failures)
         return "\n\n".join(part for part in (points, curves, EXPLANATION, failed) if part) + "\n"
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of points with every digit; nan where there is no error or order."""
+        """Write the table of points with all digits; nan if there is no error or order."""
         tabulate.write_csv(path, *self.points())
 
     def to_pandas(self) -> Any:
@@ -117,7 +117,7 @@ class Convergence:
         return tabulate.as_pandas(*self.points())
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
-        """Draw error over refinement, both logarithmic; written to `path` where one is given. Return the figure."""
+        """Draw the error against the refinement on logarithmic axes and return the figure; path: file to write."""
         from beamfem.convergence.figure import plot_errors
 
         return plot_errors(self, path)

@@ -22,7 +22,7 @@ MOST_DOUBLINGS = 8
 
 @dataclass
 class _Line:
-    """A curve while its values come in; ended: why it is refined no further."""
+    """A curve during the study; ended: why it is not refined further."""
 
     label: str
     texts: dict[str, str]
@@ -42,18 +42,19 @@ def converge(
     executor: ExecutorFactory | None = None,
     **parameters: Any,
 ) -> Convergence:
-    """Call a function along one refinement and judge how its value converges.
+    """Call a function along one refinement and assess the convergence of its value.
 
-    function: returns a number or a mapping of named numbers; quantity: the one whose error is meant, the others become
-    columns. refine: the parameter along which it converges, counts (whole numbers, h = 1/n) or falling step sizes (h);
-    every other list, tuple, range or array of one dimension gives a curve for each of its values, the rest is passed
-    on. reference: the limit, if known; without it each curve is extrapolated (Richardson). Errors are relative to the
-    limit where that is not zero. An order is believed where the last four values agree on it and it is not above twice
-    the degree of an `Element` among the parameters (16 where there is none); else the changes between levels are the
-    estimate, or there is none (nan), as the notes of a curve say.
-    until: double the last count (or halve the last step) of each curve until its estimated error is below, at most 8
-    times. executor: as in `sweep`. A call that fails is kept in `failures`, the others go on.
-    Raises InputError; BeamfemError where no worker starts.
+    function: returns a number or a mapping of named numbers; quantity: the one whose error is studied, the others
+    become columns. refine: the parameter of refinement, counts (whole numbers, h = 1/n) or decreasing step sizes (h);
+    every other list, tuple, range or one-dimensional array gives one curve for each of its values, anything else is
+    passed on.
+    reference: the limit, if known; otherwise each curve is extrapolated (Richardson). Errors are relative to the limit
+    unless it is zero. An order is accepted if the last four values agree on it and it does not exceed twice the degree
+    of an `Element` among the parameters (16 without one); otherwise the changes between levels give the estimate, or
+    there is none (nan), as the notes of the curve say.
+    until: double the last count (or halve the last step) of each curve until its estimated error is below this, at most
+    8 times. executor: as in `sweep`. A call that fails is listed in `failures` and the study continues.
+    Raises InputError; BeamfemError if no worker starts.
     """
     varied, fixed = split(parameters)
     require_known(
@@ -84,9 +85,9 @@ def converge(
 
 
 def _from_coarse_to_fine(refine: str, values: Sequence[Any]) -> tuple[tuple[Any, ...], bool]:
-    """Return the refinement in order and whether it counts; whole numbers count in whatever order they are given.
+    """Return the refinement in order, and whether it consists of counts; whole numbers are counts in any order.
 
-    Raises InputError for what is neither rising counts nor falling step sizes.
+    Raises InputError unless it is increasing counts or decreasing step sizes.
     """
     numbers = np.array([positive(refine, value) for value in values])
     whole = all(isinstance(value, int | np.integer) for value in values)
@@ -103,7 +104,7 @@ def _from_coarse_to_fine(refine: str, values: Sequence[Any]) -> tuple[tuple[Any,
 
 
 def _lines(function: Callable[..., Any], varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) -> list[_Line]:
-    """One line for each combination, called by the parameters of which there is more than one value."""
+    """Return one line for each combination, named after the parameters that have more than one value."""
     several = {name: values for name, values in varied.items() if len(values) > 1}
     texts = combinations({name: labels(values) for name, values in several.items()}, {})
     lines = []
@@ -114,7 +115,7 @@ def _lines(function: Callable[..., Any], varied: Mapping[str, Sequence[Any]], fi
 
 
 def _call(runner: TaskRunner, tasks: Sequence[tuple[_Line, Any]], refine: str, quantity: str | None) -> str | None:
-    """Call at every line and refinement; return the quantity, which is known after the first call."""
+    """Call the function at every line and refinement; return the quantity, which is known after the first call."""
     points = [line.parameters | {refine: value} for line, value in tasks]
     with progress("calls", len(points)) as report:
         for done, (i, outcome) in enumerate(runner.run(points), 1):
@@ -143,7 +144,7 @@ def _number(value: Any, quantity: str | None) -> Any:
 
 
 def _refuse_arrays(outcome: Outcome, quantity: str | None) -> Outcome:
-    """An error can be taken of a finite number only."""
+    """Return a failure for a value that is not a finite number, since it has no error."""
     if outcome.error is not None:
         return outcome
     number = _number(outcome.value, quantity)
@@ -153,7 +154,7 @@ def _refuse_arrays(outcome: Outcome, quantity: str | None) -> Outcome:
 
 
 def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | None) -> Curve | None:
-    """Judge the values found so far; None where every call failed."""
+    """Assess the values found so far; None if every call failed."""
     found = {value: outcome for value, outcome in line.found.items() if outcome.error is None}
     if not found:
         return None
@@ -181,7 +182,7 @@ def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | N
 
 
 def _ended(line: _Line, curve: Curve | None, last: Any, goal: float, refine: str) -> str:
-    """Return why a curve is refined no further, nothing where it is."""
+    """Return why a curve is not refined further, an empty text if it is."""
     if curve is None or line.found[last].error is not None:
         return f"refined no further: {refine}={last} failed"
     if curve.estimated_error <= goal:

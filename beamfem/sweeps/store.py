@@ -1,7 +1,7 @@
-"""Results of calls on disk: a file of JSON lines, one a result, that a killed process leaves readable.
+"""Results of calls on disk: a file of JSON lines, one per result, which stays readable if the process is killed.
 
-A row names the code that computed it by a digest; another line tells once what files that code is. Whole solutions are
-files of their own in a folder beside, named by their row.
+A row identifies the code that computed it by a digest; another line lists, once, the files of that code. Whole
+solutions are separate files in a folder beside it, named after their row.
 """
 
 import hashlib
@@ -24,9 +24,9 @@ from beamfem.sweeps.workers import Outcome
 
 
 class Store:
-    """Results by key; a context manager that keeps the file open to append.
+    """Results by key; a context manager that keeps the file open for appending.
 
-    path: a file, or a folder (no suffix), which gets a `results.jsonl`; folders are made.
+    path: a file, or a folder (no suffix), which receives a `results.jsonl`; folders are created.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -61,11 +61,11 @@ class Store:
         self._file.close()
 
     def find(self, key: str, sources: Mapping[str, str]) -> Outcome | None:
-        """Return the outcome kept under a key that this code computed."""
+        """Return the outcome stored under a key by the present code."""
         return self._outcome(key, _digest(sources))
 
     def find_other(self, key: str, sources: Mapping[str, str]) -> tuple[Outcome, set[str]] | None:
-        """Return the last outcome of other code under a key, and the modules in which the two codes differ."""
+        """Return the last outcome stored under a key by other code, and the modules in which the two differ."""
         for code in reversed(self._known.get(key, {})):
             outcome, then = self._outcome(key, code), self._sources.get(code, {})
             if outcome is not None and code != _digest(sources):
@@ -73,7 +73,7 @@ class Store:
         return None
 
     def add(self, key: str, sources: Mapping[str, str], about: Mapping[str, str], outcome: Outcome) -> None:
-        """Write the outcome of a call; about: texts for people who read the file."""
+        """Write the outcome of a call; about: text for people who read the file."""
         code = _digest(sources)
         if code not in self._sources:
             self._sources[code] = dict(sources)
@@ -102,7 +102,7 @@ class Store:
             return None
 
     def _encode(self, value: Any, row: str) -> Any:
-        """A mapping stays one; a single value becomes a list of one, so that the two cannot be mixed up."""
+        """Return a mapping unchanged and a single value as a list of one, so that the two cannot be confused."""
         if isinstance(value, dict):
             return {name: self._item(item, f"{row}-{number}") for number, (name, item) in enumerate(value.items())}
         return [self._item(value, row)]

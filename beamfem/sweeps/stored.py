@@ -1,4 +1,4 @@
-"""The calls of a sweep that are kept on disk: which are there, by which code, and the new ones."""
+"""The stored calls of a sweep: which exist, by which code, and the new ones."""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +19,7 @@ _NAMED = 5
 class StoredCalls:
     """Outcomes of a function at points, on disk; a context manager.
 
-    Raises InputError for a function or parameters that are not known again in the next run, before any file is made.
+    Raises InputError, before any file is created, for a function or parameters that the next run could not recognise.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class StoredCalls:
         self._store.__exit__(kind, error, trace)
 
     def found(self, keep_stale: bool) -> list[Outcome | None]:
-        """Return the outcome of each point, None where there is none; what other code computed only with keep_stale."""
+        """Return the outcome of each point, None if there is none; results of other code only with keep_stale."""
         outcomes = [self._store.find(key, code) for key, code in zip(self._keys, self._code, strict=True)]
         stale, changed = 0, set()
         for i, outcome in enumerate(outcomes):
@@ -54,7 +54,7 @@ class StoredCalls:
         return outcomes
 
     def add(self, number: int, parameters: str, outcome: Outcome) -> None:
-        """Keep the outcome of a point; parameters: as text, for people who read the file."""
+        """Store the outcome of a point; parameters: as text, for people who read the file."""
         if not self._writable:
             return
         about = self._about | {"parameters": parameters}

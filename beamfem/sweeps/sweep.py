@@ -1,4 +1,4 @@
-"""Parameter sweeps: a function called at every combination, in parallel where asked, with results kept on disk."""
+"""Parameter sweeps: a function called at every combination of values, in parallel if wanted, with results on disk."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
@@ -26,11 +26,12 @@ _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Results of a sweep, one row a point, the last parameter fastest; `sweep[name]` is the array of a name.
+    """Results of a sweep, one row per point, the last parameter varying fastest; `sweep[name]` is an array.
 
-    parameters: of each point. values: what the function returned, None where it failed. seconds: of each call.
-    shape: how many values each varied parameter has: `sweep[name].reshape(sweep.shape)` is the grid.
-    computed: how many points were called now, the others were in the store.
+    parameters: those of each point. values: what the function returned, None if it failed. seconds: duration of each
+    call.
+    shape: number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
+    computed: number of points called in this run; the others were read from the store.
     """
 
     parameters: tuple[Mapping[str, Any], ...]
@@ -47,9 +48,9 @@ class Sweep:
         return len(self.values)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return a column (points,), of arrays of equal shape (points, ...); nan where a point failed.
+        """Return a column (points,), or (points, ...) for arrays of equal shape; nan for points that failed.
 
-        Solutions are in an array of objects, None where a point failed.
+        Solutions are returned as an array of objects, None for points that failed.
         """
         rows = self.table()
         require_known(f"the sweep has no {shown(name)}", name, rows[0])
@@ -67,10 +68,10 @@ class Sweep:
         return np.array([missing if value is None else value for value in column])
 
     def table(self) -> list[dict[str, Any]]:
-        """Return a mapping a point: varied parameters, named values (None where it failed) and seconds.
+        """Return one mapping per point: varied parameters, named values (None if the call failed) and seconds.
 
-        A value that is called like a parameter is found as `name (result)`; a bare number as `value`. Tables that are
-        printed or written leave out whole solutions.
+        A value with the name of a parameter is listed as `name (result)`, a bare number as `value`. Printed and written
+        tables omit whole solutions.
         """
         names = dict.fromkeys(name for value in self.values for name in _named(value))
         varied = list(self.labels[0])
@@ -88,7 +89,7 @@ class Sweep:
         return numbers, [[row[name] for name in numbers] for row in rows]
 
     def _texts(self) -> list[dict[str, Any]]:
-        """Numbers as they are, everything else by its label."""
+        """Return numbers unchanged and the labels of everything else."""
         return [
             {n: point[n] if isinstance(point[n], bool | int | float) else text for n, text in texts.items()}
             for point, texts in zip(self.parameters, self.labels, strict=True)
@@ -113,9 +114,9 @@ class Sweep:
         return tabulate.as_pandas(*self._rows())
 
     def to_xarray(self) -> Any:
-        """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan where one failed.
+        """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan for points that failed.
 
-        Arrays of equal shape have dimensions of their own behind. Raises MissingPackageError.
+        Arrays of equal shape add dimensions of their own. Raises MissingPackageError.
         """
         with needed_for("to_xarray"):
             import xarray
@@ -135,18 +136,17 @@ class Sweep:
         return xarray.Dataset(data, coordinates)
 
     def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
-        """Draw a result over a parameter, a curve for each combination of the others; return the figure.
+        """Draw a result against a parameter, one curve for each combination of the others; return the figure.
 
-        value: name of the result, the first one by default; over: name of a parameter that varies and is a number, the
-        first one by default; path: where to write it. Points that failed are left out. Raises InputError,
-        MissingPackageError.
+        value: name of the result, by default the first; over: name of a varied numeric parameter, by default the first;
+        path: file to write. Points that failed are omitted. Raises InputError, MissingPackageError.
         """
         from beamfem.sweeps.figure import plot_sweep
 
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with every digit."""
+        """Write the table of all points with all digits."""
         tabulate.write_csv(path, *self._rows())
 
 
@@ -167,20 +167,20 @@ def sweep(
     keep_stale: bool = False,
     **parameters: Any,
 ) -> Sweep:
-    """Call a function at every combination of the values in lists; return all results.
+    """Call a function at every combination of the given values and return all results.
 
-    function: returns a number, an array, a Solution or a mapping of named ones; a store keeps solutions as files in a
-    folder beside it. parameters: lists, tuples, ranges and arrays of one dimension are varied, everything else is
-    passed on as it is.
-    executor: a class or a function without arguments that makes a `concurrent.futures.Executor`; None calls here, one
-    after the other. store: a file or a folder where results are kept as they come and found again by the next run of
-    the same function with the same parameters. Where one of the user's own files that the function runs has changed
-    since (its constants, helpers, what they import), a `ChangedCodeWarning` says so and the points are computed again;
-    keep_stale: take the old results then.
-    A call that fails or kills its worker is kept in `failures`, the others go on; the next run tries it again. Where
-    the work is interrupted, KeyboardInterrupt has what was found as its `sweep`, and workers end at once; where the
-    store cannot be written any more, a `NotStoredWarning` says so and the sweep goes on.
-    Raises InputError; FileError for a store that cannot be opened; BeamfemError where no worker starts.
+    function: returns a number, an array, a Solution or a mapping of named ones; a store saves solutions as files in a
+    folder beside it. parameters: lists, tuples, ranges and one-dimensional arrays are varied, everything else is passed
+    on unchanged.
+    executor: a class, or a function without arguments, that creates a `concurrent.futures.Executor`; with None the
+    calls run in this process, one after the other. store: a file or folder that saves each result as it arrives; the
+    next run of the same function with the same parameters reads it. If one of the user's own files that the function
+    depends on (its constants, helpers, and their imports) has changed since, a `ChangedCodeWarning` is given and the
+    points are computed again; keep_stale: use the old results instead. A call that fails or kills its worker is listed
+    in `failures` and the sweep continues; the next run tries it again. On an interrupt, the KeyboardInterrupt carries
+    the results so far as its `sweep`, and workers are stopped at once. If the store can no longer be written, a
+    `NotStoredWarning` is given and the sweep continues.
+    Raises InputError; FileError for a store that cannot be opened; BeamfemError if no worker starts.
     """
     keep_stale = flag("keep_stale", keep_stale)
     varied, fixed = split(parameters)

@@ -1,4 +1,4 @@
-"""Many calls of one function, here or in workers; what fails or kills a worker is named, and the others go on."""
+"""Many calls of one function, here or in workers; failed calls and lost workers are reported, the rest continues."""
 
 import math
 import os
@@ -16,7 +16,7 @@ _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
 @dataclass(frozen=True)
 class Failure:
-    """A call that gave no value: its parameters, these as text, the error in a sentence, the traceback if any."""
+    """A failed call: its parameters, the same as text, the error in a sentence, and the traceback, if any."""
 
     parameters: Mapping[str, Any] = field(repr=False)
     label: str
@@ -28,7 +28,7 @@ class Failure:
 
 
 class TaskRunner:
-    """Calls a function at points, in this process or in workers that live as long as the `with` block."""
+    """Calls a function at points, in this process or in workers that exist as long as the `with` block."""
 
     def __init__(self, function: Callable[..., Any], factory: ExecutorFactory | None) -> None:
         self._function = function
@@ -45,9 +45,9 @@ class TaskRunner:
         self._close()
 
     def run(self, points: Sequence[Point]) -> Iterator[tuple[int, Outcome]]:
-        """Yield the number of each point with its outcome as they come.
+        """Yield the number and the outcome of each point as it is completed.
 
-        Raises InputError or BeamfemError where workers cannot be had at all.
+        Raises InputError or BeamfemError if no workers can be started.
         """
         if self._factory is None:
             for i, point in enumerate(points):
@@ -58,9 +58,9 @@ class TaskRunner:
             yield i, self._alone(points[i])
 
     def _together(self, points: Sequence[Point]) -> Generator[tuple[int, Outcome], None, list[int]]:
-        """Run chunks in parallel; return the points whose chunk was lost, with a worker or on the way.
+        """Run chunks in parallel; return the points whose chunk was lost.
 
-        Only a few chunks are under way at a time, so that the death of a worker makes few points suspect.
+        Few chunks are submitted at a time, so that the death of a worker leaves few suspect points.
         """
         waiting = deque(range(len(points)))
         running: dict[Future[list[Outcome]], list[int]] = {}
@@ -101,7 +101,7 @@ class TaskRunner:
         return suspects
 
     def _alone(self, point: Point) -> Outcome:
-        """Run a suspect with nothing beside it, so that the death of its worker is its own."""
+        """Run a suspect point alone, so that the death of its worker can be attributed to it."""
         try:
             return self._submit(self._open(1), [point]).result()[0]
         except BrokenExecutor:

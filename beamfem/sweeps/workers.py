@@ -1,4 +1,4 @@
-"""Workers of any `concurrent.futures.Executor`: how they are started, and what they run."""
+"""Workers of any `concurrent.futures.Executor`: how they are started and what they run."""
 
 import multiprocessing
 import os
@@ -30,7 +30,7 @@ _THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a call gave: its value, or an error in a sentence with the traceback; and the seconds that it took."""
+    """Outcome of a call: its value, or the error in a sentence with the traceback; and the time taken [s]."""
 
     value: Any = None
     seconds: float = 0.0
@@ -39,7 +39,7 @@ class Outcome:
 
 
 def call(function: Callable[..., Any], point: Point) -> Outcome:
-    """Call `function` with the parameters of a point; what it raises becomes part of the outcome."""
+    """Call `function` with the parameters of a point; an exception becomes part of the outcome."""
     begun = time.perf_counter()
     try:
         value = _checked(function(**point))
@@ -50,9 +50,10 @@ def call(function: Callable[..., Any], point: Point) -> Outcome:
 
 
 def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, attempt: int) -> list[Outcome]:
-    """What a worker runs: one call after the other, with one thread and without progress bars.
+    """Run calls one after the other, with one thread and without progress bars.
 
-    home: number of the process that asks. attempt: makes a repetition a new task where equal tasks are merged (dask).
+    home: process number of the caller. attempt: makes a repetition a new task for executors that merge equal ones
+    (dask).
     """
     if os.getpid() != home:
         end_with_parent()
@@ -62,9 +63,9 @@ def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, a
 
 
 def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks: int) -> Executor:
-    """Make an executor and wait until a worker answers; process pools are spawned, with one thread a worker.
+    """Create an executor and wait until a worker answers; process pools are spawned, with one thread per worker.
 
-    Raises InputError where the function cannot reach a process, BeamfemError where workers do not start.
+    Raises InputError if the function cannot be sent to a process, BeamfemError if workers do not start.
     """
     executor = _made(factory)
     name = getattr(function, "__qualname__", repr(function))
@@ -97,7 +98,7 @@ def open_executor(factory: ExecutorFactory, function: Callable[..., Any], tasks:
 
 
 def _made(factory: Any) -> Executor:
-    """Return the executor that a factory makes. Raises InputError for one that makes none."""
+    """Return the executor that a factory creates. Raises InputError if it creates none."""
     right = "such as ProcessPoolExecutor or functools.partial(ProcessPoolExecutor, 4)"
     if isinstance(factory, Executor) or not callable(factory):
         raise InputError(f"executor must be a class or a function that makes an Executor, {right}, got {factory!r}")
@@ -112,12 +113,12 @@ def _made(factory: Any) -> Executor:
 
 
 def workers(executor: Executor) -> int:
-    """How many workers an executor has; 500 where it does not tell, so that a cluster is kept busy."""
+    """Return the number of workers of an executor; 500 if it is unknown, which keeps a cluster busy."""
     return int(getattr(executor, "_max_workers", 500))
 
 
 def end_workers(executor: Executor) -> None:
-    """End a process pool at once, in the middle of its calls; whatever else works for an executor is left to itself."""
+    """Stop a process pool at once, in the middle of its calls; other executors are left alone."""
     processes = dict(getattr(executor, "_processes", None) or {})
     executor.shutdown(wait=False)
     for process in processes.values():
@@ -125,7 +126,7 @@ def end_workers(executor: Executor) -> None:
 
 
 def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
-    """Let a process pool spawn, for a fork copies locks of other threads, and its workers end with this process."""
+    """Make a process pool spawn, since a fork copies locks of other threads, and its workers end with this process."""
     bare = factory.func if isinstance(factory, partial) else factory
     given = factory.keywords if isinstance(factory, partial) else {}
     if not (isinstance(bare, type) and issubclass(bare, ProcessPoolExecutor)):
@@ -136,7 +137,7 @@ def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
 
 @cache
 def end_with_parent() -> None:
-    """Let this worker end when the process that started it has ended, killed or not, and leave Ctrl-C to that one."""
+    """End this worker when the process that started it has ended, even if killed; only that process handles Ctrl-C."""
     parent = multiprocessing.parent_process()
     if parent is None:
         return
@@ -152,7 +153,7 @@ def end_with_parent() -> None:
 
 @contextmanager
 def _environment_of_one_thread() -> Iterator[None]:
-    """What processes that start inside inherit: libraries read these when they load."""
+    """Environment variables that child processes inherit: libraries read them when they are loaded."""
     before = {name: os.environ.get(name) for name in _THREAD_LIMITS}
     os.environ.update(dict.fromkeys(_THREAD_LIMITS, "1"))
     try:
@@ -167,7 +168,7 @@ def _environment_of_one_thread() -> Iterator[None]:
 
 @cache
 def _one_thread() -> None:
-    """Hold the BLAS and OpenMP that this worker has loaded to one thread for good; workers share the cores."""
+    """Limit the BLAS and OpenMP libraries of this worker to one thread permanently; workers share the cores."""
     with suppress(ImportError):
         from threadpoolctl import threadpool_limits
 

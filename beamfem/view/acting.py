@@ -22,7 +22,7 @@ _SHORTEST = 14.0
 
 
 def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
-    """Draw each load on that of the rows where it is largest, the last of equals; return what was drawn."""
+    """Draw each load on the row at which it is largest, the last of equals; return the artists."""
     system, at = loading(solution)
     drawn: list[Any] = []
     forces: list[tuple[Force, PlacedRow]] = []

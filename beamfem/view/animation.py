@@ -35,11 +35,11 @@ def animate(
     loads: bool = True,
     dpi: int = 100,
 ) -> Path:
-    """Write the moving body to a .gif or .mp4 file and return its path; folders are made.
+    """Write an animation of the body to a .gif or .mp4 file and return its path; folders are created.
 
-    fps, seconds: about fps * seconds rows are shown, spread evenly over time (in statics over the rows); a solution of
-    fewer rows shows each for longer; colour: a field as in `plot`; loads come and go with their amplitude; dpi: pixels
-    an inch of a picture 4 to 8 inches wide.
+    fps, seconds: about fps * seconds rows are shown, equally spaced in time (in statics by row); with fewer rows each
+    is shown longer; colour: a field as in `plot`; loads are drawn in each frame with their current amplitude; dpi:
+    pixels per inch, of a frame 4 to 8 inches wide.
     Raises InputError for another suffix; MissingPackageError without matplotlib, for .mp4 without imageio-ffmpeg.
     """
     target = path_of(path)

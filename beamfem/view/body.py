@@ -35,10 +35,10 @@ def picture(
     colour: str | None = None,
     size: tuple[int, int] = (1400, 900),
 ) -> Path:
-    """Write a picture (.png) of the solid body in a row, without a window; return its path. Folders are made.
+    """Write a picture (.png) of the solid body in a row, off screen; return its path. Folders are created.
 
-    colour: a field as in `plot`; size: width and height in pixels. Where VTK cannot render, which is tried in a child
-    process first, matplotlib draws the same row flat, with a warning. Raises InputError.
+    colour: a field as in `plot`; size: width and height in pixels. Rendering is tried in a child process first; if VTK
+    cannot render, matplotlib draws the same row in the plane and a warning is given. Raises InputError.
     """
     target = path_of(path)
     if target.suffix != ".png":
@@ -62,8 +62,8 @@ def picture(
 def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = (1400, 900)) -> Any:
     """Open a window with the solid body and a slider over the steps, and wait until it is closed.
 
-    colour: a field as in `plot`. Where there is no display, or VTK cannot render, a warning says so and a figure of
-    matplotlib is returned instead. Raises InputError.
+    colour: a field as in `plot`. Without a display, or if VTK cannot render, a warning is given and a matplotlib figure
+    is returned instead. Raises InputError.
     """
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to show")
@@ -168,7 +168,7 @@ def _by_layer(shapes: Shapes, values: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _widths(shapes: Shapes) -> list[np.ndarray]:
-    """Width out of the plane [m]: area over height, and the height where a section tells no area."""
+    """Return the width out of the plane [m]: area over height, or the height for sections without an area."""
     return [_width(points) for points in shapes.points]
 
 
@@ -204,7 +204,7 @@ def _faces(shapes: Shapes) -> np.ndarray:
 
 
 def _require_size(size: Any) -> None:
-    """Raise InputError where the size of a picture is not a width and a height that can be rendered."""
+    """Raise InputError unless the size is a width and a height that can be rendered."""
     sides = [count("size", side) for side in items("size", size)]
     if len(sides) != 2 or max(sides) > _LARGEST_SIDE:
         raise InputError(f"size is a width and a height of at most {_LARGEST_SIDE} pixels, got {shown(size)}")

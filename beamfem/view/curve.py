@@ -1,4 +1,4 @@
-"""One quantity of a solution over another, such as a reaction over a displacement."""
+"""One quantity of a solution against another, such as a reaction against a displacement."""
 
 from collections.abc import Callable
 from os import PathLike
@@ -32,11 +32,11 @@ _OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], np.ndarray]]] =
 
 
 def plot_curve(solution: Solution, x: Quantity, y: Quantity, path: str | PathLike[str] | None = None) -> Any:
-    """Draw one quantity over another, a row a point of the curve; return the figure of matplotlib.
+    """Plot one quantity against another, one point per row; return the matplotlib figure.
 
-    x, y: a pair of a name and a point, ("uy", beam.end): "ux", "uy", "x", "y" [m], "rotation" [rad], "vx", "vy" [m/s],
-    of a support "fx", "fy" [N] and "m" [N m]; "load_factor" or "time" [s]; a pair of a label and numbers (steps,), or
-    numbers. Raises InputError; MissingPackageError without matplotlib.
+    x, y: a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m], "rotation"
+    [rad], "vx", "vy" [m/s] and, at supports, "fx", "fy" [N] and "m" [N m]; "load_factor" or "time" [s]; a pair of a
+    label and numbers (steps,), or numbers. Raises InputError; MissingPackageError without matplotlib.
     """
     (across, horizontal), (up, vertical) = (_taken(solution, *own) for own in (("x", x), ("y", y)))
     figure, axes = new_figure()

@@ -31,13 +31,14 @@ def plot_shapes(
     supports: bool = True,
     loads: bool = True,
 ) -> Any:
-    """Draw the deformed body at some steps, later ones stronger; return the figure of matplotlib.
+    """Draw the deformed body at several steps, later ones darker; return the matplotlib figure.
 
-    path: where to write it (PNG, SVG, PDF; folders are made); colour: None for the time or load factor, or a field
-    along the beams: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s],
-    "axial_strain" [-], "shear_angle" [rad], "stress" [Pa] (von Mises', the largest of a section), "utilisation" [-] of
-    the strength; shapes: how many steps; undeformed: dashed axes of the reference; supports and loads: as engineers
-    draw them, each load on the shape where it is largest.
+    path: file to write (PNG, SVG, PDF; folders are created); colour: None for the time or load factor, or a field along
+    the
+    beams: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain"
+    [-], "shear_angle" [rad], "stress" [Pa] (largest von Mises stress of a section), "utilisation" [-] of the strength;
+    shapes: number of steps; undeformed: draw the reference axes dashed; supports and loads: draw their symbols, each
+    load on the shape at which it is largest.
     Raises InputError; MissingPackageError without matplotlib.
     """
     if len(solution) == 0:

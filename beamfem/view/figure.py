@@ -1,4 +1,4 @@
-"""Figures that show themselves in notebooks, whatever backend matplotlib has there."""
+"""Figures that are displayed in notebooks with any matplotlib backend."""
 
 from io import BytesIO
 
@@ -8,7 +8,7 @@ _DOTS_PER_INCH = 110
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows at the end of a cell."""
+    """A figure that a notebook displays at the end of a cell."""
 
     def _repr_png_(self) -> bytes:
         """Return the picture, as notebooks ask for it."""

@@ -11,7 +11,7 @@ _SMOOTH = 12  # straight pieces that make an element look curved
 
 
 def spread_rows(solution: Solution, most: int) -> np.ndarray:
-    """Return up to `most` different rows, first and last among them: evenly over time, in statics over the rows."""
+    """Return up to `most` different rows including first and last: equally spaced in time, in statics by row."""
     if len(solution) <= most:
         return np.arange(len(solution))
     if solution.static:
@@ -26,7 +26,7 @@ def one_row(solution: Solution, row: int) -> Solution:
 
 
 def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
-    """Return the points of each beam that are drawn, about `total` where elements are so few."""
+    """Return the points of each beam to draw, about `total` of them if there are few elements."""
     elements = sum(mesh.elements for mesh in solution.model.meshes)
     pieces = int(np.clip(total // elements, 1, _SMOOTH))
     straight = [mesh.beam.element.field.degree == 1 for mesh in solution.model.meshes]
@@ -34,12 +34,12 @@ def axis_points(solution: Solution, total: int = _POINTS) -> list[AxisPoints]:
 
 
 def axis_of_rows(solution: Solution) -> tuple[str, str]:
-    """Return name and unit of what runs from row to row."""
+    """Return name and unit of the variable that identifies rows."""
     return ("load factor", "-") if solution.static else ("time", solution.model.unit("s"))
 
 
 def moment_of(solution: Solution, row: int) -> str:
-    """Return in words where a row is."""
+    """Return a text that identifies a row."""
     value = float(solution.at[row])
     if isinstance(solution, Path):
         return f"load factor {value:.4g}, row {row}"

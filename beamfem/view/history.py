@@ -1,4 +1,4 @@
-"""Curves of a point: over time or load factor, and the load over its displacement."""
+"""Curves at points: against time or load factor, and the load factor against a displacement."""
 
 from collections.abc import Callable, Sequence
 from os import PathLike
@@ -40,10 +40,10 @@ def plot_history(
     quantity: str = "displacement",
     path: str | PathLike[str] | None = None,
 ) -> Any:
-    """Draw a quantity of one or several points over time [s] or load factor; return the figure of matplotlib.
+    """Plot a quantity at one or several points against time [s] or load factor; return the matplotlib figure.
 
-    quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad], of a support "force" [N]
-    and "reaction_moment" [N m]; or, without a point, "energy" [J].
+    quantity: "displacement", "ux", "uy", "position" [m], "velocity" [m/s], "rotation" [rad]; at supports "force" [N]
+    and "reaction_moment" [N m]; without a point, "energy" [J].
     Raises InputError; MissingPackageError without matplotlib.
     """
     if isinstance(quantity, str) and quantity == "energy":
@@ -83,9 +83,9 @@ def plot_history(
 def plot_load_displacement(
     solution: Solution, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
 ) -> Any:
-    """Draw the load factor over a displacement or rotation of a point; return the figure of matplotlib.
+    """Plot the load factor against a displacement or rotation of a point; return the matplotlib figure.
 
-    On a `Path` its limit points (circles) and bifurcations (diamonds) are marked, each with its load factor.
+    Limit points (circles) and bifurcations (diamonds) of a `Path` are marked, each with its load factor.
     quantity: "ux", "uy" [m] or "rotation" [rad]. Raises InputError; MissingPackageError without matplotlib.
     """
     one_of("what the load is drawn over", quantity, ("ux", "uy", "rotation"))

@@ -1,4 +1,4 @@
-"""Actuation and heat in a drawing: named beside the middle of their beams."""
+"""Actuation and temperature in a drawing: text beside the middle of their beams."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ _SLOPED = 0.3  # of a unit normal
 
 
 def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int]], colour: str) -> Any:
-    """Write what loads impose in a row of a solution; yield what was drawn."""
+    """Draw the strains imposed by loads in a row of a solution as text; yield the artists."""
     beside: dict[int, int] = {}
     for strains, row in items:
         only, beam = one_row(solution, row), strains.beam
@@ -49,7 +49,7 @@ def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int
 
 
 def _move_inside(words: Any, axes: Any) -> None:
-    """Move words sideways into the axes, or to their left edge where they are wider."""
+    """Move text sideways into the axes, or to their left edge if it is wider."""
     own, room = words.get_window_extent(), axes.get_window_extent()
     points = 72.0 / axes.figure.dpi
     x, y = words.get_position()

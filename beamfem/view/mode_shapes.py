@@ -1,4 +1,4 @@
-"""Pictures of modes: of vibration with their frequencies, of buckling with their load factors."""
+"""Pictures of modes: vibration modes with their frequencies, buckling modes with their load factors."""
 
 from collections.abc import Callable
 from os import PathLike
@@ -23,10 +23,10 @@ _WIDTH, _LEAST_HEIGHT = 3.6, 0.9  # of one picture [inch]
 
 
 def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
-    """Draw the first `most` modes of vibration, each with its frequency [Hz]; return the figure of matplotlib.
+    """Draw the first `most` vibration modes, each with its frequency [Hz]; return the matplotlib figure.
 
-    Dark the mode at its largest, pale half a period later, dashed the reference. Raises InputError; MissingPackageError
-    without matplotlib.
+    Dark: the mode at its largest; pale: half a period later; dashed: the reference. Raises InputError;
+    MissingPackageError without matplotlib.
     """
 
     def title(mode: int) -> str:
@@ -43,9 +43,9 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
 
 
 def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
-    """Draw the first `most` modes of buckling, each with its critical load factor; return the figure of matplotlib.
+    """Draw the first `most` buckling modes, each with its critical load factor; return the matplotlib figure.
 
-    Pale the critical state, dark the same with its mode added, dashed the reference.
+    Pale: the critical state; dark: the same state plus the mode; dashed: the reference.
     Raises InputError; MissingPackageError without matplotlib.
     """
 

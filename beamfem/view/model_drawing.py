@@ -14,10 +14,10 @@ from beamfem.view.plots import save_figure
 
 
 def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
-    """Draw the bodies of a model as they are without stress, with supports, joints and full loads; return the figure.
+    """Draw the undeformed bodies of a model with supports, joints and full loads; return the figure.
 
-    path: where to write it (PNG, SVG, PDF; folders are made). Nothing is solved, so that a model may be drawn that
-    moves freely or is loaded beyond its strength. Raises MissingPackageError without matplotlib.
+    path: file to write (PNG, SVG, PDF; folders are created). Nothing is solved, so models that are mechanisms or are
+    loaded beyond their strength can be drawn too. Raises MissingPackageError without matplotlib.
     """
     p = system_of(model, static=True).reference[None]
     rates = np.zeros_like(p)

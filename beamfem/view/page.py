@@ -26,7 +26,7 @@ td, th { padding: .2rem .4rem; font-size: .85rem } }
 
 @dataclass(frozen=True)
 class Entry:
-    """A figure with a title, what a paper claims of it (or ""), what was found, and whether the claim holds."""
+    """A figure with a title, the claim of a paper about it (or ""), the finding here, and whether the claim holds."""
 
     title: str
     picture: Path

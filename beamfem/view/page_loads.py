@@ -18,8 +18,8 @@ _MOST = 40_000  # numbers of arrows on a page
 def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     """Return for each row forces [x, y, across, up, tip], moments [x, y, sense] and gravity [across, up].
 
-    x, y [m]; across, up [pixels]: the arrow, whose tip stands at x, y where `tip` is 1, else its tail. Of a model with
-    many loads, or with many rows, those of the last row stand for all.
+    x, y [m]; across, up [pixels]: the arrow, with its tip at x, y if `tip` is 1, else its tail. For models with many
+    loads or rows, the loads of the last row are used for all.
     """
     solution, rows = shapes.solution, [int(row) for row in shapes.rows]
     system, at = loading(solution)

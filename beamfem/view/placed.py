@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 class PlacedRow:
-    """A row of a solution, as far as shapes ask for it."""
+    """A row of a solution, with the members that shapes need."""
 
     def __init__(self, solution: "Solution", row: int) -> None:
         self.only = one_row(solution, row)
 
     def position(self, point: Point) -> np.ndarray:
-        """Return where a point is (2,) [m]."""
+        """Return the position of a point (2,) [m]."""
         return self.only.position(point)[0]
 
     def rotation(self, point: Point) -> float:
@@ -38,16 +38,16 @@ class PlacedRow:
         return mesh.arc_length(*length_points(mesh)[:2])
 
     def shapes(self, load: "Load", weight: float) -> tuple[LoadShape, ...]:
-        """Return what a load looks like, times a weight."""
+        """Return the shapes of a load, times a weight."""
         return load.shapes(weight, self)
 
     def along(self, forces: ForcesAlong) -> np.ndarray:
-        """Return where forces along a beam are (n, 2) [m]."""
+        """Return the positions of forces along a beam (n, 2) [m]."""
         length = forces.beam.curve.length
         return np.array([self.position(forces.beam.at(fraction)) for fraction in forces.arc_length / length])
 
     def touches(self, force: Force) -> bool:
-        """Return whether an arrow's tip touches the beam: inside it, and where the force presses on an end."""
+        """Return whether the arrow's tip touches the beam: inside the beam, and at ends if the force pushes."""
         fraction = force.point.fraction
         if 0.0 < fraction < 1.0:
             return True

@@ -28,11 +28,11 @@ _LEVELS = 65534  # into which the box of all shapes is cut
 
 
 def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
-    """Write a self-contained page with a slider over up to `frames` steps and return its path; folders are made.
+    """Write a self-contained page with a slider over up to `frames` steps and return its path; folders are created.
 
-    The body moves with its supports, coloured by a section force [N, N m], rotation [rad], displacement [m] or speed
-    [m/s] on demand; beside it a curve of the largest displacement and the statistics. Under 1 MB: of a large model the
-    axes are drawn without bodies, and fewer steps. Raises InputError for another suffix than .html.
+    The body moves with its supports, optionally coloured by a section force [N, N m], rotation [rad], displacement [m]
+    or speed [m/s]; a curve of the largest displacement and the statistics are shown beside it. Below 1 MB: for large
+    models only the axes and fewer steps are drawn. Raises InputError for a suffix other than .html.
     """
     target = path_of(path)
     if target.suffix != ".html":
@@ -92,7 +92,7 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
 
 
 def _sized(solution: Solution, frames: int, fields: int) -> tuple[Shapes, bool]:
-    """Return the shapes that a page has room for, and whether with their bodies."""
+    """Return the shapes that fit on a page, and whether bodies fit too."""
     rows = spread_rows(solution, frames)
     elements = sum(mesh.elements for mesh in solution.model.meshes)
     room = _BYTES // (len(rows) * (8 + fields))
@@ -126,7 +126,7 @@ def _names(solution: Solution) -> tuple[str, ...]:
 
 
 def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
-    """Return outlines [symbols] and for each row the places [m] of each outline, one row only where all stand still."""
+    """Return outlines [symbols] and for each row the places [m] of each outline; one row if all of them stay fixed."""
     found = []
     for row in shapes.rows:
         stamps = supports_of(shapes.solution, int(row), shapes.centre)

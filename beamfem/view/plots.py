@@ -32,7 +32,7 @@ def new_figure(width: float = 6.4, height: float = 4.2) -> tuple[Any, Any]:
 
 
 def quiet(axes: Any) -> None:
-    """Leave of the frame what carries numbers, and put a light grid behind."""
+    """Remove the parts of the frame without numbers and add a light grid."""
     axes.grid(True, color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
     for side in ("top", "right"):
@@ -40,7 +40,7 @@ def quiet(axes: Any) -> None:
 
 
 def save_figure(figure: Any, path: str | PathLike[str]) -> None:
-    """Write a figure to PNG, SVG or PDF by the suffix of `path`; folders are made."""
+    """Write a figure to PNG, SVG or PDF according to the suffix of `path`; folders are created."""
     kinds = figure.canvas.get_supported_filetypes()
     kind = path_of(path).suffix.lower().removeprefix(".")
     if kind not in kinds:

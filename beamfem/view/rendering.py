@@ -1,4 +1,4 @@
-"""Whether VTK can render here, found out in a child process: where it cannot it kills the process, without an error."""
+"""Whether VTK can render on this machine, tried in a child process: a failure kills the process without an error."""
 
 import os
 import subprocess
@@ -21,9 +21,9 @@ ADVICE = "on Debian and Ubuntu `apt-get install --no-install-recommends libegl1 
 
 @lru_cache(maxsize=1)
 def can_render() -> bool:
-    """Return whether VTK renders a triangle without a window; asked once a process.
+    """Return whether VTK renders a triangle without a window; tried once per process.
 
-    Raises MissingPackageError where it is not installed.
+    Raises MissingPackageError if it is not installed.
     """
     require_package("pyvista", "a picture of the body")
     command = [sys.executable, "-c", f"import os{_PROBE}"]

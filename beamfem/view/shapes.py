@@ -164,7 +164,7 @@ class Shapes:
 
 
 def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Return the smallest and the largest value, further apart where all are the same to three digits."""
+    """Return the smallest and the largest value, widened if they agree to three digits."""
     known = [v[np.isfinite(v)] for v in values]
     low, high = min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
     size = max(abs(low), abs(high))

@@ -19,7 +19,7 @@ _BEAMS = 12  # listed each
 
 
 def model_rows(model: Model) -> list[tuple[str, str]]:
-    """Return what a model consists of, as name and text."""
+    """Return the contents of a model as pairs of name and text."""
     elements, length = sum(mesh.elements for mesh in model.meshes), sum(beam.curve.length for beam in model.beams)
     names = ", ".join(dict.fromkeys(mesh.beam.element.name for mesh in model.meshes))
     rows = [
@@ -34,7 +34,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
 
 
 def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
-    """Return how a solution was found and where it ends, as name and text."""
+    """Return how a solution was found and where it ends, as pairs of name and text."""
     statistics = solution.statistics
     name, unit = ("load factor", "") if solution.static else ("time", f" {solution.model.unit('s')}")
     rows = [("rows", str(len(solution)))]
@@ -53,7 +53,7 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
 
 
 def largest_displacement(solution: "Solution") -> tuple[str, str]:
-    """Return the largest displacement of a node in the last row, and where it is."""
+    """Return the largest nodal displacement in the last row, and its place."""
     from beamfem.results.along import AxisPoints
 
     found = []

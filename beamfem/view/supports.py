@@ -19,7 +19,7 @@ _SPRINGS_OF_FOUNDATION = 12
 
 
 class Stamps:
-    """Outlines to draw at points, gathered so that thousands cost as little as one."""
+    """Outlines to draw at points, collected so that thousands of them are drawn at once."""
 
     def __init__(self) -> None:
         self.places: dict[tuple[bytes, str, float, str], list[np.ndarray]] = defaultdict(list)
@@ -34,7 +34,7 @@ class Stamps:
         self.places[key, colour, width, fill].append(at)
 
     def add_all(self, other: "Stamps") -> None:
-        """Add what others hold."""
+        """Add the outlines of others."""
         self.outlines.update(other.outlines)
         for key, places in other.places.items():
             self.places[key].extend(places)
@@ -65,14 +65,14 @@ class Stamps:
 
 
 def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray) -> list[Any]:
-    """Draw the supports of a model where they are in a row; see `supports_of`."""
+    """Draw the supports of a model in a row; see `supports_of`."""
     return supports_of(solution, row, centre).draw(axes)
 
 
 def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
-    """Return the supports of a model where they are in a row: rollers roll, what pulls starts from the reference.
+    """Return the symbols of supports in a row: rollers roll, symbols of prescribed motions stay at the reference.
 
-    centre: of all shapes (2,) [m]; it tells where there is room.
+    centre: of all shapes (2,) [m], which decides the side on which a symbol is drawn.
     """
     only = one_row(solution, row)
     stamps = Stamps()
@@ -91,7 +91,7 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
 
 
 def draw_joints(axes: Any, solution: "Solution", row: int) -> list[Any]:
-    """Draw the hinges and connectors of a model where they are in a row; see `joints_of`."""
+    """Draw the hinges and connectors of a model in a row; see `joints_of`."""
     return joints_of(solution, row).draw(axes, layer=6.0) + _draw_connectors(axes, solution, row)
 
 
@@ -107,7 +107,7 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
 
 
 def joints_of(solution: "Solution", row: int) -> Stamps:
-    """Return the hinges of a model as circles where they are in a row."""
+    """Return the hinges of a model in a row as circles."""
     stamps = Stamps()
     rings = [shape for joint in solution.model.joints for shape in joint.shapes()]
     if rings:
@@ -133,7 +133,7 @@ def _away(point: Any) -> np.ndarray:
 
 
 def _ground(at: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Down, but up where what is drawn hangs below."""
+    """Return the direction of the ground: down, or up if the structure hangs below."""
     x, y = centre - at
     return np.array([0.0, 1.0 if y < 0.0 and -y > abs(x) else -1.0])
 
@@ -159,7 +159,7 @@ def _springs_along(stamps: Stamps, foundation: SpringsAlong) -> None:
 
 
 def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np.ndarray) -> None:
-    """Draw what is prescribed as zero as a support and what moves as an arrow."""
+    """Draw directions prescribed as zero as a support, and prescribed motions as arrows."""
     prescribed, at = support.prescribed, support.point.reference
     still = {name for name, value in prescribed.items() if not callable(value) and value == 0.0}
     if still == {"ux", "uy", "rotation"}:
@@ -185,7 +185,7 @@ def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np
 
 
 def _moved(stamps: Stamps, at: np.ndarray, direction: np.ndarray) -> None:
-    """An arrow with a bar at its foot: a displacement, not a force."""
+    """Draw an arrow with a bar at its foot: a displacement, not a force."""
     across = np.array([-direction[1], direction[0]])
     foot, tip = 0.5 * direction, 2.0 * direction
     for outline in ([foot - 0.3 * across, foot + 0.3 * across], [foot, tip]):

@@ -9,10 +9,10 @@ _KINDS = {".png": "image/png", ".gif": "image/gif", ".mp4": "video/mp4"}
 
 
 class WrittenFile(type(Path())):  # type: ignore[misc]
-    """The path of a page, a picture or a film, which a notebook shows where it is the last of a cell."""
+    """The path of a page, a picture or an animation, which a notebook displays at the end of a cell."""
 
     def _repr_html_(self) -> str | None:
-        """Return the file inside of a cell; None where it is gone, or of another kind."""
+        """Return the embedded file for a cell; None if it has been deleted or is of another kind."""
         if not self.is_file():
             return None
         kind = self.suffix.lower()

@@ -1,7 +1,7 @@
-"""Meshes in input files of Abaqus and CalculiX: nodes, elements and sets; what else there is, a warning names.
+"""Meshes in input files of Abaqus and CalculiX: nodes, elements and sets; a warning lists everything else.
 
-meshio 5.3.5 gives sets of elements to the wrong cells where a block of elements has no set of its own or two share one,
-drops sets of nodes made of other sets, and keeps only the last of several blocks of nodes: all without a word.
+meshio 5.3.5 assigns element sets to the wrong cells if an element block has no set or two blocks share one, drops node
+sets composed of other sets, and keeps only the last of several node blocks, all without a message.
 Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); node order of B32: end, middle, end.
 """
 
@@ -29,7 +29,7 @@ _GENERATORS = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "SYSTEM")
 
 @dataclass(frozen=True)
 class _Section:
-    """A keyword line with its parameters and the rows below; `place` names it for messages."""
+    """A keyword line with its parameters and data lines; `place` identifies it in messages."""
 
     keyword: str
     parameters: dict[str, str]
@@ -39,7 +39,7 @@ class _Section:
 
 @dataclass
 class _Sets:
-    """Named lists of numbers, as ranges of them; names do not know upper from lower case."""
+    """Named lists of numbers, stored as ranges; names are case-insensitive."""
 
     kind: str
     names: dict[str, str] = field(default_factory=dict)
@@ -50,7 +50,7 @@ class _Sets:
         self.numbers.setdefault(name.upper(), []).extend(numbers)
 
     def define(self, section: _Section) -> None:
-        """Add what a *NSET or *ELSET lists: numbers, ranges or other sets. Raises InputError."""
+        """Add the content of a *NSET or *ELSET: numbers, ranges or other sets. Raises InputError."""
         numbers: list[range] = []
         for row in section.rows:
             if "GENERATE" in section.parameters:
@@ -68,7 +68,7 @@ class _Sets:
         self.add(section.parameters[self.kind.upper()], numbers)
 
     def placed(self, place: dict[int, int]) -> dict[str, np.ndarray]:
-        """Return the sets as places. Raises InputError for a number that the file does not give."""
+        """Return the sets as positions in the tables. Raises InputError for numbers that the file does not define."""
         for key, numbers in self.numbers.items():
             # one after the other: a range may be far longer than the file
             missing = next((number for number in chain(*numbers) if number not in place), None)
@@ -85,7 +85,7 @@ def _one(number: int) -> range:
 
 
 def read_abaqus(path: Path) -> MeshFile:
-    """Return what an input file holds. Raises InputError for what cannot be read, naming the line."""
+    """Return the content of an input file. Raises InputError, with the line, for anything that cannot be read."""
     nodes: dict[int, tuple[float, ...]] = {}
     cells: dict[int, tuple[str, list[int]]] = {}
     node_sets, element_sets = _Sets("nset"), _Sets("elset")
@@ -122,7 +122,7 @@ def read_abaqus(path: Path) -> MeshFile:
 
 
 def _shown(section: _Section) -> str:
-    """Return a keyword with the name of what it describes, if it has one."""
+    """Return a keyword with the name of the object it describes, if any."""
     name = section.parameters.get("NAME") or section.parameters.get("ELSET", "")
     return f"*{section.keyword} {name}".rstrip()
 
@@ -185,9 +185,9 @@ def _assembled(
 
 
 def _middle_last(table: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Order the nodes of quadratic cells (m, 3): ends, middle; the middle is opposite the longest side.
+    """Order the nodes of quadratic cells (m, 3) as ends, middle; the middle node is opposite the longest side.
 
-    Abaqus, CalculiX and Gmsh write the middle second, meshio writes it last.
+    Abaqus, CalculiX and Gmsh write the middle node second, meshio writes it last.
     """
     corner = points[table]
     opposite = [np.linalg.norm(corner[:, i - 2] - corner[:, i - 1], axis=1) for i in range(3)]

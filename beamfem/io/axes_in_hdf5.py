@@ -1,4 +1,4 @@
-"""What others read of a results file without beamfem: axes of beams, with names and units, as netCDF has them."""
+"""Axes of beams in a results file, with names and units as in netCDF, for programs without beamfem."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,10 +13,10 @@ _BLOCK_BYTES = 2**20
 
 
 def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
-    """Write groups beams/0, beams/1, ...: where ends of elements are and how far sections there have turned.
+    """Write groups beams/0, beams/1, ...: positions of element ends and rotations of the sections there.
 
-    x, y [m] and rotation [rad] (rows, stations), over `time` [s] or `load_factor` (rows,) and `arc_length` [m]
-    (stations,) as dimension scales, with `units`, those of the model, and `long_name` as attributes.
+    x, y [m] and rotation [rad] (rows, stations) over the dimension scales `time` [s] or `load_factor` (rows,) and
+    `arc_length` [m] (stations,), with the attributes `units`, those of the model, and `long_name`.
     """
     unit = solution.model.unit
     over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))

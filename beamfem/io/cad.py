@@ -26,13 +26,13 @@ _ANNOTATION = ("TEXT", "MTEXT", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LEADER"
 
 
 def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
-    """Return the curves in the modelspace of a DXF file, of one layer or of all, in the units and order of the drawing.
+    """Return the curves in the modelspace of a DXF file, of one layer or all, in the units and order of the drawing.
 
-    LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines), all
-    exact, but a SPLINE that has only fit points, which the file does not define: it is drawn as ezdxf does. Texts,
-    dimensions, leaders, tolerances and hatches are annotation, and passed over.
-    Raises FileError, FileNotFoundError; InputError for a file that is no DXF, an entity of another kind or off the
-    plane z = 0, and where there is no curve; MissingPackageError without ezdxf.
+    LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines) are
+    exact, except a SPLINE with fit points only, which the file does not define: it is drawn as ezdxf draws it. Texts,
+    dimensions, leaders, tolerances and hatches are skipped as annotation.
+    Raises FileError, FileNotFoundError; InputError for a file that is not DXF, an entity of another kind or off the
+    plane z = 0, or a file without curves; MissingPackageError without ezdxf.
     """
     ezdxf = _ezdxf()
     source = readable(path)
@@ -77,7 +77,7 @@ def _flat(vector: Any) -> tuple[float, float]:
 
 
 def _side(entity: Any) -> float:
-    """Return 1 where the entity is drawn in world coordinates, -1 where it is mirrored: seen from below, x = -x."""
+    """Return 1 if the entity is drawn in world coordinates, -1 if it is mirrored: seen from below, x = -x."""
     axis = entity.dxf.extrusion.normalize()
     if np.hypot(axis.x, axis.y) > _FLAT:
         raise InputError(f"it must lie in the plane z = 0, but its normal is ({axis.x:g}, {axis.y:g}, {axis.z:g})")
@@ -101,7 +101,7 @@ def _arc(entity: Any) -> Curve:
 
 
 def _turn(start: float, end: float, full: float) -> float:
-    """Return the angle from start to end, counter-clockwise; a full turn where they are the same direction."""
+    """Return the counter-clockwise angle from start to end; a full turn if both are the same direction."""
     turn = (end - start) % full
     return full if turn < _FLAT * full else turn
 
@@ -143,7 +143,7 @@ def _pieces(table: list[tuple[float, float, float]], closed: bool, side: float) 
 
 
 def _piece(start: np.ndarray, end: np.ndarray, bulge: float) -> Curve:
-    """Return a piece of a polyline; bulge: tangent of a quarter of the angle it turns through, > 0 to the left."""
+    """Return a piece of a polyline; bulge: tangent of a quarter of the included angle, > 0 to the left."""
     first, last = (tuple(point.tolist()) for point in (start, end))
     if bulge == 0.0:
         return Line(first, last)

@@ -1,4 +1,4 @@
-"""Cells of a mesh that follow each other, as the members of a frame that has been divided into many."""
+"""Chains of mesh cells, as the members of a frame that has been divided into many cells."""
 
 from typing import TYPE_CHECKING
 
@@ -14,10 +14,10 @@ _TURN = np.cos(np.radians(30.0))  # more is a corner of the frame; a circle of 1
 
 
 def chains(mesh: "LineMesh", hinged: np.ndarray) -> list[list[Piece]]:
-    """Return the cells of each member, one after the other.
+    """Return the cells of each member, in order.
 
-    A member goes on through a node where exactly two cells meet that are in the same sets and turn by less than 30
-    degrees, and that is not hinged (n,).
+    A member continues through a node if exactly two cells meet there, both in the same sets, at an angle below 30
+    degrees, and the node is not hinged (n,).
     """
     follower = _followers(mesh, hinged)
     seen = np.zeros(len(mesh.cells), dtype=bool)
@@ -38,14 +38,14 @@ def chains(mesh: "LineMesh", hinged: np.ndarray) -> list[list[Piece]]:
 
 
 def _forwards(line: list[Piece]) -> list[Piece]:
-    """Return a member in the direction that most of its cells have."""
+    """Return a member in the direction of most of its cells."""
     if sum(backwards for _, backwards in line) <= len(line) / 2:
         return line
     return [(cell, not backwards) for cell, backwards in reversed(line)]
 
 
 def _followers(mesh: "LineMesh", hinged: np.ndarray) -> dict[Piece, Piece]:
-    """Return the piece that follows a piece, where one does."""
+    """Return the piece that follows a piece, if any."""
     ends = mesh.cells[:, :2]
     node = ends.ravel()
     order = np.argsort(node, kind="stable")

@@ -13,12 +13,12 @@ _CROSSING = ("at", "p", "mode", "tangent")
 
 
 def load_factors(path: Path) -> np.ndarray:
-    """Return the load factors of the critical points of a path (m,), at which its functions are used as well."""
+    """Return the load factors of the critical points of a path (m,), at which its functions are evaluated too."""
     return np.array([state.at for state in (*path.limit_points, *path.bifurcations)])
 
 
 def save_critical(file: Any, path: Path) -> None:
-    """Write the critical points of a path, each a row."""
+    """Write the critical points of a path, one per row."""
     for name, states, parts in _groups(path):
         group = file.create_group(name)
         for part in parts:
@@ -29,7 +29,7 @@ def save_critical(file: Any, path: Path) -> None:
 
 
 def load_path(file: Any, rows: Solution) -> Solution:
-    """Return the rows as the path that was saved, with its critical points; as they are where it was none."""
+    """Return the rows as the saved path with its critical points, or unchanged if no path was saved."""
     if "limit_points" not in file:
         return rows
     model, rest = rows.model, np.zeros(rows.model.size)
@@ -45,7 +45,7 @@ def load_path(file: Any, rows: Solution) -> Solution:
 
 
 def _parts(solution: Solution) -> dict[str, Any]:
-    """Return what a solution consists of, by name."""
+    """Return the members of a solution by name."""
     return {name: getattr(solution, name) for name in Solution.__dataclass_fields__}
 
 
@@ -54,6 +54,6 @@ def _groups(path: Path) -> tuple[tuple[str, tuple[PathState, ...], tuple[str, ..
 
 
 def _rows(group: Any, parts: tuple[str, ...]) -> Any:
-    """Return the parts of each state, and how far it has turned, None where no beam needs it or a file is older."""
+    """Return the members of each state and its counted rotations, None if no beam needs them or the file is older."""
     turned = read_checked(group, "turned") if "turned" in group else [None] * len(group["at"])
     return zip(*(read_checked(group, part) for part in parts), turned, strict=True)

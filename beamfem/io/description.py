@@ -67,7 +67,7 @@ _DRAWN = 4  # intervals of an element at whose ends a section that varies is sav
 
 
 def describe(model: Model, at: np.ndarray) -> dict[str, Any]:
-    """Return the description of a model whose functions are used at times [s] or load factors at (steps,).
+    """Return the description of a model, with its functions sampled at times [s] or load factors (steps,).
 
     Raises InputError for a part that cannot be saved.
     """
@@ -90,7 +90,7 @@ def rebuild(description: dict[str, Any]) -> Model:
 
 
 def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
-    """Return the beam with its section as values where it is a function: those that were used, and some to draw."""
+    """Return the beam with a varying section as samples: those that were used, and more for drawing."""
     if isinstance(beam.section, CrossSection | SampledSection):
         return beam
     points = (stations(mesh), energy_points(mesh)[:2], length_points(mesh)[:2])
@@ -105,7 +105,7 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
 
 
 def _with_own_values(load: Any, model: Model) -> Any:
-    """Return a load along a beam with its values where it is a function: those that were used, and some to draw."""
+    """Return a load along a beam with its functions as samples: those that were used, and more for drawing."""
     if not isinstance(load, AlongBeam):
         return load
     kept: Any = load
@@ -122,7 +122,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
 
 
 class _Writer:
-    """Beams and functions are written once and meant by number."""
+    """Beams and functions are written once and referred to by number."""
 
     def __init__(self, model: Model, at: list[float]) -> None:
         self.beams = model.beams
@@ -135,7 +135,7 @@ class _Writer:
         return {"class": type(value).__name__, **{name: self.write(getattr(value, name)) for name in names}}
 
     def own_members(self, value: Any) -> dict[str, Any]:
-        """Describe a part that a user has written. Raises InputError for a function whose argument is not known."""
+        """Describe a user-defined part. Raises InputError for a function with an unknown argument."""
         described: dict[str, Any] = {"class": name_of(value)}
         for field in fields(value):
             given = getattr(value, field.name)

@@ -1,4 +1,4 @@
-"""Files whose end cannot be overread: some readers of meshio ask there for the next line for ever."""
+"""Files whose end cannot be missed: some readers of meshio keep asking for the next line there."""
 
 import io
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ _OVERREAD = {"mdpa": "rb", "nastran": "r", "ply": "rb", "tecplot": "r"}
 
 
 class _Lines:
-    """Raises EOFError where lines behind the end are asked for again and again."""
+    """Raises EOFError if lines beyond the end are requested repeatedly."""
 
     _behind = 0
 
@@ -34,7 +34,7 @@ class _Bytes(_Lines, io.BufferedReader):  # type: ignore[misc]
 
 @contextmanager
 def opened(path: Path, kind: str) -> Iterator[io.IOBase | Path]:
-    """Yield what meshio is to read a file of this format from: a file that raises EOFError, or else the path."""
+    """Yield the input for meshio to read a file of this format: a file object that raises EOFError, or the path."""
     if kind not in _OVERREAD:
         yield path
         return

@@ -107,7 +107,7 @@ def _named(sets: Mapping[str, np.ndarray], kind: str, name: str) -> np.ndarray:
 
 
 def _each(mesh: "LineMesh", what: str, value: Any) -> Sequence[Any]:
-    """Return the value of each cell, given for all or by member set. Raises InputError."""
+    """Return the value for each cell, given for all cells or by member set. Raises InputError."""
     if not isinstance(value, Mapping):
         return [value] * len(mesh.cells)
     source = np.full(len(mesh.cells), -1)
@@ -129,7 +129,7 @@ def _each(mesh: "LineMesh", what: str, value: Any) -> Sequence[Any]:
 
 
 def _curve(points: Sequence[tuple[float, float]], cells: Sequence[Sequence[int]], piece: Piece) -> Curve:
-    """Return the axis of a cell, from its end to its start if it is taken backwards."""
+    """Return the axis of a cell, reversed if the cell is traversed backwards."""
     cell, backwards = piece
     start, end, middle = cells[cell]
     first, last = (points[end], points[start]) if backwards else (points[start], points[end])
@@ -150,7 +150,7 @@ def _curve(points: Sequence[tuple[float, float]], cells: Sequence[Sequence[int]]
 
 
 def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
-    """Return one axis through curves that follow each other, and the fractions of its length where they end."""
+    """Return one axis through successive curves, and the fractions of its length at which they end."""
     if len(curves) == 1:
         return curves[0], np.array([0.0, 1.0])
     reach = np.concatenate([[0.0], np.cumsum([curve.length for curve in curves])])
@@ -168,6 +168,6 @@ def _axis(curves: list[Curve]) -> tuple[Curve, np.ndarray]:
 
 
 def _divided(ends: np.ndarray, parts: int) -> tuple[float, ...]:
-    """Return the ends of elements where each piece takes so many."""
+    """Return the element ends if each piece is divided into this number of elements."""
     inner = [np.linspace(a, b, parts + 1)[:-1] for a, b in pairwise(ends)]
     return (*np.concatenate(inner).tolist(), 1.0)

@@ -1,4 +1,4 @@
-"""HDF5 files with checksums, written whole or not at all."""
+"""HDF5 files with checksums, written completely or not at all."""
 
 import io
 from collections.abc import Callable, Iterator
@@ -21,9 +21,9 @@ _CHECKSUM = "crc32"
 
 @contextmanager
 def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], None]]]:
-    """Give an open HDF5 file that takes the place of `path` when it is complete, and a check whether all was written.
+    """Yield an open HDF5 file that replaces `path` when it is complete, and a check that everything was written.
 
-    Raises FileError where the system refuses to write, MissingPackageError without h5py.
+    Raises FileError if the system refuses to write, MissingPackageError without h5py.
     """
     h5py = required_h5py("writing")
     with whole(path) as partial, _Stream(partial) as stream:
@@ -33,19 +33,19 @@ def written_hdf5(path: str | PathLike[str]) -> Iterator[tuple[Any, Callable[[], 
 
 
 def required_h5py(purpose: str) -> Any:
-    """Return the module h5py. Raises MissingPackageError where it is not installed."""
+    """Return the module h5py. Raises MissingPackageError if it is not installed."""
     with needed_for(f"{purpose} HDF5 files"):
         import h5py
     return h5py
 
 
 def write_checked(group: Any, name: str, values: np.ndarray) -> None:
-    """Write an array with its checksum: HDF5's own does not cover where the parts of an array lie."""
+    """Write an array with a checksum: HDF5's own does not cover the positions of an array's chunks."""
     group.create_dataset(name, data=values).attrs[_CHECKSUM] = checksum(values)
 
 
 def read_checked(group: Any, name: str) -> np.ndarray:
-    """Return an array. Raises InputError where it is not what was written; files of earlier versions cannot tell."""
+    """Return an array. Raises InputError if it differs from what was written; older files have no checksum."""
     data = group[name]
     values = np.asarray(data)
     if _CHECKSUM in data.attrs and checksum(values) != int(data.attrs[_CHECKSUM]):
@@ -54,12 +54,12 @@ def read_checked(group: Any, name: str) -> np.ndarray:
 
 
 def write_label(group: Any, name: str, label: str) -> None:
-    """Write an attribute of fixed length: in a damaged file HDF5 may look for one of any length without end."""
+    """Write an attribute of fixed length: in a damaged file HDF5 may search endlessly for one of variable length."""
     group.attrs[name] = np.bytes_(label)
 
 
 def read_label(group: Any, name: str) -> str:
-    """Return an attribute that is a text, "" where there is none; earlier versions wrote it with any length."""
+    """Return a text attribute, '' if there is none; older versions wrote it with variable length."""
     label = group.attrs.get(name, "")
     return label.decode() if isinstance(label, bytes) else str(label)
 
@@ -73,9 +73,9 @@ def checksum(*arrays: np.ndarray) -> int:
 
 
 class _Stream(io.FileIO):
-    """A file that remembers an error of the system and goes on as if there was none.
+    """A file that records a system error and continues as if there were none.
 
-    HDF5 cannot close a file that it cannot write: it would bring down the process at its end.
+    HDF5 cannot close a file that it cannot write: it would crash the process on exit.
     """
 
     def __init__(self, path: Path) -> None:
@@ -100,6 +100,6 @@ class _Stream(io.FileIO):
             return size or 0
 
     def require(self) -> None:
-        """Raise the error that was remembered."""
+        """Raise the recorded error."""
         if self._error is not None:
             raise self._error

@@ -1,4 +1,4 @@
-"""What mesh files hold, read through meshio: points, cells of any type and named sets of both."""
+"""Content of mesh files read through meshio: points, cells of any type and named sets of both."""
 
 import contextlib
 import io
@@ -18,9 +18,9 @@ _WITHOUT_LINES = {"off": "triangles", "tetgen": "tetrahedra", "wkt": "triangles"
 
 @dataclass(frozen=True, eq=False)
 class MeshFile:
-    """Points (n, 2 or 3) [m], blocks (type, nodes (m, k)) of cells, sets of cells counted over all blocks, of points.
+    """Points (n, 2 or 3) [m], blocks (type, nodes (m, k)) of cells, cell sets numbered over all blocks, and point sets.
 
-    A line3 has its ends first and its middle last.
+    A line3 lists its ends first and its middle last.
     """
 
     points: np.ndarray
@@ -30,7 +30,7 @@ class MeshFile:
 
 
 def read_through_meshio(path: Path) -> MeshFile:
-    """Return what a file holds. Raises InputError where meshio cannot read it."""
+    """Return the content of a file. Raises InputError if meshio cannot read it."""
     with needed_for("reading mesh files"):
         import meshio  # slow to import, and seldom needed
 
@@ -68,14 +68,14 @@ def _internal(name: str) -> bool:
 
 
 def _counted(parts: list[Any], sizes: list[int]) -> np.ndarray:
-    """Count the cells of a set, given block by block, over all blocks."""
+    """Return the numbers over all blocks of the cells of a set that is given block by block."""
     first = np.concatenate([[0], np.cumsum(sizes)])
     numbers = [first[i] + np.asarray(part, dtype=np.int64) for i, part in enumerate(parts) if part is not None]
     return np.concatenate([np.empty(0, dtype=np.int64), *numbers])
 
 
 def _groups(mesh: Any) -> dict[str, np.ndarray]:
-    """Return the cells of the physical groups of a Gmsh file, by number where they have no name."""
+    """Return the cells of the physical groups of a Gmsh file, by number for groups without a name."""
     if "gmsh:physical" not in mesh.cell_data:
         return {}
     tags = np.concatenate(mesh.cell_data["gmsh:physical"])
@@ -92,7 +92,7 @@ def _groups(mesh: Any) -> dict[str, np.ndarray]:
 
 
 def _by_value(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the sets that whole numbers on cells or points make: `name` where not zero, `name=k` where k."""
+    """Return the sets that whole numbers on cells or points define: `name` if nonzero, `name=k` for the value k."""
     if _internal(name) or values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
         return {}
     sets = {f"{name}={value}": np.flatnonzero(values == value) for value in np.unique(values)}
@@ -100,7 +100,7 @@ def _by_value(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _advice(path: Path) -> str:
-    """Say what helps with an ASCII file of Gmsh, which meshio reads only in part."""
+    """Return advice for an ASCII file of Gmsh, which meshio reads only in part."""
     with path.open("rb") as file:
         head = file.read(64).split()
     if len(head) > 2 and head[0] == b"$MeshFormat" and head[2] == b"0":

@@ -1,4 +1,4 @@
-"""Classes of users in files: saved by module and name, found again where the module is imported."""
+"""User-defined classes in files: saved by module and name, found again if the module is imported."""
 
 import sys
 from dataclasses import fields, is_dataclass
@@ -10,7 +10,7 @@ from beamfem.model.remade import require_remade
 
 
 def name_of(part: Any) -> str:
-    """Return "module:Class" for a part of a model that a user has written. Raises InputError where it has none."""
+    """Return "module:Class" for a user-defined part of a model. Raises InputError if it cannot be found again."""
     kind = type(part)
     what = f"a {kind.__name__} cannot be saved"
     if not is_dataclass(part):
@@ -25,7 +25,7 @@ def name_of(part: Any) -> str:
 
 
 def class_of(name: str) -> Any:
-    """Return the class of "module:Class". Nothing is imported. Raises InputError where its module is not there yet."""
+    """Return the class of "module:Class" without importing anything. Raises InputError if its module is missing."""
     found = find(name)
     if not (isinstance(found, type) and is_dataclass(found)):
         module, _, kind = name.partition(":")
@@ -36,7 +36,7 @@ def class_of(name: str) -> Any:
 
 
 def made(name: str, members: dict[str, Any]) -> Any:
-    """Return a part of the class of "module:Class". Raises InputError where the class is not there or has changed."""
+    """Return a part of the class "module:Class". Raises InputError if the class is missing or has changed."""
     kind = class_of(name)
     try:
         return kind(**members)
@@ -51,7 +51,7 @@ def dataclasses_of(module: ModuleType) -> list[type]:
 
 
 def find(name: str) -> Any:
-    """Return what a loaded module has under "module:name", None where there is none."""
+    """Return the attribute "module:name" of a loaded module, None if there is none."""
     module, _, attribute = name.partition(":")
     found: Any = sys.modules.get(module)
     for part in attribute.split("."):

@@ -28,10 +28,10 @@ _CHECKSUMS = "checksums"  # of each block of rows
 
 
 def save(solution: Solution, path: str | PathLike[str]) -> None:
-    """Write model and states into one HDF5 file with checksums; folders in the path are made.
+    """Write model and states into one HDF5 file with checksums; folders in the path are created.
 
-    It takes the place of an earlier file when it is complete. Raises InputError for a model with parts that cannot be
-    saved, FileError where the system refuses to write, MissingPackageError without h5py.
+    An earlier file is replaced when the new one is complete. Raises InputError for a model with parts that cannot be
+    saved, FileError if the system refuses to write, MissingPackageError without h5py.
     """
     at = np.append(solution.at, load_factors(solution)) if isinstance(solution, EquilibriumPath) else solution.at
     description = _text(describe(solution.model, at))
@@ -63,10 +63,10 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
 
 
 def load(path: str | PathLike[str]) -> Solution:
-    """Return the solution in a file; functions of time come back as `Sampled`, their values at the saved rows.
+    """Return the solution in a file; functions of time are returned as `Sampled`, their values at the saved rows.
 
-    Of a file whose writer was killed the rows that were written. Raises FileError, FileNotFoundError; InputError for
-    a file that is damaged, of a newer format or not of beamfem; MissingPackageError without h5py.
+    If the writing process was killed, the rows written so far are returned. Raises FileError, FileNotFoundError;
+    InputError for a file that is damaged, of a newer format or not of beamfem; MissingPackageError without h5py.
     """
     h5py = required_h5py("loading")
     source = readable(path)
@@ -132,17 +132,17 @@ def _read(file: Any) -> Solution:
 
 
 def _text(item: Any) -> np.ndarray:
-    """Return what JSON can hold as an array of one text, which can have a checksum."""
+    """Return an object that JSON can represent as an array of one text, which can have a checksum."""
     return np.array([json.dumps(item).encode()])
 
 
 def _read_text(file: Any, name: str) -> Any:
-    """Return what a text holds; files of earlier versions have it without a checksum."""
+    """Return the object in a text; older versions wrote it without a checksum."""
     return json.loads(read_checked(file, name)[0] if file[name].shape else file[name].asstr()[()])
 
 
 def _require_whole(file: Any, rows: int, states: tuple[np.ndarray, ...]) -> None:
-    """Raise InputError where rows are not those that were written; files of earlier versions cannot tell."""
+    """Raise InputError if rows differ from those that were written; older files have no checksum."""
     if _CHECKSUMS not in file:
         return
     block, sums = file["at"].chunks[0], file[_CHECKSUMS][:].tolist()
@@ -153,14 +153,14 @@ def _require_whole(file: Any, rows: int, states: tuple[np.ndarray, ...]) -> None
 
 
 def _about(file: Any) -> dict[str, Any]:
-    """Return the statistics and whether the solution is static; in files of earlier versions they are attributes."""
+    """Return the statistics and whether the solution is static; in older files these are attributes."""
     if "statistics" in file:
         return dict(_read_text(file, "statistics"))
     return {"static": file.attrs["static"], **json.loads(file.attrs["statistics"])}
 
 
 def _statistics(saved: dict[str, Any]) -> Statistics:
-    """Return the statistics of a file; older ones know no status and no warnings."""
+    """Return the statistics of a file; older files have no status and no warnings."""
     status = Status[saved.pop("status", Status.COMPLETED.name)]
     if np.isnan(saved.get("digits", np.nan)):
         saved.pop("digits", None)  # not known: that of the default, which equals itself

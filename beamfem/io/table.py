@@ -1,4 +1,4 @@
-"""What varies along a beam over the steps, as labelled arrays."""
+"""Quantities along beams over the steps, as labelled arrays."""
 
 from dataclasses import asdict
 from functools import partial
@@ -23,9 +23,9 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
     of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; of the model
-    (time,): kinetic, strain, potential energy [J].
-    Coordinates: time [s] or load_factor, number of the beam, arc_length [m], x0, y0 [m] of the reference (station,).
-    Elements that meet both have a station at their common end, where section forces may jump.
+    (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam, arc_length
+    [m], x0, y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where
+    section forces may jump.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(_about, solution.model)
     points = AxisPoints(mesh, _PIECES)
@@ -61,7 +61,7 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
 
 
 def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
-    """Return an xarray.Dataset of `arrays` of a beam, or of all, one after the other; statistics are its attributes.
+    """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession; statistics are its attributes.
 
     Raises InputError for a beam of another model; MissingPackageError without xarray.
     """
@@ -72,7 +72,7 @@ def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
 
 
 def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
-    """Return a pandas.DataFrame of what varies along a beam, or along all, a row for each time and station.
+    """Return a pandas.DataFrame of quantities along a beam, or along all, with a row for each time and station.
 
     Its index is time [s] or load_factor, number of the beam and arc_length [m]; columns: see `arrays`.
     Raises InputError for a beam of another model; MissingPackageError without pandas.
@@ -88,7 +88,7 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
 
 
 def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Return `arrays` of a beam, or of all beams side by side along their stations."""
+    """Return the `arrays` of a beam, or of all beams joined along their stations."""
     parts = [arrays(solution, own) for own in (solution.model.beams if beam is None else (beam,))]
     data, coordinates = (_side_by_side([part[kind] for part in parts]) for kind in (0, 1))
     return data, coordinates

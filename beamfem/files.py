@@ -56,7 +56,7 @@ def whole(path: str | PathLike[str]) -> Iterator[Path]:
     """Give a path beside `path` to write to, with the same suffix; what is there takes the place of `path` at the end.
 
     Folders are made. Where writing fails the earlier file stays as it was and nothing is left behind; where the process
-    is killed, a file <stem>.<token>.part<suffix>. Raises InputError for what is no path, FileError where the system
+    is killed, a file <stem>.<token>.part<suffix>. Raises InputError for what is no path, FileError if the system
     refuses to write.
     """
     target = Path(os.path.realpath(path_of(path)))  # a link stays one

@@ -6,7 +6,7 @@ SHARE = 0.8  # of the memory of this computer that a model or a motion may take
 
 
 def installed_memory() -> int | None:
-    """Return the memory of this computer [bytes], None where the system does not tell."""
+    """Return the memory of this computer [bytes], None if the system does not tell."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):  # Windows

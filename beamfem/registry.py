@@ -28,7 +28,7 @@ def offer(method: Callable[..., Any], function: str) -> None:
 
 
 def offered(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function that does what a method declares. Raises NotImplementedError where no room offers one.
+    """Return the function that does what a method declares. Raises NotImplementedError if no room offers one.
 
     What is returned raises InputError for an option that the function has not, with what it may have meant.
     """

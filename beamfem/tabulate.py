@@ -79,7 +79,7 @@ def as_pandas(header: Sequence[str], rows: Rows) -> Any:
 
 
 def write_csv(path: str | PathLike[str], header: Sequence[str], rows: Rows) -> None:
-    """Write every digit of the numbers; arrays as nested lists; folders are made."""
+    """Write every digit of the numbers; arrays as nested lists; folders are created."""
     with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([_cell(name) for name in header])

@@ -160,7 +160,7 @@ def flag(name: str, value: Any) -> bool:
 
 
 def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:
-    """Raise InputError where `value` is none of those `allowed`; it names the nearest."""
+    """Raise InputError if `value` is none of those `allowed`; it names the nearest."""
     if isinstance(value, str | type(None)) and value in allowed:
         return
     listed = [f'"{item}"' if isinstance(item, str) else repr(item) for item in allowed]
@@ -170,7 +170,7 @@ def one_of(name: str, value: Any, allowed: Sequence[Any]) -> None:
 
 
 def require_known(sentence: str, name: Any, known: Iterable[str]) -> None:
-    """Raise InputError where a name is none of those known: the sentence, the nearest and all that there are."""
+    """Raise InputError if a name is none of those known: the sentence, the nearest and all that there are."""
     known = list(known)
     if not isinstance(name, str) or name not in known:
         raise InputError(f"{sentence}; {nearest(name, known)}")
@@ -237,7 +237,7 @@ def _argument(value: Any) -> str:
 
 
 def function_of_one(name: str, function: Any, argument: str) -> None:
-    """Raise InputError where `function` cannot be called with one argument, the `argument`."""
+    """Raise InputError if `function` cannot be called with one argument, the `argument`."""
     if not callable(function):
         raise InputError(f"{name} must be a function of {argument}, got {shown(function)}")
     try:

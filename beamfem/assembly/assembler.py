@@ -254,7 +254,7 @@ class Assembler:
 
 
 def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:
-    """Return the strains (..., ne, nq, ns) that loads with factors (..., k) impose, None where there are none."""
+    """Return the strains (..., ne, nq, ns) that loads with factors (..., k) impose, None if there are none."""
     if sheet.imposed is None or not factors.any():
         return None
     if factors.ndim == 1:

@@ -83,7 +83,7 @@ class Connector:
     ) -> np.ndarray:
         """Return the derivative (3 m + k, 3 m + k) of its force, weighted for p, p' and p'', by complex steps.
 
-        Raises LinAlgError where it is not finite.
+        Raises LinAlgError if it is not finite.
         """
         every, columns = self.all, []
         for dof in every.tolist():

@@ -17,7 +17,7 @@ _TIMES = (0.5, 0.0, 0.813)
 
 
 def require_analytic(item: Connector) -> None:
-    """Raise InputError where a force or energy is not analytic, or they do not belong together."""
+    """Raise InputError if a force or energy is not analytic, or if they are inconsistent."""
     (p, v, a), size = _somewhere(item)
     moving, resting = (p, v, a), (p, 0.0 * v, 0.0 * a)
     if not np.isfinite(item.force(item.at(moving, _TIMES[0], _GRAVITY))).all():

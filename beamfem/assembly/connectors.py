@@ -148,7 +148,7 @@ class Connectors:
 
 
 def connectors_of(model: Model, static: bool) -> Connectors:
-    """Return the contributions of a model with their coordinates. Raises InputError where one is not what it says."""
+    """Return the contributions of a model with their coordinates. Raises InputError for inconsistent ones."""
     first, found = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:

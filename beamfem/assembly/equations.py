@@ -138,7 +138,7 @@ def with_stresses(
 
 
 def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants of a state, of each block (ne, nq, ns), zero where they may be round-off only.
+    """Return the stress resultants of a state, of each block (ne, nq, ns), zero if they may be round-off only.
 
     That of a stiff part would buckle, or hold, what is soft beside it.
     """

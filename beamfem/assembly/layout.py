@@ -1,6 +1,6 @@
 """The order of the unknown coordinates, and where element matrices go: into a band, or a sparse matrix.
 
-A sparse matrix is ordered for little fill once, here, so that each factorisation can take it as it stands.
+A sparse matrix is ordered for little fill once, here, so that each factorisation can take it unchanged.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse fact
 class Unknowns:
     """Order of the unknown coordinates.
 
-    free (n,): equation number of each coordinate, -1 where it is prescribed; dofs (unknown,): the coordinates in the
+    free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
     coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one.
     """
@@ -89,7 +89,7 @@ def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
 
 
 def _numbers_of(block: Block, free: np.ndarray) -> np.ndarray:
-    """Numbers among the unknown (ne, nn npn) of each element's coordinates, -1 where there is none."""
+    """Numbers among the unknown (ne, nn npn) of each element's coordinates, -1 if there is none."""
     numbers = np.where(block.dof >= 0, free[block.dof], -1)
     return np.asarray(numbers[block.node].reshape(len(block.node), -1))
 

@@ -27,7 +27,7 @@ class MixedFactors:
     """Factors of the tangent with stress resultants.
 
     scale (n + m,): of coordinates, which come first, and resultants; kept (n,): coordinates without normals of rollers;
-    turn (n, n): takes these normals to x, None where there are none.
+    turn (n, n): takes these normals to x, None if there are none.
     """
 
     lu: SuperLU

@@ -33,7 +33,7 @@ class PrescribedCoordinate:
 
 
 def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
-    """Return them ordered by number. Raises InputError where two supports prescribe the same one."""
+    """Return them ordered by number. Raises InputError if two supports prescribe the same one."""
     found: dict[int, PrescribedCoordinate] = {}
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)

@@ -39,7 +39,7 @@ def round_off_floor(system: System, p: np.ndarray) -> float:
 class Remainder:
     """What a state lacks to be balanced beyond its last digit.
 
-    step (n,): to be added to p; digits: of the forces, once it is. 0 where not even the first is sure.
+    step (n,): to be added to p; digits: of the forces, once it is. 0 if not even the first is sure.
     """
 
     step: np.ndarray
@@ -53,7 +53,7 @@ def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) 
 
 
 def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
-    """Return how many digits of the forces are sure in a state p (n,) as it stands; all where nothing acts."""
+    """Return how many digits of the forces are sure in a state p (n,); all where nothing acts."""
     zeros = np.zeros(len(p))
     found = residual(system, p, zeros, zeros, load_factor)
     return _digits(system, p, found, load_factor)

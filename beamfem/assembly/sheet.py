@@ -33,7 +33,7 @@ class Sheet:
     """A group of like elements as compiled code takes it.
 
     table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds, law: one whose address
-    its routines hold; order (N,): nodes of the group as they are stored, None where as they are numbered.
+    its routines hold; order (N,): nodes of the group as they are stored, None if as they are numbered.
     """
 
     table: np.ndarray
@@ -62,7 +62,7 @@ class Sheet:
 def storage_order(block: Block) -> np.ndarray | None:
     """Return the nodes (N,) of a block as they are stored: those at ends of elements, then the inner ones by place.
 
-    So nodes of the same place in neighbouring elements are neighbours. None where there are no inner ones.
+    So nodes of the same place in neighbouring elements are neighbours. None if there are no inner ones.
     """
     last = block.node.shape[1] - 1
     if last == 1:

@@ -44,7 +44,7 @@ class StrainRates:
     def at(self, p: np.ndarray, imposing: np.ndarray) -> "StrainsAt":
         """Return what they are in a state p (n,), less what is imposed by loads with the factors `imposing` (k,).
 
-        Raises LinAlgError where a law has a singular stiffness.
+        Raises LinAlgError if a law has a singular stiffness.
         """
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
         places = np.arange(len(at)) % self.coordinates

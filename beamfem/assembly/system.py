@@ -210,7 +210,7 @@ class System:
 
     @cached_property
     def prescribed(self) -> tuple[PrescribedCoordinate, ...]:
-        """Prescribed coordinates, ordered by number. Raises InputError where two supports prescribe the same one."""
+        """Prescribed coordinates, ordered by number. Raises InputError if two supports prescribe the same one."""
         return prescribed_coordinates(self.model)
 
     @cached_property

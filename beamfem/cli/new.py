@@ -14,7 +14,7 @@ def new(
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write a model file with comments that runs as it stands, to make one's own of it."""
+    """Write a commented model file that runs unchanged, as a starting point."""
     with reported(as_json, quiet):
         from beamfem.errors import FileError, InputError
         from beamfem.files import whole

@@ -54,7 +54,7 @@ def command_of(
 
 
 def _option(name: str, parameter: inspect.Parameter, hint: Any, words: str) -> inspect.Parameter | None:
-    """Return the parameter of the command, None where a text cannot describe its values."""
+    """Return the parameter of the command, None if a text cannot describe its values."""
     kind, default = _kind(hint, parameter.default), parameter.default
     required = default is parameter.empty
     names = [f"--{name.replace('_', '-')}", *([f"--{name}"] if "_" in name else [])]
@@ -97,7 +97,7 @@ def _kind(hint: Any, default: Any) -> Any:
 
 
 def _item(hint: Any, default: Any) -> Any:
-    """Return the type of the items of a list, None where the parameter is none."""
+    """Return the type of the items of a list, None if the parameter is none."""
     kind = _kind(hint, default)
     if kind in (tuple, list) and isinstance(default, tuple | list) and default:
         found = type(default[0])

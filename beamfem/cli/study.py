@@ -45,7 +45,7 @@ def study(
 
 
 def find_studies(folder: Path) -> list[Study]:
-    """Return the files of a folder and its sub-folders with a function main. Raises InputError where there are none."""
+    """Return the files of a folder and its sub-folders with a function main. Raises InputError if there are none."""
     from beamfem.errors import InputError
 
     right = "give the folder of the studies with --folder, or start beamfem where it is; they come with the sources"

@@ -30,7 +30,7 @@ _SUFFIXES = {
 
 
 def require_target(option: str, path: Path | None) -> None:
-    """Raise InputError where a file of this kind cannot be written: suffix, a folder in its place, a missing package.
+    """Raise InputError if a file of this kind cannot be written: wrong suffix, a folder of that name, missing package.
 
     option: "out", "plot", "vtk"; "curve" or "table" of a sweep; "film", "page" or "body" of a model file.
     """

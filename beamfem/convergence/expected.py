@@ -8,7 +8,7 @@ from beamfem.element.element import Element
 
 
 def highest_order(parameters: Mapping[str, Any]) -> float:
-    """Return twice the highest degree of the fields among the parameters of a curve, 16 where there is none.
+    """Return twice the highest degree of the fields among the parameters of a curve, 16 if there is none.
 
     Nodal values and energies of elements of degree k gain at most order 2 k; G. Strang and G. Fix, An Analysis of the
     Finite Element Method, 1973, sections 1.6 and 3.4.

@@ -13,7 +13,7 @@ class Arc:
     """Circular axis about a center (x, y) [m] of a radius [m], from start_angle to end_angle [rad] against the x-axis.
 
     Clockwise where end_angle < start_angle; more than a full turn is allowed.
-    Raises InputError where the radius is not positive or the angles are equal.
+    Raises InputError if the radius is not positive or the angles are equal.
     """
 
     center: tuple[float, float]
@@ -46,7 +46,7 @@ class Arc:
 
     @property
     def _sense(self) -> float:
-        """1 where it runs counter-clockwise, -1 clockwise."""
+        """1 if it runs counter-clockwise, -1 clockwise."""
         return float(np.sign(self.end_angle - self.start_angle))
 
     def _angle(self, arc_length: np.ndarray) -> np.ndarray:

@@ -72,7 +72,7 @@ class ArcLength:
 def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
     """Return the arc length over spans between increasing breaks (m + 1,), inside of which the speed is smooth.
 
-    size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError where the speed vanishes.
+    size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError if the speed vanishes.
     """
     low, high = breaks[:-1], breaks[1:]
     whole = _integral(speed, low, high)
@@ -110,7 +110,7 @@ def _integral(speed: Speed, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, where: Callable[[float], str]) -> None:
-    """Raise InputError where the speed vanishes: there a curve may turn back, and its tangent is undefined."""
+    """Raise InputError if the speed vanishes: there a curve may turn back, and its tangent is undefined."""
     from scipy.optimize import minimize_scalar  # slow to import, and seldom needed
 
     low, high = panels[:-1, None], panels[1:, None]

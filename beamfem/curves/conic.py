@@ -19,7 +19,7 @@ def elliptic_arc(
 
     center, first, second: (x, y) [m], the last two conjugate half diameters (the half axes where they are normal to
     each other). Each piece of at most a quarter turn is a rational parabola whose middle weight is the cosine of half
-    its angle. Raises InputError where start equals end or the half diameters are parallel.
+    its angle. Raises InputError if start equals end or the half diameters are parallel.
     """
     middle, one, two = (np.array(vector(*pair)) for pair in (("center", center), ("first", first), ("second", second)))
     begin, turn = finite("start", start), finite("end", end) - finite("start", start)

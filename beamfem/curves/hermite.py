@@ -22,7 +22,7 @@ def spline_through_hermite(
     """Return the cubic spline with positions r (m + 1, 2) [m] and derivatives r_u = dr/du (m + 1, 2) at u (m + 1,).
 
     Exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
-    Raises InputError where u does not increase or the numbers do not match.
+    Raises InputError if u does not increase or the numbers do not match.
     """
     knots = np.array(numbers("u", u))
     if len(knots) < 2 or not np.all(np.diff(knots) > 0.0):

@@ -11,7 +11,7 @@ from beamfem.validation import vector
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError where they coincide."""
+    """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError if they coincide."""
 
     start: tuple[float, float]
     end: tuple[float, float]

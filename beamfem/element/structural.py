@@ -37,7 +37,7 @@ class Structural:
         """Return the section stiffness (..., 4, 4) at points of the reference axis.
 
         E A, k_s G A, E I, E A on the diagonal and the section's coupling of stretch with curvature; the last E A is
-        zero where the nodes hold the length of d.
+        zero if the nodes hold the length of d.
         """
         rigidity = section.rigidity(material)
         matrix = np.diag([rigidity.axial, rigidity.shear, rigidity.bending, rigidity.axial])

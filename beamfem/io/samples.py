@@ -57,7 +57,7 @@ class Samples:
 
     @property
     def material(self) -> Material | None:
-        """The material of the beam, or of its layer; None where the section brings its stiffness."""
+        """The material of the beam, or of its layer; None if the section brings its stiffness."""
         beam = self.mesh.beam
         if self.layer is not None and isinstance(beam.section, Layered):
             return beam.section.layers[self.layer].material

@@ -25,7 +25,7 @@ def merged(nodes: np.ndarray, ends: np.ndarray, near: float) -> np.ndarray:
 def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the cells (m, 3) with straight lines divided where others end on them, and which cell each is a part of.
 
-    near [m]: how far from a line an end may be to lie on it. Raises InputError where a line ends inside a line3.
+    near [m]: how far from a line an end may be to lie on it. Raises InputError if a line ends inside a line3.
     """
     cell, node, fraction = _touches(nodes, cells, near)
     curved = np.flatnonzero(cells[cell, 2] >= 0)

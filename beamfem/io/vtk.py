@@ -41,7 +41,7 @@ def write_vtk(
     of .vtu files, one a step, in the folder <stem>. geometry: "reference" leaves the points where they were, to be
     warped by `displacement`. fields: names of those to write, all by default; single: numbers of four bytes, half
     the size, seven digits. Names and units: docs/paraview.md. Raises InputError for another suffix and for unknown
-    fields; BeamfemError where .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
+    fields; BeamfemError if .vtkhdf is asked for without h5py. Warns where the shape of a section, and so its
     stress, is not known.
     """
     path = path_of(path)

@@ -19,7 +19,7 @@ _ENDING = ".code"
 
 
 def _digest() -> str | None:
-    """Return what the sources of all kernels are, in short; None where they are not files, as in an archive."""
+    """Return what the sources of all kernels are, in short; None if they are not files, as in an archive."""
     try:
         files = [file for file in sorted(_HERE.rglob("*.py")) if not file.name.startswith(".") and file.is_file()]
         content = b"".join(file.name.encode() + file.read_bytes() for file in files)
@@ -33,7 +33,7 @@ _SOURCES = _digest()  # when they were imported: they may change while a process
 
 @cache
 def cache_folder() -> Path | None:
-    """Return the folder of machine code of exactly these kernels for this machine, None where none can be written.
+    """Return the folder of machine code of exactly these kernels for this machine, None if none can be written.
 
     Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code
     of other sources is never found, whatever their times and whoever else writes. Each kind of processor has a folder
@@ -86,7 +86,7 @@ def kept() -> int:
 
 
 def found(name: str) -> bytes | None:
-    """Return the machine code of a kernel, None where there is none or its file is damaged."""
+    """Return the machine code of a kernel, None if there is none or its file is damaged."""
     for folder in _folders():
         with suppress(OSError):
             content = (folder / (name + _ENDING)).read_bytes()

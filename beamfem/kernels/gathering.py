@@ -10,7 +10,7 @@ from beamfem.kernels.record import ROW
 
 @inlined
 def _run(own, count):
-    """Return how many nodes of a batch stand beside the first one in a chunk, 0 where the others are not in a row.
+    """Return how many nodes of a batch stand beside the first one in a chunk, 0 if the others are not in a row.
 
     The others begin the next chunk, if they are in a row as well.
     """
@@ -97,7 +97,7 @@ def _fill_body(count, beams, body, rows):
 def collect(group, system, first, count, rows, copied):
     """Fill the work space of a batch: tables, what acts on its beams, and the first rows of its nodes.
 
-    system: 0 where it does not matter what acts. Where nodes need not be copied and stand in a chunk as their elements
+    system: 0 if it does not matter what acts. Where nodes need not be copied and stand in a chunk as their elements
     follow one another, they are left there, and how far apart those of an element are is returned; else 0.
     """
     small_code()

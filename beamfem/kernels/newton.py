@@ -137,7 +137,7 @@ def iterate(system, solver, calls):
 def count_after_step(system, solver, calls):
     """Return the negative pivots of the tangent in p (n,) with the resultants that the linear `STEP` (n,) leads to.
 
-    -1 where a pivot is tiny.
+    -1 if a pivot is tiny.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     unknown, half, rollers = b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]

@@ -28,7 +28,7 @@ Pairs = tuple[np.ndarray, np.ndarray]
 
 @contextmanager
 def digits_for(what: str) -> Iterator[None]:
-    """Raise ConvergenceError where LAPACK or ARPACK give up, or numbers leave double precision; what: is looked for."""
+    """Raise ConvergenceError if LAPACK or ARPACK give up, or numbers leave double precision; what: is looked for."""
     try:
         yield
     except (LinAlgError, ArpackError, ZeroDivisionError, OverflowError) as error:
@@ -48,7 +48,7 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
     mass: positive definite; factors: of a symmetric matrix, positive definite along the free directions; count: how
     many to find besides the vectors (n, k) that are `known`, with x^T mass x = 1. They are projected out of the inverse
     on both sides: taking their mu away instead leaves what round-off makes of it, which may pass for a mode. m is
-    smaller where there are no more. Raises ConvergenceError.
+    smaller if there are no more. Raises ConvergenceError.
     """
     n = mass.shape[0]
     carried = mass @ known

@@ -21,7 +21,7 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
     L D L^T block by block, with exchanges inside of blocks (Bunch and Kaufman 1977), which end where the fewest rows
     are coupled with what follows: between two elements. Directions of a block that are nearly singular without what
     follows are eliminated together with it, as in multifrontal elimination (Duff and Reid 1983); where these are many,
-    the blocks are joined, up to 3000 rows. None where these are not enough. Raises LinAlgError where numbers are not
+    the blocks are joined, up to 3000 rows. None if these are not enough. Raises LinAlgError if numbers are not
     finite.
     """
     order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
@@ -57,7 +57,7 @@ def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | 
     """Return the negative eigenvalues that go with the first rows of a matrix (n, n), and what these leave behind.
 
     That is how many directions of them wait for rows to come, as what these would leave is too large, and the matrix of
-    those and the other rows. None where more than a few would wait.
+    those and the other rows. None if more than a few would wait.
     """
     largest = np.abs(front).max()
     factored, exchanged = symmetric_factors(front[:inside, :inside])
@@ -95,7 +95,7 @@ def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.nda
 
 
 def _first_coupled(matrix: csr_array) -> np.ndarray:
-    """Return the first row (n,) that each is coupled with, itself where there is none before; of an upper half."""
+    """Return the first row (n,) that each is coupled with, itself if there is none before; of an upper half."""
     row, column = matrix.nonzero()
     result = np.arange(matrix.shape[0])
     np.minimum.at(result, column, row)

@@ -27,7 +27,7 @@ __all__ = [
 
 
 def _told_apart(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of scipy that raises LinAlgError where an array that it is given is not finite."""
+    """Return a function of scipy that raises LinAlgError if an array that it is given is not finite."""
 
     @wraps(function)
     def called(*arguments: Any, **options: Any) -> Any:

@@ -21,7 +21,7 @@ class AlongBeam(ABC):
 
     @abstractmethod
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return one of them at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+        """Return one of them at arc lengths (n,) [m]. Raises InputError if a function gives none."""
 
 
 def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
@@ -47,7 +47,7 @@ def jumps_along(load: AlongBeam) -> tuple[float, ...]:
 
 
 def require_names(load: AlongBeam) -> None:
-    """Raise InputError where `along` is no tuple of names that the load has."""
+    """Raise InputError if `along` is no tuple of names that the load has."""
     kind = type(load).__name__
     if not isinstance(load.along, tuple):
         raise InputError(f'along of {kind} must be a tuple of names, such as ("size",), got {shown(load.along)}')

@@ -30,7 +30,7 @@ _SAMPLES = 32
 class Beam:
     """A beam along a curve, free of stress there.
 
-    elements: number of equal elements, or the fractions of the arc length from 0 to 1 where elements end, or "knots"
+    elements: number of equal elements, or the fractions of the arc length from 0 to 1 at which elements end, or "knots"
     for one cubic element a knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
     or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
     own. Raises InputError, also where double precision has no squares of its stiffness, mass and lengths.
@@ -80,7 +80,7 @@ class Beam:
         return fulfils(self.section, CrossSection)
 
     def section_at(self, arc_length: float) -> CrossSection:
-        """Return the section at an arc length [m]. Raises InputError where a user's function gives none."""
+        """Return the section at an arc length [m]. Raises InputError if a user's function gives none."""
         if self.prismatic:
             return cast(CrossSection, self.section)
         section = called("section", cast(Tapered, self.section), arc_length)
@@ -90,7 +90,7 @@ class Beam:
 
     @cached_property
     def law(self) -> ElasticLaw | None:
-        """The law of its section, None where that is linear."""
+        """The law of its section, None if that is linear."""
         return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
@@ -164,13 +164,13 @@ class Point:
 
 
 def require_point(kind: str, point: object, name: str = "point") -> None:
-    """Raise InputError where what a support, a load or a joint is given for its place is no point."""
+    """Raise InputError if what a support, a load or a joint is given for its place is no point."""
     if not isinstance(point, Point):
         raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {shown(point)}")
 
 
 def require_beam(kind: str, beam: object) -> None:
-    """Raise InputError where what a load or a foundation is given for its place is no beam."""
+    """Raise InputError if what a load or a foundation is given for its place is no beam."""
     if not isinstance(beam, Beam):
         raise InputError(f"beam of {kind} must be a Beam, one of the model's beams, got {shown(beam)}")
 

@@ -12,7 +12,7 @@ _SAMPLES = 33  # along an element
 
 
 def require_body(grid: Grid) -> None:
-    """Raise InputError where a face of a section of known shape lies at the centre of curvature or beyond it.
+    """Raise InputError if a face of a section of known shape lies at the centre of curvature or beyond it.
 
     Between nodes the axis and its sections are interpolated: elements that turn too far are refused as well.
     """
@@ -39,7 +39,7 @@ def require_body(grid: Grid) -> None:
 
 
 def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray) -> None:
-    """Raise InputError where the interpolated body has det J = (r0' + y d') x d <= 0.
+    """Raise InputError if the interpolated body has det J = (r0' + y d') x d <= 0.
 
     At its axis, and at its faces (2,) or (n, 2) where forces are integrated over the body.
     """

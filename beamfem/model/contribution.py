@@ -62,7 +62,7 @@ class Contribution(Protocol):
         """Return what it resists with (3 m + k,): fx, fy [N] and moment [N m] at each point, then its conditions.
 
         The sum of these and of all other forces vanishes in equilibrium: a spring that pulls a point back to the left
-        has a positive fx. A condition is a function of q that is zero where it is met; its multiplier times its
+        has a positive fx. A condition is a function of q that is zero if it is met; its multiplier times its
         derivative belongs to the forces.
         """
         ...
@@ -90,7 +90,7 @@ class Remembering(Contribution, Protocol):
 
 
 def require_connector(connector: Contribution) -> None:
-    """Raise InputError where points, unknowns or conservative of a connector are not what they should be."""
+    """Raise InputError if points, unknowns or conservative of a connector are not what they should be."""
     name = type(connector).__name__
     points = items(f"points of {name}", connector.points)
     if not points:

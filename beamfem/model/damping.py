@@ -10,7 +10,7 @@ from beamfem.section.protocol import CrossSection
 def retardation_time(section: CrossSection, material: Material | None) -> float:
     """Return the retardation time [s] of a section and the material of its beam, which a layered one does not need.
 
-    Raises InputError where layers have different ones.
+    Raises InputError if layers have different ones.
     """
     try:
         return _known_time(section, material)  # type: ignore[arg-type]

@@ -65,7 +65,7 @@ class Grid:
         return element, float(np.clip((along - start) / (end - start), 0.0, 1.0))
 
     def node_of(self, element: int, xi: float) -> int | None:
-        """Return the node at a point of an element, None where there is none."""
+        """Return the node at a point of an element, None if there is none."""
         here = self.beam.element.field.nodes.tolist()
         return int(self.node[element, here.index(xi)]) if xi in here else None
 

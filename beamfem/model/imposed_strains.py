@@ -100,7 +100,7 @@ def _places(beam: Beam) -> np.ndarray:
 
 
 def require_followed(load: ImposedStrain) -> None:
-    """Raise InputError where nodes cannot take what they are given."""
+    """Raise InputError if nodes cannot take what they are given."""
     coordinates, name = load.beam.element.coordinates, load.beam.element.name
     if not isinstance(coordinates, ShearFree):
         return

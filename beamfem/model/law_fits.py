@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def require_law_fits(beam: "Beam") -> None:
-    """Raise InputError where the section has a law, but the element takes it for linear, or the law is not sound.
+    """Raise InputError if the section has a law, but the element takes it for linear, or the law is not sound.
 
     A law is one function of all strains at a point. Elements that take some of them at other points than others, or
     assume them there, know what to do with energies that are quadratic only.

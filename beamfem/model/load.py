@@ -129,7 +129,7 @@ class LineLoad(AlongBeam, Load):
         """Return the forces (n, 2) [N/m] at arc lengths (n,) [m] of the reference."""
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the function named in `along` at arc lengths (n,) [m]. Raises InputError where it gives no numbers."""
+        """Return the function named in `along` at arc lengths (n,) [m]. Raises InputError if it gives no numbers."""
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         found = [called(what, given, s) for s in arc_length.tolist()]
         with suppress(ValueError):  # of different shapes
@@ -183,7 +183,7 @@ class ImposedStrain(AlongBeam, Load):
         return np.zeros((len(arc_length), 2))
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return what is named in `along` at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+        """Return what is named in `along` at arc lengths (n,) [m]. Raises InputError if a function gives none."""
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(given):
             return np.full(len(arc_length), given)
@@ -214,7 +214,7 @@ class ImposedStrain(AlongBeam, Load):
 def factor(load: Load, time: float, static: bool) -> float:
     """Return the multiplier of a load at a time, in statics at a load factor.
 
-    amplitude(time) where there is one; else the load factor in statics for loads with `scale`, else 1.
+    amplitude(time) if there is one; else the load factor in statics for loads with `scale`, else 1.
     """
     if load.amplitude is not None:
         return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)

@@ -69,7 +69,7 @@ class DistributedLoad(LineLoad):
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError where a function gives none."""
+        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError if a function gives none."""
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
         given, name = self.vector, "vector of DistributedLoad"
@@ -111,7 +111,7 @@ class Pressure(LineLoad):
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError where a function gives none."""
+        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError if a function gives none."""
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given, name = self.value, "value of Pressure"

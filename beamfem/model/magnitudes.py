@@ -18,7 +18,7 @@ _SAMPLES = 5  # points of a curve at which its coordinates are looked at
 
 
 def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
-    """Raise InputError where a quantity that solvers form of a beam has no square in double precision.
+    """Raise InputError if a quantity that solvers form of a beam has no square in double precision.
 
     They are its coordinates and the length h of its shortest element [m], E A, k_s G A, E A / h, k_s G A h, E I / h and
     E I / h^3, the mass of an element and its rotary inertia over h^2, and of a body the moments of its section times E.

@@ -16,7 +16,7 @@ from beamfem.model.reference import reference_angle
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of a beam: carrier (nodes,), coordinates (nodes, npn), -1 where there are fewer, frame (nodes, 3)."""
+    """Nodes of a beam: carrier (nodes,), coordinates (nodes, npn), -1 if there are fewer, frame (nodes, 3)."""
 
     node_kind: np.ndarray
     dof: np.ndarray

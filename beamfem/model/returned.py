@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 
 def forces_of(load: "LineLoad", arc_length: np.ndarray) -> np.ndarray:
-    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError where it gives others."""
+    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError if it gives others."""
     return _table(load, "forces", load.forces, arc_length, 2)
 
 
 def free_strain_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
-    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError where it gives others."""
+    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError if it gives others."""
     return _table(load, "free_strain", load.free_strain, arc_length, 4)
 
 

@@ -61,7 +61,7 @@ class Acceleration:
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Strains that a load imposes on a beam: its name; values by their names with their units, None where they vary."""
+    """Strains that a load imposes on a beam: its name; values by their names with their units, None if they vary."""
 
     beam: Beam
     name: str

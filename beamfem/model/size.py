@@ -11,7 +11,7 @@ _COORDINATE = 300  # bytes of a coordinate; 310 to 370 were measured in statics
 
 
 def require_room(beams: Sequence[Beam]) -> None:
-    """Raise InputError where the elements of a model need more memory [bytes] than this computer has."""
+    """Raise InputError if the elements of a model need more memory [bytes] than this computer has."""
     memory = installed_memory()
     needed = _COORDINATE * sum(map(_coordinates, beams))
     if memory is None or needed <= SHARE * memory:

@@ -49,7 +49,7 @@ class PointSupport(Support):
 
     @property
     def direction(self) -> np.ndarray | None:
-        """Unit vector (2,) along which "normal" is prescribed, None where it is not."""
+        """Unit vector (2,) along which "normal" is prescribed, None if it is not."""
         return None
 
     @property

@@ -88,7 +88,7 @@ class Prescribed(PointSupport):
 class Spring(PointSupport):
     """Spring to the ground against displacement (kx, ky) [N/m] and rotation [N m/rad], unstressed in the reference.
 
-    Raises InputError for a negative stiffness, or where there is none at all.
+    Raises InputError for a negative stiffness, or if there is none at all.
     """
 
     point: Point
@@ -113,7 +113,7 @@ class Spring(PointSupport):
 class Foundation(LineSupport):
     """Winkler foundation along a beam, (kx, ky) [N/m^2] per reference length, unstressed in the reference.
 
-    Raises InputError for a negative stiffness, or where there is none at all.
+    Raises InputError for a negative stiffness, or if there is none at all.
     """
 
     beam: Beam

@@ -42,7 +42,7 @@ class Distribution:
     def normal_stress(self, layer: int, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
         """Return the stress along the beam [Pa] at heights y [m] of a layer under N [N] and M [N m] about the axis.
 
-        nan where the section is known by its stiffness only, off the axis where its height is not known, and where it
+        nan if the section is known by its stiffness only, off the axis where its height is not known, and where it
         reaches the centre of curvature.
         """
         y = np.asarray(y, dtype=float)
@@ -57,7 +57,7 @@ class Distribution:
     def shear_stress(self, layer: int, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """Return the shear stress [Pa] at heights y [m] of a layer under V [N], its mean over the width there.
 
-        0 at the faces; nan where the width of the section is not known.
+        0 at the faces; nan if the width of the section is not known.
         """
         y = np.asarray(y, dtype=float)
         if not self.parts:

@@ -91,7 +91,7 @@ def law_of(section: object, material: Material | None) -> ElasticLaw | None:
 
 
 def require_law(law: ElasticLaw) -> None:
-    """Raise InputError where a law is not what `SectionLaw` asks for."""
+    """Raise InputError if a law is not what `SectionLaw` asks for."""
     zero = np.zeros((1, 3))
     section = cast(Any, law.section)
     if not fulfils(section, CrossSection):
@@ -108,7 +108,7 @@ def require_law(law: ElasticLaw) -> None:
 
 
 def _require_consistent(law: ElasticLaw, strain: np.ndarray, unit: np.ndarray) -> None:
-    """Raise InputError where derivatives by complex steps, differences and the energy of a law disagree."""
+    """Raise InputError if derivatives by complex steps, differences and the energy of a law disagree."""
     found, tangent = law.linearised(strain)
     moved = law.resultants(strain.astype(complex)).imag
     whole, work = tangent * unit[:, None] * unit, found * unit
@@ -141,7 +141,7 @@ def _difference(function: Any, at: np.ndarray, step: np.ndarray) -> np.ndarray:
 
 
 def _require_rigidity(law: ElasticLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
-    """Raise InputError where a law does not begin with the stiffness of its section."""
+    """Raise InputError if a law does not begin with the stiffness of its section."""
     own = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
     own[0, 2] = own[2, 0] = rigidity.coupling
     units = lengths[:, None] * lengths

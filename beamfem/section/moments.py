@@ -124,7 +124,7 @@ class Section:
 
 
 def required(material: Material | None) -> Material:
-    """Return the material, or raise InputError where a section needs one and has none."""
+    """Return the material, or raise InputError if a section needs one and has none."""
     if material is None:
         raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
     return material

@@ -30,7 +30,7 @@ class Inertia:
 
 @runtime_checkable
 class CrossSection(Protocol):
-    """A section; the material is None where the section brings its own."""
+    """A section; the material is None if the section brings its own."""
 
     @property
     def shear_factor(self) -> float: ...

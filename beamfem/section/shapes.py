@@ -68,7 +68,7 @@ def _power(length: float, order: int) -> float:
 
 
 def _require_moments(kind: str, *moments: float) -> None:
-    """Raise InputError where double precision has no moments [m^2, m^4, m^6] of a section so large or small."""
+    """Raise InputError if double precision has no moments [m^2, m^4, m^6] of a section so large or small."""
     for name, value in zip(("area", "second moment", "fourth moment"), moments, strict=False):
         if not 0.0 < value < math.inf:
             raise InputError(f"the {name} of this {kind} is {value:g} in double precision; give lengths in other units")

@@ -38,7 +38,7 @@ def _varies(value: Any) -> bool:
 
 
 def _require_room(counts: Sequence[int]) -> None:
-    """Raise InputError where the points of a study need more memory than this computer has."""
+    """Raise InputError if the points of a study need more memory than this computer has."""
     points, memory = math.prod(counts), installed_memory()
     if memory is not None and points * _POINT > SHARE * memory:
         product = " x ".join(map(str, counts))
@@ -54,7 +54,7 @@ def combinations(varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) 
 
 
 def check_call(function: Callable[..., Any], point: Mapping[str, Any]) -> None:
-    """Raise InputError where `function` cannot be called with these parameters."""
+    """Raise InputError if `function` cannot be called with these parameters."""
     if not callable(function):
         raise InputError(f"the first argument must be a function, got {function!r}")
     try:

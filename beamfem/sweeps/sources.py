@@ -31,7 +31,7 @@ class Sources:
         self._behind: dict[frozenset[str], dict[str, str]] = {}
 
     def behind(self, function: Callable[..., Any], point: Mapping[str, Any]) -> Mapping[str, str]:
-        """Return a digest of the content of each module of the user's own that a call can reach.
+        """Return a digest of the content of each module of the user that a call can reach.
 
         Comments and layout do not count. Of the script that is run only what its functions need counts, since it holds
         the call of the sweep as well. Data files that are read are not looked at.

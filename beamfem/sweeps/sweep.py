@@ -174,7 +174,7 @@ def sweep(
     on unchanged.
     executor: a class, or a function without arguments, that creates a `concurrent.futures.Executor`; with None the
     calls run in this process, one after the other. store: a file or folder that saves each result as it arrives; the
-    next run of the same function with the same parameters reads it. If one of the user's own files that the function
+    next run of the same function with the same parameters reads it. If one of the user files that the function
     depends on (its constants, helpers, and their imports) has changed since, a `ChangedCodeWarning` is given and the
     points are computed again; keep_stale: use the old results instead. A call that fails or kills its worker is listed
     in `failures` and the sweep continues; the next run tries it again. On an interrupt, the KeyboardInterrupt carries

@@ -119,7 +119,7 @@ class Modes:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """A motion; start: the state that it starts from; integrator: one of the user's own in place of `rho_inf`."""
+    """A motion; start: the state that it starts from; integrator: a user-defined one in place of `rho_inf`."""
 
     duration: float
     step: float

@@ -22,7 +22,7 @@ class Code:
     module: ModuleType
 
     def named(self, name: str) -> Callable[..., Any]:
-        """Return a class or function by its name. Raises InputError where there is none."""
+        """Return a class or function by its name. Raises InputError if there is none."""
         public = {key: value for key, value in vars(self.module).items() if callable(value) and key[0] != "_"}
         if name in public:
             return public[name]
@@ -46,7 +46,7 @@ def run_code(folder: Path, name: str) -> Code:
 
 
 def _require_own_name(file: Path) -> None:
-    """Raise InputError where another module has the name, which would be taken in its place somewhere."""
+    """Raise InputError if another module has the name, which would be taken in its place somewhere."""
     installed = PathFinder.find_spec(file.stem)
     origin = installed.origin if installed is not None else None
     if file.stem in sys.stdlib_module_names or (origin is not None and Path(origin).resolve() != file.resolve()):

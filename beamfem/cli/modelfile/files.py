@@ -29,7 +29,7 @@ _HISTORY = ("displacement", "ux", "uy", "position", "velocity", "rotation", "for
 
 
 class OutputFile(Protocol):
-    """What every file to write offers; require: raises InputError where a model or an analysis cannot fill it."""
+    """What every file to write offers; require: raises InputError if a model or an analysis cannot fill it."""
 
     @property
     def file(self) -> Path: ...
@@ -291,7 +291,7 @@ def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tupl
 
 
 def require_saved(model: Model) -> None:
-    """Raise InputError where a model has parts that no results file can hold."""
+    """Raise InputError if a model has parts that no results file can hold."""
     describe(model, np.zeros(1))
 
 

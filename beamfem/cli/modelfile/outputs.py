@@ -109,7 +109,7 @@ class Output:
 
     @staticmethod
     def _require_within(solution: Solution, value: float) -> None:
-        """Raise InputError where no state is at or near a time [s] or load factor."""
+        """Raise InputError if no state is at or near a time [s] or load factor."""
         low, high = float(solution.at.min()), float(solution.at.max())
         what = "load factor" if solution.static else "time"
         if not low - _NEAR <= value <= high + _NEAR:
@@ -158,7 +158,7 @@ def outputs(
 
 
 def require_supported(table: Table, key: str, model: Model, point: Point, quantities: Sequence[str]) -> None:
-    """Raise ModelFileError where a reaction is asked for at a point without a support."""
+    """Raise ModelFileError if a reaction is asked for at a point without a support."""
     reactions = [quantity for quantity in quantities if QUANTITIES.get(quantity, ("",))[0] == "reaction"]
     supported = {(id(support.point.beam), support.point.fraction) for support in model.point_supports}
     if reactions and (id(point.beam), point.fraction) not in supported:

@@ -62,7 +62,7 @@ def _hints(maker: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _reader(hint: Any, types: Types) -> Reader | None:
-    """Return what reads a value of a type, or None where it is taken as it is."""
+    """Return what reads a value of a type, or None if it is taken as it is."""
     parts = typing.get_args(hint) if typing.get_origin(hint) in (typing.Union, UnionType) else (hint,)
     if Callable in types and any(_is_function(part) for part in parts):
         return types[Callable]

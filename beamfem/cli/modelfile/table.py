@@ -59,13 +59,13 @@ class Table:
         return self.sub(self.values[key], key)
 
     def sub(self, value: Any, *path: str | int) -> "Table":
-        """Return a value below this table as a table of its own. Raises ModelFileError where it is none."""
+        """Return a value below this table as a table of its own. Raises ModelFileError if it is none."""
         if not isinstance(value, dict):
             raise self.source.error((*self.path, *path), f"must be a table, got {shown(value)}")
         return Table(self.source, (*self.path, *path), value)
 
     def tables(self, key: str) -> list["Table"]:
-        """Return the array of tables at a key, empty where there is none. Raises ModelFileError."""
+        """Return the array of tables at a key, empty if there is none. Raises ModelFileError."""
         values = self.values.get(key, [])
         if not isinstance(values, list):
             raise self.error(f"must be an array of tables, each headed [[{key}]], got {shown(values)}", key)

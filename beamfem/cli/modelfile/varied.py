@@ -53,7 +53,7 @@ def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
 
 
 def _path(table: Table, root: Table) -> Path:
-    """Return where in the file the key of a sweep stands. Raises ModelFileError where it does not."""
+    """Return where in the file the key of a sweep stands. Raises ModelFileError if it does not."""
     name, path, end = table.text("key"), [], 0
     for found in _PART.finditer(name):
         if found.start() != end:

@@ -35,7 +35,7 @@ class Build:
         return self.builder.shuffle_vector(inserted, undefined, first)
 
     def converted(self, value: Value, kind: Kind) -> ir.Value:
-        """Return a value as one of another kind; raise TypeError where that loses something."""
+        """Return a value as one of another kind; raise TypeError if that loses something."""
         if value.kind is kind or {value.kind, kind} == {REALS, ROWS}:
             return value.llvm
         if value.kind is FLAG and kind is WHOLE:

@@ -30,7 +30,7 @@ def _codes(file: str, text: str) -> list[CodeType]:
 def definition(function: Callable[..., Any]) -> ast.FunctionDef:
     """Return the syntax tree of a function, with the lines of its file.
 
-    Raises TypeError where there is no text, where it is that of another function, as after a change of the file, and
+    Raises TypeError if there is no text, where it is that of another function, as after a change of the file, and
     for arguments that are more than names.
     """
     code = function.__code__

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.io.cells import VERTEX, Content, by_precision
-from beamfem.io.vertices import ROLES, flat, vertices
+from beamfem.io.vertices import ROLES, vertices
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
+from beamfem.results import postprocess
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -29,6 +30,13 @@ class Boundary:
         self.kinds = list(dict.fromkeys(group.kind for group in self.groups))
         self._sizes = [len(group.xi) for group in self.groups]
         self._beam = [numbers[id(group.mesh)] for group in self.groups]
+        owner = np.repeat(np.array(self._beam, dtype=np.int64), self._sizes)
+        self._element, self._xi = (
+            np.concatenate([getattr(group, name) for group in self.groups]) if self.groups else np.empty(0)
+            for name in ("element", "xi")
+        )
+        # the vertices of each beam that has some
+        self._places = [(model.meshes[number], np.flatnonzero(owner == number)) for number in dict.fromkeys(self._beam)]
 
     @property
     def points(self) -> int:
@@ -74,14 +82,14 @@ class Boundary:
         A displacement is that of the axis; what does not apply at a vertex is zero there.
         """
         part, chosen = solution[rows], self.content.chosen(self.names)
-        position = flat(np.concatenate([group.positions(part.p) for group in self.groups], axis=1))
+        position = self._positions(part.p)
         found = {"points": position, "displacement": position - self._reference}
         if self.content.geometry == "reference":
             found["points"] = np.repeat(self._reference[None], len(part), axis=0)
-        values = [group.values(part) for group in self.groups]
-        for name in chosen:
-            if name in _COMPONENTS:
-                found[name] = self._table(name, values, len(part))
+        wanted = [name for name in chosen if name in _COMPONENTS]
+        values = [group.values(part) for group in self.groups] if wanted else []
+        for name in wanted:
+            found[name] = self._table(name, values, len(part))
         return by_precision({name: found[name] for name in ("points", *chosen)}, self.content)
 
     def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
@@ -91,6 +99,17 @@ class Boundary:
         table = np.concatenate(parts, axis=1)
         return table if components == 3 else table[..., 0]
 
+    def _positions(self, p: np.ndarray) -> np.ndarray:
+        """Return the positions (steps, points, 3) [m] of the vertices in states p (steps, n)."""
+        result = np.zeros((len(p), self.points, 3))
+        for mesh, own in self._places:
+            vectors = postprocess.nodal_vectors(mesh, p)
+            result[:, own, :2] = postprocess.axis(mesh, vectors, self._element[own], self._xi[own]).r
+        return result
+
     @cached_property
     def _reference(self) -> np.ndarray:
-        return flat(np.concatenate([reference_position(group.mesh, group.element, group.xi) for group in self.groups]))
+        result = np.zeros((self.points, 3))
+        for mesh, own in self._places:
+            result[own, :2] = reference_position(mesh, self._element[own], self._xi[own])
+        return result

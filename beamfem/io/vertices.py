@@ -17,6 +17,7 @@ from beamfem.model.returned import forces_of
 from beamfem.model.support import DIRECTIONS, LineSupport, PointSupport
 from beamfem.results import postprocess
 from beamfem.results.loading import loading
+from beamfem.results.reactions import reaction_of
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -41,10 +42,6 @@ class Vertices:
     element: np.ndarray
     xi: np.ndarray
     values: Callable[["Solution"], _Values]
-
-    def positions(self, p: np.ndarray) -> np.ndarray:
-        """Return where they are (steps, n, 2) [m] in states (steps, coordinates)."""
-        return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi).r
 
 
 def vertices(model: Model) -> list[Vertices]:
@@ -79,7 +76,7 @@ def _supports(model: Model) -> Iterator[Vertices]:
         kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
         fixed = _fixed(supports)
         place = _at(model, supports[0].point)
-        yield Vertices(kind, _SUPPORT, (*_ACTION, *fixed), *place, _reaction(supports[0].point, fixed))
+        yield Vertices(kind, _SUPPORT, (*_ACTION, *fixed), *place, _reaction(supports, fixed))
     for foundation in model.line_supports:
         place = _along(model, foundation.beam)
         yield Vertices(type(foundation).__name__, _SUPPORT, ("line_force",), *place, _of_foundation(foundation, *place))
@@ -99,9 +96,9 @@ def _fixed(supports: list[PointSupport]) -> _Values:
     return {name: each for name, each in (("prescribed", prescribed), ("stiffness", stiffness)) if each.any()}
 
 
-def _reaction(point: Point, fixed: _Values) -> Callable[["Solution"], _Values]:
+def _reaction(supports: list[PointSupport], fixed: _Values) -> Callable[["Solution"], _Values]:
     def values(part: "Solution") -> _Values:
-        found = part.reaction(point)[:, None]
+        found = reaction_of(part, supports)[:, None]
         constant = {name: np.tile(each, (len(part), 1, 1)) for name, each in fixed.items()}
         return {"force": flat(found[..., :2]), "moment": found[..., 2:], **constant}
 

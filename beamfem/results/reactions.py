@@ -1,5 +1,6 @@
 """Forces and moments that supports exert on a beam."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ from beamfem.assembly.prescribed import COORDINATES, coordinate_of
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
+from beamfem.model.support import PointSupport
 from beamfem.results.last_digits import exactly
 from beamfem.results.loading import loading
 
@@ -22,11 +24,18 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     Those at points of other beams that are joined there are not in it. Raises InputError where no support is.
     """
     model = solution.model
-    mesh = model.mesh_of(point)
+    model.mesh_of(point)  # refuses what is no point of this model
     on_beam = [support for support in model.point_supports if support.point.beam is point.beam]
     own = [support for support in on_beam if abs(support.point.fraction - point.fraction) < 1e-9]
     if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
+    return reaction_of(solution, own)
+
+
+def reaction_of(solution: "Solution", own: Sequence[PointSupport]) -> np.ndarray:
+    """Return fx, fy [N] and m [N m] (steps, 3) of all supports at one point of a beam."""
+    point = own[0].point
+    mesh = solution.model.mesh_of(point)
     dofs = mesh.coordinates_of(mesh.node_at(point.fraction))
     prescribed = {coordinate_of(support, direction) for support in own for direction in support.prescribed()}
     if None in prescribed:  # an inclined roller

@@ -1,1 +1,1 @@
-"""What is where, and which coordinate is whose; a model knows no solver."""
+"""Geometry, loads and supports of beams, and the numbering of their coordinates; a model knows no solver."""

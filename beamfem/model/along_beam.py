@@ -1,4 +1,4 @@
-"""What loads along a beam have in common: values that may be functions of the arc length."""
+"""Common parts of loads along beams: values that may be functions of the arc length."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from beamfem.validation import function_of_one, shown
 
 
 class AlongBeam(ABC):
-    """A load along a beam; `along`: names of what may be a function of the arc length [m] from the start."""
+    """A load along a beam; `along`: names of the fields that may be functions of the arc length [m] from the start."""
 
     along: ClassVar[tuple[str, ...]] = ()
 
@@ -21,11 +21,11 @@ class AlongBeam(ABC):
 
     @abstractmethod
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return one of them at arc lengths (n,) [m]. Raises InputError if a function gives none."""
+        """Return a field at arc lengths (n,) [m]. Raises InputError if a function gives no value."""
 
 
 def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
-    """Return what of a load is a function of the arc length."""
+    """Return the fields of a load that are functions of the arc length."""
     found = {name: getattr(load, name) for name in load.along}
     return {name: value for name, value in found.items() if callable(value)}
 
@@ -41,13 +41,13 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
 
 
 def jumps_along(load: AlongBeam) -> tuple[float, ...]:
-    """Return the arc lengths [m] at which what a load gives a beam jumps, by itself or with the section."""
+    """Return the arc lengths [m] at which the effect of a load on a beam jumps, by itself or with the section."""
     kinks = [kinks_along(load, name) for name in functions_along(load)]
     return (*load.beam.jumps, *(kink for found in kinks for kink in found))
 
 
 def require_names(load: AlongBeam) -> None:
-    """Raise InputError if `along` is no tuple of names that the load has."""
+    """Raise InputError unless `along` is a tuple of names of the load's fields."""
     kind = type(load).__name__
     if not isinstance(load.along, tuple):
         raise InputError(f'along of {kind} must be a tuple of names, such as ("size",), got {shown(load.along)}')
@@ -57,7 +57,7 @@ def require_names(load: AlongBeam) -> None:
 
 
 def check_along(load: AlongBeam) -> None:
-    """Raise InputError for functions of the arc length that are none."""
+    """Raise InputError for invalid functions of the arc length."""
     kind = type(load).__name__
     require_names(load)
     for name, function in functions_along(load).items():

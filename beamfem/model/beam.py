@@ -1,4 +1,4 @@
-"""A beam: an axis, a mesh, an element, a section and a material."""
+"""A beam: axis, mesh, element, section and material."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,15 +28,16 @@ _SAMPLES = 32
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A beam along a curve, free of stress there.
+    """A beam along a curve, stress-free in this configuration.
 
     elements: number of equal elements, or the fractions of the arc length from 0 to 1 at which elements end, or "knots"
-    for one cubic element a knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
-    or a function of the arc length [m] from the start that gives one; material: not needed where the section brings its
-    own. Raises InputError, also where double precision has no squares of its stiffness, mass and lengths.
+    for one cubic element per knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
+    or a function of the arc length [m] from the start that returns one; material: not needed if the section has its
+    own. Raises InputError, also if the squares of its stiffness, mass or lengths exceed double precision.
 
-    Where a support, a joint, a point load or a jump of the section needs a node inside an element, that is divided; an
-    end of elements that is very near (1 % of one) moves there. Jumps are found, or declared as `kinks` of the function.
+    If a support, joint, point load or jump of the section requires a node inside an element, the element is divided; an
+    element end that is very close (1 % of an element) is moved there instead. Jumps are found, or declared as `kinks`
+    of the function.
     """
 
     curve: Curve
@@ -76,7 +77,7 @@ class Beam:
 
     @cached_property
     def prismatic(self) -> bool:
-        """Whether the section is the same all along."""
+        """Whether the section is constant along the beam."""
         return fulfils(self.section, CrossSection)
 
     def section_at(self, arc_length: float) -> CrossSection:
@@ -90,7 +91,7 @@ class Beam:
 
     @cached_property
     def law(self) -> ElasticLaw | None:
-        """The law of its section, None if that is linear."""
+        """The nonlinear law of its section, None for linear sections."""
         return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
@@ -113,17 +114,17 @@ class Beam:
 
     @property
     def shortest(self) -> float:
-        """Share of the shortest element in the length, before supports and loads divide it; of knot spans the mean."""
+        """Shortest element as a fraction of the length, before supports and loads divide it; for knot spans the mean."""
         whole = isinstance(self.elements, int | str)
         return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 
     @property
     def samples(self) -> int:
-        """Number of equal parts among which jumps of functions of its arc length are looked for."""
+        """Number of equal parts in which jumps of functions of its arc length are searched for."""
         return max(self.element_count, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
-        """Return what elastic forces, inertia, heat and drawing take of the section at an arc length, as numbers."""
+        """Return the numbers of the section at an arc length that elastic forces, inertia, heat and drawings use."""
         section = self.section_at(arc_length)
         parts = (section.rigidity(self.material), section.inertia(self.material))
         numbers = [value for part in parts for value in vars(part).values()]
@@ -164,19 +165,19 @@ class Point:
 
 
 def require_point(kind: str, point: object, name: str = "point") -> None:
-    """Raise InputError if what a support, a load or a joint is given for its place is no point."""
+    """Raise InputError if the place given for a support, load or joint is not a point."""
     if not isinstance(point, Point):
         raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {shown(point)}")
 
 
 def require_beam(kind: str, beam: object) -> None:
-    """Raise InputError if what a load or a foundation is given for its place is no beam."""
+    """Raise InputError if the place given for a load or foundation is not a beam."""
     if not isinstance(beam, Beam):
         raise InputError(f"beam of {kind} must be a Beam, one of the model's beams, got {shown(beam)}")
 
 
 def reference_positions(points: Sequence[Point]) -> np.ndarray:
-    """Return the positions in the reference (n, 2) [m], of points on straight beams all at once."""
+    """Return the reference positions (n, 2) [m] of points, those on straight beams all at once."""
     result = np.empty((len(points), 2))
     curves = [point.beam.curve for point in points]
     straight = [(i, curve) for i, curve in enumerate(curves) if isinstance(curve, Line)]
@@ -196,7 +197,7 @@ def _without_dimensions(value: object) -> bool:
 
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:
-    """Check the ends of elements that a user gives."""
+    """Check element ends given by a user."""
     try:
         ends = numbers("elements", values)
     except InputError as error:
@@ -209,7 +210,7 @@ def _fractions(values: Sequence[float]) -> tuple[float, ...]:
 
 
 def _check_knots(elements: str, curve: Curve, element: Element) -> None:
-    """Refuse a mesh of knot spans where elements are not the spline's cubics."""
+    """Refuse a mesh of knot spans for elements other than the cubics of the spline."""
     if elements != "knots":
         raise InputError(f'elements must be a number, a list of fractions or "knots", got {elements!r}')
     if not isinstance(curve, BSpline):

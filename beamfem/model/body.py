@@ -1,4 +1,4 @@
-"""Whether the body of a beam can be: its sections must not overlap, on its curve and on what elements make of it."""
+"""Check that the body of a beam is possible: sections must not overlap, on the curve and on its interpolation."""
 
 import numpy as np
 
@@ -12,9 +12,9 @@ _SAMPLES = 33  # along an element
 
 
 def require_body(grid: Grid) -> None:
-    """Raise InputError if a face of a section of known shape lies at the centre of curvature or beyond it.
+    """Raise InputError if a face of a section of known shape lies at or beyond the centre of curvature.
 
-    Between nodes the axis and its sections are interpolated: elements that turn too far are refused as well.
+    The axis and its sections are interpolated between nodes: elements that turn too far are refused as well.
     """
     if grid.straight:
         return
@@ -61,7 +61,7 @@ def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.nd
 
 
 def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:
-    """Return lower and upper y [m] of a section, the axis where its height is neither known nor integrated over."""
+    """Return lower and upper y [m] of a section, zero if its height is neither known nor integrated over."""
     if grid.beam.element.forces.fills_body:
         return section.bounds
     parts = section.parts(grid.beam.material) if isinstance(section, HasParts) else ()

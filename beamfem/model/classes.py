@@ -1,4 +1,4 @@
-"""Classes of identical elements of a beam, and what the kernels need of each."""
+"""Classes of identical elements of a beam, and the data of each for the kernels."""
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
@@ -30,7 +30,7 @@ class Classes:
 
 
 def element_classes(grid: Grid) -> Classes:
-    """Return the classes of a grid: elements of equal length of a straight prismatic beam, else each its own."""
+    """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
     if grid.straight and grid.beam.prismatic:
         _, first, kind = np.unique(
             np.round(grid.lengths / grid.lengths.max(), 9), return_index=True, return_inverse=True
@@ -63,9 +63,9 @@ def element_classes(grid: Grid) -> Classes:
 
 
 def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
-    """Return what straight prismatic beams of one element have in common if their classes are the same.
+    """Return a key that straight prismatic beams of one element share if their classes are equal.
 
-    Lengths count as equal within 1e-12 of themselves. A beam that is like no other has its number.
+    Lengths are equal within a relative 1e-12. A beam unlike any other has its number as key.
     """
     found: list[Hashable] = list(range(len(grids)))
     if len(grids) == 1:
@@ -86,7 +86,7 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 
 
 def by_value(item: object) -> Hashable:
-    """Return the item itself, or its identity where it cannot be compared by value."""
+    """Return the item itself, or its identity if it cannot be compared by value."""
     try:
         hash(item)
     except TypeError:

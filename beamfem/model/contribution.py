@@ -1,4 +1,4 @@
-"""What adds forces to a model by a rule of its own: between points of beams, with a state of motion as its argument."""
+"""User-defined forces between points of beams, as functions of the state of motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from beamfem.validation import count, finite, flag, items
 
 @dataclass(frozen=True, eq=False)
 class At:
-    """Where a contribution is evaluated.
+    """The state at which a contribution is evaluated.
 
-    q (m, 3): x, y [m] and turn from the reference [rad] of its points; v, a (m, 3): their rates and accelerations, zero
-    in statics; own (k,): its own unknowns; memory (h,): what it remembers of the steps before; reference (m, 3): q of
-    the stress-free model; time: [s], in statics the load factor; gravity (2,): acceleration [m/s^2] of the model's
-    Gravity then.
+    q (m, 3): x, y [m] and rotation from the reference [rad] of its points; v, a (m, 3): their velocities and
+    accelerations, zero in statics; own (k,): its own unknowns; memory (h,): its history variables of the last step;
+    reference (m, 3): q in the stress-free model; time: [s], in statics the load factor; gravity (2,): acceleration
+    [m/s^2] of the model's Gravity at that time.
     """
 
     q: np.ndarray
@@ -35,12 +35,12 @@ class At:
 class Contribution(Protocol):
     """A frozen dataclass with these members, given to `Model(connectors=[...])`.
 
-    points: where it acts, m points of beams; unknowns: k, how many multipliers it brings along; conservative: whether
-    its force at rest is the derivative of a potential, so that its stiffness is symmetric.
+    points: the m points of beams that it acts on; unknowns: its number k of multipliers; conservative: whether its
+    force at rest has a potential, so that its stiffness is symmetric.
 
-    Tangents are the derivatives of `force` by complex steps, exact to round-off, so that it must consist of analytic
-    functions: `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved.
-    Cases such as contact are told apart by real parts, `np.where(gap.real < 0.0, ...)`.
+    Tangents are complex-step derivatives of `force`, exact to round-off, so it must consist of analytic functions:
+    `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved. Cases such
+    as contact are distinguished by real parts, `np.where(gap.real < 0.0, ...)`.
     """
 
     @property
@@ -59,38 +59,38 @@ class Contribution(Protocol):
         ...
 
     def force(self, at: At) -> np.ndarray:
-        """Return what it resists with (3 m + k,): fx, fy [N] and moment [N m] at each point, then its conditions.
+        """Return its resisting forces (3 m + k,): fx, fy [N] and moment [N m] at each point, then its conditions.
 
-        The sum of these and of all other forces vanishes in equilibrium: a spring that pulls a point back to the left
-        has a positive fx. A condition is a function of q that is zero if it is met; its multiplier times its
-        derivative belongs to the forces.
+        In equilibrium these and all other forces add up to zero: a spring that pulls a point back to the left has a
+        positive fx. A condition is a function of q that is zero when it is satisfied; its multiplier times its
+        derivative is part of the forces.
         """
         ...
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return its kinetic energy and its potential [J], of what has one."""
+        """Return its kinetic and potential energy [J]."""
         ...
 
 
 @runtime_checkable
 class Remembering(Contribution, Protocol):
-    """A contribution that depends on its past, such as friction.
+    """A contribution with history, such as friction.
 
-    What it remembers is part of a state: a step that is taken back takes it back, and a result has it row by row.
+    Its history variables are part of the state: a rejected step restores them, and a result has them row by row.
     """
 
     @property
     def memory(self) -> Sequence[float]:
-        """The numbers (h,) that it starts with."""
+        """The initial history variables (h,)."""
         ...
 
     def remember(self, at: At) -> Sequence[float]:
-        """Return them anew (h,) after each step that is accepted."""
+        """Return the history variables (h,) after an accepted step."""
         ...
 
 
 def require_connector(connector: Contribution) -> None:
-    """Raise InputError if points, unknowns or conservative of a connector are not what they should be."""
+    """Raise InputError if points, unknowns or conservative of a connector are invalid."""
     name = type(connector).__name__
     points = items(f"points of {name}", connector.points)
     if not points:
@@ -108,7 +108,7 @@ def require_connector(connector: Contribution) -> None:
 
 
 def remembered(connector: Contribution) -> np.ndarray:
-    """Return what a connector remembers at the start (h,). Raises InputError."""
+    """Return the initial history variables of a connector (h,). Raises InputError."""
     if not isinstance(connector, Remembering):
         return np.empty(0)
     name = f"memory of {type(connector).__name__}"

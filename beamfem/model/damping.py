@@ -1,4 +1,4 @@
-"""The retardation time of a beam: how far rates of its strains add to its stresses."""
+"""The retardation time of a beam: the stress per strain rate, relative to the stiffness."""
 
 from functools import lru_cache
 
@@ -8,7 +8,7 @@ from beamfem.section.protocol import CrossSection
 
 
 def retardation_time(section: CrossSection, material: Material | None) -> float:
-    """Return the retardation time [s] of a section and the material of its beam, which a layered one does not need.
+    """Return the retardation time [s] of a section and the material of its beam, which layered sections do not need.
 
     Raises InputError if layers have different ones.
     """

@@ -1,4 +1,4 @@
-"""The stress over the sections at points of a beam, each section and its layers taken where the point is."""
+"""Stress over the sections at points of a beam, for each section and its layers at the point."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

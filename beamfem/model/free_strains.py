@@ -1,4 +1,4 @@
-"""The free strains that loads impose on the elements of a beam, as polynomials of the loads' factors."""
+"""Free strains that loads impose on the elements of a beam, as polynomials of the load factors."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Joined nodes at one place: what rounding has left between them is closed in the reference, free of stress."""
+"""Joined nodes: gaps left by rounding are closed in the reference without stress."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,10 +12,9 @@ _ROUND_OFF = 16 * np.finfo(float).eps
 
 
 def close_gaps(grids: Sequence[Grid], moving: np.ndarray) -> list[Grid]:
-    """Return the grids with nodes that move alike at the place of the first of them.
+    """Return the grids with nodes that share a position moved to the place of the first of them.
 
-    moving (n, 4): pairs (grid, node, grid, node). Without it the element at a gap would be stretched by it when the
-    solve begins.
+    moving (n, 4): pairs (grid, node, grid, node). Otherwise the solve would stretch the element at a gap.
     """
     if not len(moving):
         return list(grids)

@@ -1,4 +1,4 @@
-"""Meshes whose elements grow along the beam."""
+"""Graded meshes along a beam."""
 
 import numpy as np
 
@@ -10,9 +10,9 @@ _ELEMENT = 64  # bytes of an element: its fraction as a float in a tuple, and in
 
 
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
-    """Return the fractions from 0 to 1 (elements + 1,) where elements end whose lengths grow geometrically.
+    """Return the fractions from 0 to 1 (elements + 1,) of element ends whose lengths grow geometrically.
 
-    ratio: length of the last element over that of the first; below 1 they shrink. For `Beam(elements=...)`.
+    ratio: length of the last element over that of the first; below 1 they decrease. For `Beam(elements=...)`.
     Raises InputError.
     """
     number, ratio = count("elements", elements), positive("ratio", ratio)

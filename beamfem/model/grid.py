@@ -1,4 +1,4 @@
-"""The mesh of one beam in its reference: elements over the arc length, nodes, and where they stand."""
+"""The mesh of one beam in its reference: elements over the arc length, nodes, and their positions."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -16,12 +16,12 @@ _MOVED = 0.005  # of the elements on both sides of their common end: how far tha
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Elements and nodes of a beam; at a corner of the curve two nodes stand at the same place.
+    """Elements and nodes of a beam; a corner of the curve has two nodes at the same place.
 
-    vertices: arc lengths of the ends of the elements (ne + 1,) [m]; parameter: mesh coordinates there (ne + 1,), the
-    arc lengths or the knots of a spline; rate: mesh length [m] of a unit of the parameter; node: nodes of each element
-    (ne, nn); arc (nodes,) [m], position (nodes, 2) [m], unit tangent (nodes, 2) and |r_x| (nodes,) of the nodes;
-    moved: whether a node has been moved off the curve to the one it is joined to.
+    vertices: arc lengths of element ends (ne + 1,) [m]; parameter: mesh coordinates there (ne + 1,), arc lengths or
+    knots of a spline; rate: mesh length [m] per unit of the parameter; node: nodes of each element (ne, nn); arc
+    (nodes,) [m], position (nodes, 2) [m], unit tangent (nodes, 2) and |r_x| (nodes,) of the nodes; moved: whether a
+    node has been moved off the curve to the node that it is joined to.
     """
 
     beam: Beam
@@ -82,7 +82,7 @@ class Grid:
         return along
 
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Return the arc length [m] at which sections of points (element, xi) are taken: inside where they jump."""
+        """Return the arc length [m] at which sections of points (element, xi) are evaluated: off jumps, inside."""
         return self.arc_length_inside(element, xi, self.beam.jumps)
 
     def arc_length_inside(self, element: np.ndarray, xi: np.ndarray, jumps: Sequence[float]) -> np.ndarray:
@@ -149,10 +149,10 @@ def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
 
 
 def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
-    """Fractions where elements end: those that were asked for, and one more wherever one of `fractions` is between.
+    """Return the fractions at which elements end: those requested, and one more for each of `fractions` in between.
 
-    An end very near to one of them is moved there instead: between the two there would be an element that is too short
-    for its strains to keep their digits.
+    A requested end very close to one of them is moved there instead: the element between the two would be too short for
+    accurate strains.
     """
     asked = beam.elements
     assert not isinstance(asked, str)

@@ -1,4 +1,4 @@
-"""The grids of all beams of a model: straight ones that are divided alike are made at once."""
+"""The grids of all beams of a model; straight beams with equal divisions are meshed at once."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -26,12 +26,12 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
 
 
 def _at_ends(fractions: Sequence[float], elements: int) -> bool:
-    """Return whether equal elements end at each of the fractions as they are."""
+    """Return whether ends of equal elements coincide with each of the fractions."""
     return all((fraction * elements).is_integer() for fraction in fractions)
 
 
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
-    """Return the grids of straight beams of equal elements of one field, all the same number."""
+    """Return the grids of straight beams with the same number of equal elements of one field."""
     curves = [beam.curve for beam in beams]
     length = np.array([curve.length for curve in curves])[:, None]
     start, end = (np.array([getattr(curve, name) for curve in curves])[:, None] for name in ("start", "end"))

@@ -1,4 +1,4 @@
-"""What bends and stretches a beam from inside: actuation and heat, as strains of its state without stress."""
+"""Imposed strains of a beam: actuation and heat, as strains of its stress-free state."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ Along = float | Callable[[float], float]
 
 @dataclass(frozen=True)
 class Actuation(ImposedStrain):
-    """Curvature [1/m], stretch [-] and shear [-] that a beam takes where nothing hinders it: muscles, growth, swelling.
+    """Imposed curvature [1/m], stretch [-] and shear [-] of the stress-free state: muscles, growth, swelling.
 
-    Each is a number or a function of the arc length [m] from the start, at whose `kinks` (declared, or jumps that are
-    found) elements end. Resultants are those of the strains less these, s = C (eps - eps0 - amplitude * actuation); a
-    positive curvature turns the beam to the left on its way from start to end. Raises InputError.
+    Each is a number or a function of the arc length [m] from the start; elements end at its `kinks` (declared, or jumps
+    that are found). Resultants follow from the difference, s = C (eps - eps0 - amplitude * actuation); a positive
+    curvature turns the beam to the left from start to end. Raises InputError.
     """
 
     along: ClassVar[tuple[str, ...]] = ("curvature", "stretch", "shear")
@@ -46,11 +46,11 @@ class Actuation(ImposedStrain):
 
 @dataclass(frozen=True)
 class Temperature(ImposedStrain):
-    """Heat: a change of temperature [K] on the axis of a beam and its gradient [K/m] over the section, towards +y.
+    """Temperature: a change [K] on the axis of a beam, and a gradient [K/m] over the section, towards +y.
 
-    Both are numbers or functions of the arc length [m] from the start, as in `Actuation`. A free section of one
-    material stretches by alpha * change and bends by -alpha * gradient, alpha its `thermal_expansion`; layers as they
-    balance each other. What its nodes keep at its thickness does not expand there. Raises InputError.
+    Both are numbers or functions of the arc length [m] from the start, as in `Actuation`. An unconstrained section of
+    one material stretches by alpha * change and bends by -alpha * gradient, with its `thermal_expansion` alpha; layers
+    balance each other. The thickness does not expand at nodes that keep it constant. Raises InputError.
     """
 
     along: ClassVar[tuple[str, ...]] = ("change", "gradient")
@@ -95,12 +95,12 @@ class Temperature(ImposedStrain):
 
 
 def _places(beam: Beam) -> np.ndarray:
-    """Arc lengths (3,) [m] at which what depends on the place is looked at."""
+    """Arc lengths (3,) [m] at which values that depend on the place are checked."""
     return np.array([0.0, 0.5, 1.0]) * beam.curve.length
 
 
 def require_followed(load: ImposedStrain) -> None:
-    """Raise InputError if nodes cannot take what they are given."""
+    """Raise InputError if the nodes cannot take the imposed strains."""
     coordinates, name = load.beam.element.coordinates, load.beam.element.name
     if not isinstance(coordinates, ShearFree):
         return

@@ -1,4 +1,4 @@
-"""What connects beams."""
+"""Joints between beams."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -8,7 +8,7 @@ from beamfem.model.shapes import Ring
 
 
 class Joint:
-    """Two coincident points `a` and `b` of beams with one position; keeps_angle: their rotations are the same, too."""
+    """Two coincident points `a` and `b` of beams with a common position; keeps_angle: their rotations are equal too."""
 
     __slots__ = ()
     keeps_angle: ClassVar[bool] = False
@@ -22,7 +22,7 @@ class Joint:
         require_point(kind, getattr(self, "b", None), "b")
 
     def shapes(self) -> tuple[Ring, ...]:
-        """Return what it looks like: a ring where the angle may change."""
+        """Return its shapes: a ring if the angle may change."""
         return () if self.keeps_angle else (Ring(self.a),)
 
 

@@ -15,9 +15,9 @@ _CLOSE = 1e-12  # of the length, to which a jump is found
 def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: float, samples: int) -> tuple[float, ...]:
     """Return the arc lengths (nj,) [m] within (0, length) that a function declares as `kinks`, or at which it jumps.
 
-    values: what counts of the function's result at an arc length, as numbers (k,). A function that declares kinks is
-    taken at its word. Of others each of `samples` equal parts is bisected whose ends differ more than their neighbours:
-    a change that does not shrink with the part is a jump. One that goes back within a part is not seen.
+    values: the relevant numbers (k,) of the function's result at an arc length. Declared kinks are taken as they are.
+    Otherwise each of `samples` equal parts whose ends differ more than those of its neighbours is bisected: a change
+    that does not decrease with the part is a jump. A change that reverses within a part is not seen.
     """
     if hasattr(function, "kinks"):
         near = _CLOSE * length

@@ -1,4 +1,4 @@
-"""Which beams may have a section with a law of its own."""
+"""Conditions for sections with a nonlinear law."""
 
 from typing import TYPE_CHECKING
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def require_law_fits(beam: "Beam") -> None:
-    """Raise InputError if the section has a law, but the element takes it for linear, or the law is not sound.
+    """Raise InputError if the section has a law but the element assumes a linear one, or if the law is inconsistent.
 
-    A law is one function of all strains at a point. Elements that take some of them at other points than others, or
-    assume them there, know what to do with energies that are quadratic only.
+    A law is a function of all strains at one point. Elements that evaluate some strains at other points, or assume them
+    there, are defined for quadratic energies only.
     """
     name = type(beam.section).__name__
     if not beam.prismatic:

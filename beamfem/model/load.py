@@ -1,4 +1,4 @@
-"""The kinds of loads: each enters the equations in its own way. A load derives from one of them."""
+"""The kinds of loads, which enter the equations in different ways; every load derives from one of them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -20,7 +20,7 @@ _ARROWS = 11  # along a beam
 
 
 class Load(ABC):
-    """What acts on beams, times a factor: amplitude(time), else the load factor where `scale` is True, else 1.
+    """A load, times a factor: amplitude(time), or the load factor if `scale` is True, or 1.
 
     Loads are frozen dataclasses that derive from `PointLoad`, `LineLoad`, `BodyLoad` or `ImposedStrain`.
     """
@@ -42,7 +42,7 @@ class Load(ABC):
     @property
     @abstractmethod
     def conservative(self) -> bool:
-        """Whether it has a potential where its factor is constant and nothing depends on the supports."""
+        """Whether it has a potential for a constant factor, whatever the supports."""
 
     @abstractmethod
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
@@ -50,7 +50,7 @@ class Load(ABC):
 
 
 class BodyLoad(Load):
-    """An acceleration `vector` (2,) [m/s^2] of all that has mass."""
+    """An acceleration `vector` (2,) [m/s^2] that acts on all mass."""
 
     vector: tuple[float, float]
 
@@ -160,9 +160,9 @@ class LineLoad(AlongBeam, Load):
 
 
 class ImposedStrain(AlongBeam, Load):
-    """Strains that a beam takes where nothing hinders it; what `along` names is a number or a function each.
+    """Strains of the stress-free state of a beam; each field named in `along` is a number or a function.
 
-    units: of what `along` names.
+    units: of the fields named in `along`.
     """
 
     units: ClassVar[tuple[str, ...]] = ()
@@ -179,11 +179,11 @@ class ImposedStrain(AlongBeam, Load):
         """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) at arc lengths (n,) [m]."""
 
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return temperature [K] and its gradient [K/m] (n, 2) that each layer expands by in its own way."""
+        """Return temperature [K] and its gradient [K/m] (n, 2); layers expand with their own coefficients."""
         return np.zeros((len(arc_length), 2))
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return what is named in `along` at arc lengths (n,) [m]. Raises InputError if a function gives none."""
+        """Return a field named in `along` at arc lengths (n,) [m]. Raises InputError if a function fails."""
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(given):
             return np.full(len(arc_length), given)
@@ -222,7 +222,7 @@ def factor(load: Load, time: float, static: bool) -> float:
 
 
 def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
-    """Return the arc lengths [m] at which a load along a beam is drawn: spread evenly, and where it is largest."""
+    """Return the arc lengths [m] at which a load along a beam is drawn: equally spaced, and at its largest value."""
     even = np.linspace(0.0, load.beam.curve.length, _ARROWS)
     if load.uniform:
         return even

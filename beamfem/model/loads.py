@@ -15,7 +15,7 @@ Varying = Callable[[float], Sequence[float]]
 
 @dataclass(frozen=True)
 class Gravity(BodyLoad):
-    """Acceleration (gx, gy) [m/s^2] on the mass of every beam."""
+    """Gravity: an acceleration (gx, gy) [m/s^2] of the mass of every beam."""
 
     vector: tuple[float, float]
     amplitude: Amplitude = None
@@ -30,9 +30,9 @@ class Gravity(BodyLoad):
 class DistributedLoad(LineLoad):
     """Force per reference length (qx, qy) [N/m] along the axis of a beam.
 
-    vector: in the axes x and y of the plane, at every point; or a function of the arc length [m] from the start that
-    gives one, at whose `kinks` (declared, or jumps that are found) elements end. follower: what acts at a point in the
-    reference rotates with its section; on a curved beam that is not normal to its axis: see `Pressure`.
+    vector: in the global axes x and y; or a function of the arc length [m] from the start that returns it; elements end
+    at its `kinks` (declared, or jumps that are found). follower: the force at each point rotates with its section; on a
+    curved beam that is not normal to the axis: see `Pressure`.
     Raises InputError.
     """
 
@@ -81,11 +81,10 @@ class DistributedLoad(LineLoad):
 class Pressure(LineLoad):
     """Pressure times width [N/m], normal to the deformed axis of a beam, per deformed length: a force p (-y', x') ds.
 
-    value: positive to the left of the direction from the beam's start to its end, the side of +y of its sections; or
-    a function of the arc length in the reference [m] that gives it, at whose `kinks` (declared, or jumps that are
-    found) elements end. It acts on the axis, so that it does work on the area that the axis sweeps: a constant one is
-    conservative where both ends of the beam are constrained in one direction at least, or close a ring. Raises
-    InputError.
+    value: positive towards the left of the direction from start to end, the +y side of its sections; or a function of
+    the reference arc length [m] that returns it; elements end at its `kinks` (declared, or jumps that are found). It
+    acts on the axis and does work on the area swept by the axis: a constant pressure is conservative if both ends of
+    the beam are constrained in at least one direction, or close a ring. Raises InputError.
     """
 
     along: ClassVar[tuple[str, ...]] = ("value",)
@@ -124,7 +123,7 @@ class Pressure(LineLoad):
 
 @dataclass(frozen=True)
 class PointForce(PointLoad):
-    """Force (fx, fy) [N] on the axis at a point; follower: it rotates with the section."""
+    """Force (fx, fy) [N] on the axis at a point; follower: the force rotates with the section."""
 
     point: Point
     vector: tuple[float, float]
@@ -144,7 +143,7 @@ class PointForce(PointLoad):
 
 @dataclass(frozen=True)
 class PointMoment(PointLoad):
-    """Moment [N m], counter-clockwise, on the section's direction: virtual work M dtheta.
+    """Moment [N m], counter-clockwise, conjugate to the rotation of the section: virtual work M dtheta.
 
     follower: accepted for uniformity; in the plane a moment that rotates with the section is the same moment.
     """

@@ -1,4 +1,4 @@
-"""Whether double precision holds what the solvers form of a beam."""
+"""Check that double precision covers the quantities that solvers form of a beam."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -18,10 +18,10 @@ _SAMPLES = 5  # points of a curve at which its coordinates are looked at
 
 
 def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
-    """Raise InputError if a quantity that solvers form of a beam has no square in double precision.
+    """Raise InputError if the square of a quantity that solvers form of a beam exceeds double precision.
 
-    They are its coordinates and the length h of its shortest element [m], E A, k_s G A, E A / h, k_s G A h, E I / h and
-    E I / h^3, the mass of an element and its rotary inertia over h^2, and of a body the moments of its section times E.
+    The quantities are coordinates and the length h of the shortest element [m], E A, k_s G A, E A / h, k_s G A h, E I /
+    h and E I / h^3, the mass of an element and its rotary inertia over h^2, and for bodies the section moments times E.
     """
     found = _formed(beam, section)
     if all(SMALLEST <= value <= LARGEST for value in found):
@@ -35,7 +35,7 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
 
 
 def _formed(beam: "Beam", section: CrossSection) -> list[float]:
-    """Return the quantities as plain numbers, of which products and quotients overflow without an error."""
+    """Return the quantities as plain numbers, whose products and quotients overflow without an error."""
     curve = beam.curve
     length = float(curve.length)
     if isinstance(curve, Line):

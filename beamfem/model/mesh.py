@@ -1,4 +1,4 @@
-"""The numbered mesh of one beam: its grid, and which coordinates of the model carry its nodes."""
+"""The numbered mesh of one beam: its grid, and the coordinates of the model at its nodes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,10 +13,10 @@ from beamfem.model.numbering import Nodes
 
 @dataclass(frozen=True, eq=False)
 class BeamMesh(Grid):
-    """Grid of a beam and where its numbers stand in the model.
+    """Grid of a beam with its numbers in the model.
 
-    carried: carriers and coordinates of the nodes; first_element: first element of the beam in its block; block: number
-    of its block.
+    carried: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
+    number of its block.
     """
 
     carried: Nodes
@@ -25,7 +25,7 @@ class BeamMesh(Grid):
 
     @cached_property
     def classes(self) -> Classes:
-        """Elements that are identical, and what they are made of."""
+        """Classes of identical elements, with their data."""
         return element_classes(self)
 
     @property
@@ -35,7 +35,7 @@ class BeamMesh(Grid):
 
     @cached_property
     def node_kinds(self) -> tuple[tuple[int, np.ndarray], ...]:
-        """Each carrier that occurs with its nodes."""
+        """Each kind of node kinematics with its nodes."""
         codes = self.carried.node_kind
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
 

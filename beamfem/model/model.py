@@ -1,4 +1,4 @@
-"""A model: beams, what holds and joins them and what acts on them."""
+"""A model: beams with their supports, joints, loads and connectors."""
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -43,10 +43,10 @@ _KINDS: dict[str, tuple[type, ...]] = {
 class Model:
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports, joints, point loads and kinks of loads along beams put a mesh node at their point. Points that are joined
-    may be apart by 1e-5 of the longer beam: the second is moved to the first, free of stress. connectors: what adds
-    forces by a rule of its own, see `Contribution`. units: of the numbers, such as "N, mm", any consistent ones, for
-    labels of pictures and tables.
+    Supports, joints, point loads and kinks of loads along beams place a mesh node at their point. Joined points may be
+    apart by 1e-5 of the longer beam: the second is moved to the first without stress. connectors: user-defined forces,
+    see `Contribution`. units: the units of the numbers, such as "N, mm", any consistent set, for labels of pictures and
+    tables.
     Raises InputError, UnknownPointError.
     """
 
@@ -58,7 +58,7 @@ class Model:
     units: str = "N, m, s"
 
     def __getstate__(self) -> dict[str, object]:
-        """Copies and other processes make their meshes anew: what is kept here knows beams by identity."""
+        """Return the fields only: cached meshes refer to beams by identity, so copies rebuild theirs."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     def __repr__(self) -> str:
@@ -125,7 +125,7 @@ class Model:
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit in the place of one of SI, such as "N m"."""
+        """Return the name of the model's unit for one of SI, such as "N m"."""
         return self._units.of(unit)
 
     @cached_property
@@ -194,17 +194,17 @@ class Model:
 
     @property
     def coordinates(self) -> int:
-        """Number of coordinates of the beams, prescribed ones included, shared ones once."""
+        """Number of coordinates of the beams, including prescribed ones, shared ones counted once."""
         return self._numbered[1]
 
     @cached_property
     def size(self) -> int:
-        """Number of coordinates of the beams and, behind them, of unknowns and memories of connectors."""
+        """Number of coordinates of the beams, followed by the unknowns and history variables of connectors."""
         return self.coordinates + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:
-        """The elements of the kinds of beams, in order of appearance; laws of sections make kinds of their own."""
+        """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
         return tuple(element for element, *_ in self._kinds)
 
     @cached_property
@@ -212,7 +212,7 @@ class Model:
         return tuple(dict.fromkeys(_kind(beam) for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
-        """Return the place of a beam among the beams. Raises InputError, UnknownPointError."""
+        """Return the number of a beam. Raises InputError, UnknownPointError."""
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
         if id(beam) not in self._numbers:
@@ -229,7 +229,7 @@ class Model:
 
     @property
     def gravity(self) -> tuple[BodyLoad, ...]:
-        """Accelerations of all that has mass."""
+        """Accelerations that act on all mass."""
         return tuple(load for load in self.loads if isinstance(load, BodyLoad))
 
     @property
@@ -258,11 +258,11 @@ class Model:
         return tuple(support for support in self.supports if isinstance(support, LineSupport))
 
     def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
-        """Return the model with its axes displaced by a mode, up to `size` [m], and free of stress there."""
+        """Return the model with its axes displaced by a mode, by at most `size` [m], stress-free there."""
         return offered(Model.with_imperfection)(self, modes, size, mode)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
-        """Draw the model before any solve, with its supports and loads; return the figure."""
+        """Draw the undeformed model with its supports and loads; return the figure."""
         return offered(Model.plot)(self, path)
 
     def _repr_html_(self) -> str:
@@ -270,7 +270,7 @@ class Model:
 
 
 def _named(kinds: Sequence[type]) -> str:
-    """Return as a list in words the classes that are offered of some kinds."""
+    """Return the names of the classes offered of some kinds, as a list in words."""
     derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
         kinds
     ]
@@ -279,18 +279,18 @@ def _named(kinds: Sequence[type]) -> str:
 
 
 def _kind(beam: Beam) -> tuple[Element, Hashable]:
-    """Return what beams of one block have in common."""
+    """Return the key that beams of one block share."""
     law = beam.law
     return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
 
 
 def _turns(support: PointSupport) -> bool:
-    """Return whether a support has to do with the rotation."""
+    """Return whether a support involves the rotation."""
     return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 
 def _corners(grid: Grid) -> np.ndarray:
-    """First of the two nodes at each corner."""
+    """Return the first of the two nodes at each corner."""
     if not grid.beam.curve.corners:
         return np.empty(0, dtype=np.int64)
     return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]

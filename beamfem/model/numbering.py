@@ -1,4 +1,4 @@
-"""Which coordinate is whose: carriers and numbers of every node, shared where nodes are joined."""
+"""Numbering of coordinates: kinematics and numbers of every node, shared at joints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from beamfem.model.reference import reference_angle
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of a beam: carrier (nodes,), coordinates (nodes, npn), -1 if there are fewer, frame (nodes, 3)."""
+    """Nodes of a beam: kinematics (nodes,), coordinates (nodes, npn), -1 for columns without one, frame (nodes, 3)."""
 
     node_kind: np.ndarray
     dof: np.ndarray
@@ -29,10 +29,10 @@ def number_nodes(
     moving: np.ndarray,
     turning: np.ndarray,
 ) -> tuple[list[Nodes], int]:
-    """Return the nodes of each grid and the number of coordinates in all.
+    """Return the nodes of each grid and the total number of coordinates.
 
-    angled (m, 2): (grid, node) whose rotation is prescribed or sprung; such a node carries it as an angle.
-    moving, turning (n, 4): pairs (grid, node, grid, node) that move alike, and that turn alike.
+    angled (m, 2): (grid, node) whose rotation is prescribed or has a spring; such a node has an angle as a coordinate.
+    moving, turning (n, 4): pairs (grid, node, grid, node) with a common position, and with a common rotation.
     """
     first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
     owner = np.repeat(np.arange(len(grids)), np.diff(first))
@@ -118,7 +118,7 @@ def _ownership(
 
 
 def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
-    """Cosine and sine of each node's angle in the reference, of turned gradients against their leader's; and |r_x|."""
+    """Cosine and sine of each node's reference angle, for turned gradients relative to their leader's; and |r_x|."""
     angle = np.concatenate([reference_angle(grid) for grid in grids])
     tangent = np.concatenate([grid.tangent for grid in grids])
     frame = np.ones((len(angle), 3))

@@ -1,4 +1,4 @@
-"""What loads, supports and joints of users tell of themselves: looked at once, when a model is made of them."""
+"""Checks of the members of user-defined loads, supports and joints, once, when a model is made of them."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -31,7 +31,7 @@ _UNIT = 1e-9  # how far from 1 the length of a unit vector may be
 
 
 def require_part(part: Load | Support | Joint) -> None:
-    """Raise InputError for a part whose members are not what its kind asks for; those of the package are known."""
+    """Raise InputError for invalid members of a user-defined part; parts of the package are not checked."""
     if type(part).__module__.startswith("beamfem."):
         return
     if isinstance(part, Load):

@@ -15,7 +15,7 @@ _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and h
 
 
 def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
-    """Return the factor (n, nv) of each nodal vector for mesh lengths (n,): the length where it is r_x."""
+    """Return the factor (n, nv) of each nodal vector for mesh lengths (n,): the length for r_x."""
     vectors = element.field.vectors * len(element.field.nodes)
     return np.stack([lengths if name == "r_x" else np.ones_like(lengths) for name in vectors], axis=1)
 
@@ -87,9 +87,9 @@ def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
 
 
 def reference_position(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return where points (element, xi) of the axis are in the reference (n, 2) [m].
+    """Return the positions (n, 2) [m] of points (element, xi) of the axis in the reference.
 
-    On a curved beam they are beside the curve by the error of interpolation.
+    On a curved beam they differ from the curve by the interpolation error.
     """
     return np.asarray(grid.position[grid.node[element, 0]] + reference_axis(grid, element, xi).r)
 

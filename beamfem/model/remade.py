@@ -1,4 +1,4 @@
-"""Parts of users are made anew from their fields: at other beams, and when a file is loaded."""
+"""User-defined parts are recreated from their fields: on other beams, and when a file is loaded."""
 
 from dataclasses import fields, replace
 from typing import Any
@@ -9,7 +9,7 @@ from beamfem.errors import InputError
 
 
 def require_remade(what: str, part: Any) -> None:
-    """Raise InputError, which begins with `what`, where a dataclass made anew from its fields is not the same."""
+    """Raise InputError, beginning with `what`, if a dataclass recreated from its fields differs from the original."""
     try:
         again = replace(part)
     except Exception as error:

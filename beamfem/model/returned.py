@@ -1,4 +1,4 @@
-"""What loads return along a beam, whoever has written them, as arrays of the shape that the equations take."""
+"""Values of loads along a beam, package or user-defined, as arrays of the shape that the equations need."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
 
 def forces_of(load: "LineLoad", arc_length: np.ndarray) -> np.ndarray:
-    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError if it gives others."""
+    """Return the forces (n, 2) [N/m] of a load at arc lengths (n,) [m]. Raises InputError for any other result."""
     return _table(load, "forces", load.forces, arc_length, 2)
 
 
 def free_strain_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
-    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError if it gives others."""
+    """Return the free strains (n, 4) of a load at arc lengths (n,) [m]. Raises InputError for any other result."""
     return _table(load, "free_strain", load.free_strain, arc_length, 4)
 
 
 def heat_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
-    """Return temperature [K] and gradient [K/m] (n, 2) at arc lengths (n,) [m]. Raises InputError likewise."""
+    """Return temperature [K] and gradient [K/m] (n, 2) at arc lengths (n,) [m]. Raises InputError for others."""
     return _table(load, "heat", load.heat, arc_length, 2)
 
 

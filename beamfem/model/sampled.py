@@ -1,4 +1,4 @@
-"""Functions that were saved as the values they had."""
+"""Functions that were saved as samples."""
 
 from bisect import bisect_left
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -88,7 +88,7 @@ class SampledSection:
 
 
 def _between(low: Any, high: Any, fraction: float) -> Any:
-    """Return the same object with numbers at a fraction of the way from one to the other; ValueError if they differ."""
+    """Return the same object with interpolated numbers; ValueError if the two objects differ otherwise."""
     if is_dataclass(low) and not isinstance(low, type) and type(low) is type(high):
         names = [field.name for field in fields(low)]
         return replace(low, **{name: _between(getattr(low, name), getattr(high, name), fraction) for name in names})

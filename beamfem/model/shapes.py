@@ -1,4 +1,4 @@
-"""What loads, supports and joints look like: plain shapes, which pictures and files draw each in their own way."""
+"""Shapes of loads, supports and joints, drawn by pictures and files in their own way."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from beamfem.model.beam import Beam, Point
 
 
 class Placed(Protocol):
-    """A state of a model, as far as shapes ask for it."""
+    """A state of a model, with the members that shapes need."""
 
     def rotation(self, point: Point) -> float:
         """Return the rotation of a section from the reference [rad]."""
@@ -44,7 +44,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class ForcesAlong:
-    """Forces (n, 2) [N/m] at arc lengths (n,) [m] of a beam; even: they are the same all along it."""
+    """Forces (n, 2) [N/m] at arc lengths (n,) [m] of a beam; even: constant along the beam."""
 
     beam: Beam
     arc_length: np.ndarray
@@ -54,14 +54,14 @@ class ForcesAlong:
 
 @dataclass(frozen=True, eq=False)
 class Acceleration:
-    """An acceleration (2,) [m/s^2] of all that has mass."""
+    """An acceleration (2,) [m/s^2] that acts on all mass."""
 
     vector: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Strains that a load imposes on a beam: its name; values by their names with their units, None if they vary."""
+    """Strains imposed on a beam: name of the load; values by name with their units, None if they vary."""
 
     beam: Beam
     name: str
@@ -70,7 +70,7 @@ class Strains:
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """What is prescribed at a point, zero or not, as `supports.Prescribed` names it; normal (2,): the one direction."""
+    """Directions prescribed at a point, zero or not, named as in `supports.Prescribed`; normal (2,): of a roller."""
 
     point: Point
     prescribed: Mapping[str, float | Callable[[float], float]]

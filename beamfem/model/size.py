@@ -1,4 +1,4 @@
-"""Whether a model fits the memory, asked before it is meshed."""
+"""Check that a model fits into memory, before it is meshed."""
 
 from collections.abc import Sequence
 

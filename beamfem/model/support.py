@@ -1,4 +1,4 @@
-"""The kinds of supports: at a point or along a beam. A support derives from one of them."""
+"""The kinds of supports: at a point or along a beam; every support derives from one of them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -13,12 +13,12 @@ Value = float | Callable[[float], float]
 
 
 class Support(ABC):
-    """What connects beams to the ground: frozen dataclasses that derive from `PointSupport` or `LineSupport`."""
+    """A connection of beams to the ground: frozen dataclasses that derive from `PointSupport` or `LineSupport`."""
 
     @property
     @abstractmethod
     def place(self) -> Beam | Point:
-        """The beam or point that it stands at."""
+        """The beam or point that is supported."""
 
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
@@ -26,7 +26,7 @@ class Support(ABC):
 
 
 class PointSupport(Support):
-    """A support at a point: what it prescribes there, and its springs.
+    """A support at a point: its prescribed directions and its springs.
 
     Directions are "ux" and "uy" [m] and "rotation" [rad], from the reference.
     """
@@ -37,9 +37,9 @@ class PointSupport(Support):
         require_point(type(self).__name__, getattr(self, "point", None))
 
     def prescribed(self) -> Mapping[str, Value]:
-        """Return what is prescribed, by direction: numbers, which grow with the load factor, or functions of time.
+        """Return the prescribed values by direction: numbers, which grow with the load factor, or functions of time.
 
-        "normal": 0.0 is the displacement along `direction`, which cannot be moved.
+        "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
         """
         return {}
 

@@ -12,7 +12,7 @@ from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 @dataclass(frozen=True)
 class Clamp(PointSupport):
-    """Constrain position and rotation of the section; r_x stays free to stretch and, off the elastic line, to shear."""
+    """Constrain position and rotation of the section; r_x may stretch and, except for the elastic line, shear."""
 
     point: Point
 
@@ -23,7 +23,7 @@ class Clamp(PointSupport):
 
 @dataclass(frozen=True)
 class Pin(PointSupport):
-    """Constrain the position; the section rotates freely."""
+    """Constrain the position; the rotation is free."""
 
     point: Point
 
@@ -57,10 +57,10 @@ class Roller(PointSupport):
 
 @dataclass(frozen=True)
 class Prescribed(PointSupport):
-    """Prescribe displacement ux, uy [m] and rotation [rad] from the reference; None leaves free.
+    """Prescribe displacement ux, uy [m] and rotation [rad] from the reference; None leaves a direction free.
 
-    A number grows with the load factor in statics and is a constant in dynamics; a function is one of time, in statics
-    of the load factor. Raises InputError.
+    A number grows with the load factor in statics and is constant in dynamics; a function depends on time, in statics
+    on the load factor. Raises InputError.
     """
 
     point: Point

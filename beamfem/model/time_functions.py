@@ -1,4 +1,4 @@
-"""Functions of time, of the load factor or of the arc length, that say where they have kinks."""
+"""Functions of time, load factor or arc length that declare their kinks."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -44,10 +44,10 @@ class Interpolated:
 
 @dataclass(frozen=True)
 class Piecewise:
-    """A function of time that is smooth between increasing times `kinks` (n,) [s], where it may bend or jump.
+    """A function of time that is smooth between increasing times `kinks` (n,) [s], at which it may bend or jump.
 
-    Or of the arc length [m], as a section or a load along a beam is: elements end at the kinks. Any function of yours
-    with an attribute `kinks` will do as well. Raises InputError.
+    It may also depend on the arc length [m], for a section or a load along a beam: elements end at the kinks. Any
+    function with an attribute `kinks` works in the same way. Raises InputError.
     """
 
     function: Callable[[float], Any]

@@ -1,4 +1,4 @@
-"""Beams whose rotation no coordinate counts: gradients tell it up to full turns only."""
+"""Beams without a coordinate that counts full turns: gradients determine a rotation up to full turns only."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from beamfem.model.model import Model
 
 
 def uncounted(model: Model) -> list[BeamMesh]:
-    """Return the meshes of the beams (m,) of which no node carries its rotation as an angle."""
+    """Return the meshes of the beams (m,) without any node that has its rotation as a coordinate."""
     known: dict[str, list[BeamMesh]] = model.__dict__
     if "_uncounted" not in known:
         known["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
@@ -22,7 +22,7 @@ def _has_gradients_only(mesh: BeamMesh) -> bool:
 
 
 def turning_pairs(model: Model) -> np.ndarray:
-    """Return the coordinates x and y (m, 2) of the vector that tells the rotation of each of them at its start."""
+    """Return the coordinates x and y (m, 2) of the vector that gives the rotation of each at its start."""
     pairs = []
     for mesh in uncounted(model):
         vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"

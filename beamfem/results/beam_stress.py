@@ -40,7 +40,7 @@ class BeamStress:
     lower, upper: along the beam at the two faces; tension, compression: the largest and the smallest along the beam
     over the height, at the faces of layers too; shear: the largest size over the height; von_mises: the largest
     sqrt(sigma^2 + 3 tau^2) over the height, of the faces alone where the shear stress inside is not known; utilisation
-    [-]: the largest ratio of stress to the strength of the material there, nan where none is given (`Material`). Cauchy
+    [-]: the largest ratio of stress to the strength of the material there, nan if none is given (`Material`). Cauchy
     stress, as in `Fields`; nan for sections that give none. Seven more heights are evaluated between the faces of a
     layer.
     """
@@ -62,7 +62,7 @@ class BeamStress:
         return f"<b>Stress, peaks</b>{as_html(('', 'extreme', 'at arc length', 'row'), rows)}"
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the extreme of one of these, nan where none is known. Raises InputError.
+        """Return the extreme of one of these, nan if none is known. Raises InputError.
 
         The smallest of `compression`, the largest by its size of `lower` and `upper`, else the largest.
         """

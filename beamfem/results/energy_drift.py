@@ -34,7 +34,7 @@ class EnergyDrift:
 
 
 def energy_drift(solution: "Solution") -> EnergyDrift | None:
-    """Return the drift of a motion's energy; None where something does work on it.
+    """Return the drift of a motion's energy; None if something does work on it.
 
     That is so under loads with an amplitude, loads that follow and pressures, where supports move and materials damp.
     """

@@ -17,7 +17,7 @@ _REAL = "fiu"  # kinds of dtypes
 
 
 def require_state(state: "State") -> None:
-    """Raise InputError where the arrays of a state have not one number for each coordinate of its model."""
+    """Raise InputError if the arrays of a state have not one number for each coordinate of its model."""
     model = _model_of(state)
     for name in ("p", "v", "a"):
         _require_array(state, name, (model.size,))
@@ -27,7 +27,7 @@ def require_state(state: "State") -> None:
 
 
 def require_crossing(state: "Bifurcation") -> None:
-    """Raise InputError where the directions of a bifurcation do not fit its model, or are not finite."""
+    """Raise InputError if the directions of a bifurcation do not fit its model, or are not finite."""
     _require_array(state, "mode", (state.model.size,))
     _require_array(state, "tangent", (state.model.size + 1,))
     for name in ("mode", "tangent"):
@@ -35,7 +35,7 @@ def require_crossing(state: "Bifurcation") -> None:
 
 
 def require_rows(solution: "Solution") -> None:
-    """Raise InputError where the arrays of a solution have not a row of its model's coordinates for each `at`.
+    """Raise InputError if the arrays of a solution have not a row of its model's coordinates for each `at`.
 
     Of the numbers, `at` and p must be finite; v and a of static solutions take no memory until they are read.
     """
@@ -58,7 +58,7 @@ def require_rows(solution: "Solution") -> None:
 
 
 def require_finite(name: str, state: "State") -> None:
-    """Raise InputError where a number of a state that a user gives for `name` is not finite."""
+    """Raise InputError if a number of a state that a user gives for `name` is not finite."""
     for part in ("p", "v", "a"):
         _require_finite(f"{part} of {name}", getattr(state, part))
 

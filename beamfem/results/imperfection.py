@@ -53,7 +53,7 @@ class Moved:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Arc lengths [m] of the kinks that the function declares. Raises AttributeError where it declares none."""
+        """Arc lengths [m] of the kinks that the function declares. Raises AttributeError if it declares none."""
         kinks: tuple[float, ...] = self.function.kinks  # type: ignore[attr-defined]
         return tuple(float(np.interp(kink, self.old, self.new)) for kink in kinks)
 

@@ -20,7 +20,7 @@ _ENOUGH = 7.0  # digits of the forces that a state has by itself
 
 
 def remainders(solution: "Solution") -> np.ndarray:
-    """Return what is to be added to the coordinates of each row (steps, n); zero where they are exact enough."""
+    """Return what is to be added to the coordinates of each row (steps, n); zero if they are exact enough."""
     result = np.zeros(solution.p.shape)
     if not solution.static:
         return result

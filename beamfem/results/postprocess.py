@@ -27,8 +27,8 @@ class Fields:
 
     position (..., 2) [m], r_x (..., 2) [-] by arc length, r_y (..., 2) [-], rotation [rad] of the section from the
     reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain of the field at y = 0 and stress [Pa]
-    there: Cauchy's, along the normal of the section as it stands (x) and in it (y), on its undeformed area, as the
-    section distributes the section forces; yy = 0, as beam theory has it, nan where the section tells no stress there.
+    there: Cauchy's, along the normal of the deformed section (x) and in it (y), on its undeformed area, as the
+    section distributes the section forces; yy = 0, as beam theory has it, nan if the section tells no stress there.
     """
 
     position: np.ndarray
@@ -58,7 +58,7 @@ class SectionForces:
     """Section forces (steps, stations) at the start, the Gauss points and the end of every element of a beam.
 
     normal force along the section's normal (> 0 in tension) and shear force across it [N], moment about the axis [N m]
-    (> 0 where it raises the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads act,
+    (> 0 if it raises the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads act,
     are there twice: just before and just behind them. In equilibrium with each other and with all that acts on the beam
     where it is, inertia included: exactly, however coarse the mesh is.
     """

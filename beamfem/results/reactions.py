@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def reaction(solution: "Solution", point: Point) -> np.ndarray:
     """Return fx, fy [N] and m [N m] of the supports and springs at a point of a beam (steps, 3).
 
-    Those at points of other beams that are joined there are not in it. Raises InputError where no support is.
+    Reactions at points of other beams joined there are not included. Raises InputError if there is no support.
     """
     model = solution.model
     model.mesh_of(point)  # refuses what is no point of this model

@@ -24,7 +24,7 @@ def self_stress(
     y: np.ndarray,
     rows: slice | np.ndarray = slice(None),
 ) -> np.ndarray | float:
-    """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points (element, xi); 0 where there is none.
+    """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points (element, xi); 0 if there is none.
 
     eps, kappa: free strain of the section; y (n, heights) [m]; layer: where there are several, the one that y belongs
     to; None: the one around the axis. It adds nothing to section forces.

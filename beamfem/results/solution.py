@@ -129,7 +129,7 @@ class Solution:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what to know before using the numbers, of locking too; empty where there is nothing to say."""
+        """Sentences on what to know before using the numbers, of locking too; empty if there is nothing to say."""
         return (*self.statistics.warnings, *locking_warnings(self), *drift_warnings(self))
 
     @cached_property

@@ -9,7 +9,7 @@ from beamfem.section.protocol import CrossSection
 
 
 def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layer: int) -> np.ndarray:
-    """Return the strength (n,) [Pa] of a layer of the sections at points (element, xi); nan where none is given."""
+    """Return the strength (n,) [Pa] of a layer of the sections at points (element, xi); nan if none is given."""
     prismatic = isinstance(grid.beam.section, CrossSection)
     sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
     found = np.array([_strength(grid, section, layer) for section in sections])

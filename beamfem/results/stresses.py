@@ -26,7 +26,7 @@ def second_piola_kirchhoff(cauchy: np.ndarray, now: Axis, reference: Axis, y: np
     """Return the second Piola-Kirchhoff stress (steps, points, heights, 6) [Pa] of a Cauchy stress, components alike.
 
     S = det(F) F^-1 sigma F^-T in the axes of the plane, with F = (r0' + y d', d) J^-1 and J the same of the reference;
-    nan where F is singular.
+    nan if F is singular.
     """
     (ax, ay), (bx, by) = _derivatives(now, y)
     (jx, jy), (kx, ky) = _derivatives(reference, y)

@@ -35,6 +35,6 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
-    """Return that of one beam (steps,), None where its coordinates count it."""
+    """Return that of one beam (steps,), None if its coordinates count it."""
     own = [i for i, other in enumerate(uncounted(solution.model)) if other is mesh]
     return start_rotations(solution)[:, own[0]] if own else None

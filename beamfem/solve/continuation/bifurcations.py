@@ -72,7 +72,7 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
 
 
 def _require_one_path(segment: Segment, start: float, end: float) -> None:
-    """Raise SegmentLostError where two points are further apart than the way from one to the other can be."""
+    """Raise SegmentLostError if two points are further apart than the way from one to the other can be."""
     line = segment.line
     apart = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
     if apart > 2.0 * (end - start) + _JUMP:

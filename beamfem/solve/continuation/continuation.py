@@ -113,7 +113,7 @@ class Continuation:
         return result
 
     def stresses(self, y: np.ndarray, step: np.ndarray) -> Stresses | None:
-        """Return the stress resultants that a step from y predicts, None where Newton is to take those of the state."""
+        """Return the stress resultants that a step from y predicts, None if Newton is to take those of the state."""
         if not self.newton.independent_stresses:
             return None
         return predicted_stresses(self.system, y[:-1], step[:-1], float(y[-1] + step[-1]))
@@ -215,7 +215,7 @@ class _InPlane:
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError where the tangent or the path is singular across the plane."""
+        """Take the next correction. Raises LinAlgError if the tangent or the path is singular across the plane."""
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
         negative = factors.negative_pivots if self.counted else 0
@@ -254,7 +254,7 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     A soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
     prescribed motions are that large. The load scale lies between it and many times it, where possible so that the
     tangent of the first point is as much movement as load. Neither depends on the size of the loads or on units.
-    Raises LinAlgError where the tangent is singular, ConvergenceError where loads are too large or small to go on.
+    Raises LinAlgError if the tangent is singular, ConvergenceError if loads are too large or small to go on.
     """
     plain = Continuation(system, newton, 1.0, 1.0)
     zeros = np.zeros(len(p))

@@ -162,7 +162,7 @@ class Segment:
     def change(self, start: float, end: float) -> int:
         """Return how many eigenvalues of the tangent more are negative at one fraction than at another.
 
-        Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 where it differs.
+        Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 if it differs.
         """
         change = self.at(end).negative_pivots - self.at(start).negative_pivots
         return change if self.symmetric else change % 2

@@ -86,7 +86,7 @@ def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
 def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
     """Return whether the count between two fractions shows that so many eigenvalues have changed their sign before.
 
-    False where it does not because they are too close to be told apart. Raises SegmentLostError.
+    False if it does not because they are too close to be told apart. Raises SegmentLostError.
     """
     x, apart = 0.5 * (left + right), right - left
     if apart < _ONE * samples.distance:
@@ -131,7 +131,7 @@ def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.nda
 
 
 def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float) -> None:
-    """Raise SegmentLostError where the way of a path along the mode is a hyperbola: it bends aside, it is not crossed.
+    """Raise SegmentLostError if the way of a path along the mode is a hyperbola: it bends aside, it is not crossed.
 
     rate: of the stiffness of the mode over the fraction. Forces that were left unbalanced bend the path aside as well.
     """

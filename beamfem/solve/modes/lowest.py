@@ -23,7 +23,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
 
     rigid (unknown, r): M-orthonormal vectors whose lambda is zero, which the result does not hold; shift: below all,
-    where one is known. Those below a gap behind the last are counted by the pivots there. Raises ConvergenceError where
+    where one is known. Those below a gap behind the last are counted by the pivots there. Raises ConvergenceError if
     some were missed.
     """
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]

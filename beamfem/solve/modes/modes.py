@@ -40,7 +40,7 @@ class Modes:
 
     frequencies (count,) [Hz]: first the rigid ones, exactly 0, then ascending; modes (count, n): shapes phi over all
     coordinates, phi^T M phi = 1, complex only where follower loads make the tangent unsymmetric; growth (count,) [1/s]:
-    0 where the state is stable, > 0 for divergence (frequency 0) and flutter; rigid: for each rigid mode what it moves.
+    0 if the state is stable, > 0 for divergence (frequency 0) and flutter; rigid: for each rigid mode what it moves.
     """
 
     model: Model
@@ -123,7 +123,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     about: the static equilibrium to vibrate about, whose loads and stresses then count (prestress, gravity): a state,
     or a solution for its last state; it may come from a model with other supports. By default the reference at load
     factor 0. K: tangent stiffness with the loads at the state's load factor, M: mass, both there.
-    Raises InputError; ConvergenceError where modes were missed.
+    Raises InputError; ConvergenceError if modes were missed.
     """
     whole_number("count", count)
     system = system_of(model, static=True)

@@ -93,7 +93,7 @@ class Pencil:
         return self.shifted(value).factorised(self.system.rotated).negative_pivots
 
     def lost(self, shift: float, factors: Factorised) -> float:
-        """Return the relative error of a solution by the plain K - shift M, 0 where it cannot be felt.
+        """Return the relative error of a solution by the plain K - shift M, 0 if it cannot be felt.
 
         factors: of K - shift M. Where random inertia forces move what is so soft that the last digits of the stiffness
         count, the tangent with stress resultants as unknowns tells.

@@ -18,7 +18,7 @@ _SHORT = 1e-4  # of the model: how far a difference along the motion reaches
 
 
 def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
-    """Raise InputError where the start p, p' (n,) of a motion does not meet the conditions of connectors."""
+    """Raise InputError if the start p, p' (n,) of a motion does not meet the conditions of connectors."""
     gaps, rates = system.connectors.conditions(p, v)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
     fastest += system.extent / duration

@@ -39,10 +39,10 @@ def simulate(
 ) -> Solution:
     """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
 
-    integrator: GeneralizedAlpha() by default, or an `Integrator` of one's own; start: a state to start from, such as
-    the last of a static solution; velocity: initial velocity field; save_every: keep each so many-th step and the last.
-    Raises InputError before, ConvergenceError (with all states so far) where the iteration of a step fails. Any other
-    exception on the way, such as KeyboardInterrupt, gets the states so far as its `solution` as well.
+    integrator: GeneralizedAlpha() by default, or a user-defined `Integrator`; start: a state to start from, such as the
+    last one of a static solution; velocity: initial velocity field; save_every: keep every n-th state and the last one.
+    Raises InputError before the solve, ConvergenceError (with all states so far) if a step does not converge. Any other
+    exception during the solve, such as KeyboardInterrupt, carries the states so far as its `solution` too.
     """
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:

@@ -1,4 +1,4 @@
-"""The velocities that a motion starts with."""
+"""Initial velocities of a motion."""
 
 from collections.abc import Callable
 
@@ -29,8 +29,8 @@ def start_velocity(
 ) -> np.ndarray:
     """Return p' (n,) of a velocity field at the state p.
 
-    A function takes the reference position (2,) [m] and gives (vx, vy) [m/s]. Sections then do not turn, unless their
-    element ties them to the axis.
+    A function takes the reference position (2,) [m] and returns (vx, vy) [m/s]. Sections then do not rotate, unless
+    their element ties them to the axis.
     """
     result = np.zeros(system.model.size)
     if start is not None and velocity is None:

@@ -12,8 +12,8 @@ from beamfem.validation import convert, finite
 class GeneralizedAlpha:
     """Generalized-alpha method, second order, unconditionally stable for linear systems; Chung and Hulbert 1993.
 
-    rho_inf in [0, 1] [-]: spectral radius at infinite frequency; 1 keeps all, 0 removes it in one step.
-    Raises InputError.
+    rho_inf in [0, 1] [-]: spectral radius at infinite frequency; 1 has no numerical damping, 0 removes the highest
+    frequencies in one step. Raises InputError.
     """
 
     rho_inf: float = 0.9

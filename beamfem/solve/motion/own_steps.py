@@ -63,7 +63,7 @@ class EquationsOfMotion:
     def solve(self, blocks: Sequence[Sequence[csr_array]], right: np.ndarray) -> np.ndarray:
         """Return x (s, unknown) of a system of s x s tangents and right sides (s, unknown).
 
-        Nothing moves along the normals of inclined rollers. Raises ConvergenceError where it is singular.
+        Nothing moves along the normals of inclined rollers. Raises ConvergenceError if it is singular.
         """
         self.counted[0] += 1
         stages, unknown = right.shape
@@ -86,7 +86,7 @@ class Integrator(Protocol):
     def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
         """Return the state at a time `end` [s] after that at `begin.at`; prescribed coordinates rest.
 
-        Raises ConvergenceError where it is not found.
+        Raises ConvergenceError if it is not found.
         """
         ...
 

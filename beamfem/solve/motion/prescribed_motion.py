@@ -71,5 +71,5 @@ def _unresolved(moved: np.ndarray, steps: np.ndarray) -> np.ndarray:
 
 
 def _smaller(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the smaller of two estimates (nh,) of the same, 0 where they differ in sign: then u has kinks."""
+    """Return the smaller of two estimates (nh,) of the same, 0 if they differ in sign: then u has kinks."""
     return np.where(one * other > 0.0, np.sign(one) * np.minimum(np.abs(one), np.abs(other)), 0.0)

@@ -31,7 +31,7 @@ class Course:
         return kinks_of(self.function)
 
     def at(self, time: float) -> float:
-        """Return its value at a time [s]. Raises InputError where it has none."""
+        """Return its value at a time [s]. Raises InputError if it has none."""
         return function_value(self.name, self.function, time)
 
     def look(self, times: np.ndarray, side: float) -> tuple[np.ndarray, float]:

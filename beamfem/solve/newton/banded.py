@@ -41,7 +41,7 @@ class BandProblem:
         )
 
     def correct(self) -> Correction:
-        """Take corrections up to one that is small or stagnant. Raises LinAlgError where pivots are needed."""
+        """Take corrections up to one that is small or stagnant. Raises LinAlgError if pivots are needed."""
         space, found = self.space, self.space.found
         factorised = iterate(*space.addresses)
         space.assembler.raise_errors()

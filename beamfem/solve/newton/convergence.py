@@ -76,7 +76,7 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
 
 
 def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Termination | None:
-    """Say how an iteration ended whose corrections are small or no longer shrink; None where it shall go on.
+    """Say how an iteration ended whose corrections are small or no longer shrink; None if it shall go on.
 
     Where the residual is above the tolerance, each row must have come to its own floor, and what the next correction
     would be must be lost in the digits of the movement.

@@ -32,7 +32,7 @@ class NewtonResult:
 
     negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
     digits: how many of the forces are sure at least; first: size of the first correction [-]; linear: the
-    negative pivots of the tangent at the start with the stresses of a linear step, -1 where it is singular, if the
+    negative pivots of the tangent at the start with the stresses of a linear step, -1 if it is singular, if the
     second tangent had another count than asked for.
     """
 

@@ -37,7 +37,7 @@ class Problem(Protocol):
     def count_after_linear(self) -> int:
         """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
 
-        -1 where it is singular. It may be asked where the second tangent has another count, and once.
+        -1 if it is singular. It may be asked where the second tangent has another count, and once.
         """
         ...
 

@@ -25,7 +25,7 @@ class PivotedProblem:
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError where the tangent is singular."""
+        """Take the next correction. Raises LinAlgError if the tangent is singular."""
         system, p, zeros, free = self.system, self.state, np.zeros(len(self.state)), self.system.free_dofs
         unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, STATICS, self.stresses)
         factors: Factorised = tangent.factorised(system.rotated)

@@ -33,7 +33,7 @@ class SubstructuredProblem:
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError where pivots are needed."""
+        """Take the next correction. Raises LinAlgError if pivots are needed."""
         change = (self.step.step, self.step.force) if self.number == 0 else None
         before = self.size
         self.size, shared = correct(self.substructures, self.pool, self.newton.independent_stresses, change)

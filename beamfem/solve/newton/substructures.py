@@ -27,7 +27,7 @@ def correct(
 ) -> tuple[float, np.ndarray]:
     """Take one step of Newton's method; return its relative size and the pivots of the shared unknowns (s,).
 
-    predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError where pivots are
+    predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError if pivots are
     needed.
     """
     predicted = predicts and change is None

@@ -1,4 +1,4 @@
-"""What has been found of an equilibrium path, and how it outlives whatever ends the work."""
+"""Results of a path so far, which are kept however the work ends."""
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from beamfem.solve.continuation.steps import Step
 
 
 class PathRecord:
-    """What has been found so far; rows: points y (n + 1,), whether they are stable, and turns (m,) [rad].
+    """Results so far; rows: points y (n + 1,), whether they are stable, and counted rotations (m,) [rad].
 
-    One call adds a row, so that an interruption finds it whole.
+    One call adds a row, so that an interruption finds a complete one.
     """
 
     def __init__(self, model: Model) -> None:
@@ -36,7 +36,7 @@ class PathRecord:
         self.rows.append((y, stable, self._turned(y) if turned is None else turned))
 
     def end(self, why: str) -> None:
-        """Note that the path is complete, and why it ends where it does."""
+        """Record that the path is complete, and why it ends there."""
         self.ended, self.status = why, Status.COMPLETED
 
     @property

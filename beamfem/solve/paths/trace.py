@@ -40,18 +40,18 @@ def trace_equilibrium(
     points: int = 500,
     newton: Newton | None = None,
 ) -> Path:
-    """Return the equilibria along the path that leaves load factor 0, past limit points.
+    """Return the equilibria along the path from load factor 0, past limit points.
 
-    until: the load factor to end at, or a function of a state that is true where the path shall end; without it the
-    path ends after so many `points`. direction: 1 to leave towards larger load factors, -1 towards negative ones, by
-    default towards `until`. start: a bifurcation of a path of this model, to follow the branch that crosses there to
-    the side of its mode (direction 1, the default) or to the other (-1); a branch that comes back has the mode along
-    it, and is left towards larger load factors (1) or smaller ones (-1). step: how far the load factor of the second
-    point is from 0.
-    Steps are cut and grown as the iterations and the turning of the path need.
-    Raises InputError and FreeMotionError before; ConvergenceError with the path so far as its `solution` where it
-    cannot go on. Any other exception on the way, such as one of `until` or KeyboardInterrupt, gets `solution` as well.
-    Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
+    until: the final load factor, or a function of a state that returns True at the end of the path; without it the path
+    ends after `points` points. direction: 1 to start towards larger load factors, -1 towards negative ones, by default
+    towards `until`. start: a bifurcation of a path of this model; the crossing branch is followed to the side of its
+    mode (direction 1, the default) or to the other (-1); if the mode is along a branch that returns, it is followed
+    towards larger (1) or smaller (-1) load factors. step: load factor of the second point. Steps are cut and grown
+    according to the iterations and the curvature of the path.
+    Raises InputError and FreeMotionError before the solve; ConvergenceError, with the path so far as its `solution`, if
+    the path cannot be continued. Any other exception during the solve, such as one of `until` or KeyboardInterrupt,
+    carries `solution` too. Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea
+    2017 (stresses).
     """
     if callable(until):
         function_of_one("until", until, "a state of the path")
@@ -107,7 +107,7 @@ def trace_equilibrium(
 
 
 def _require_load(system: System) -> None:
-    """Raise InputError where nothing changes with the load factor."""
+    """Raise InputError if nothing changes with the load factor."""
     for at in (0.37, 1.0):
         changes = [(system.prescribed_values(at), system.prescribed_values(0.0))]
         changes += zip(system.loads_at(at).arrays, system.loads_at(0.0).arrays, strict=True)
@@ -119,7 +119,7 @@ def _require_load(system: System) -> None:
 
 
 def _require_crossing(model: Model, start: Bifurcation | None) -> None:
-    """Raise InputError where `start` is no bifurcation of this model."""
+    """Raise InputError unless `start` is a bifurcation of this model."""
     if start is None:
         return
     if not isinstance(start, Bifurcation):
@@ -151,9 +151,9 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
 
 
 def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
-    """Return the longest step from a point up to `size` that is accepted. Raises ConvergenceError.
+    """Return the longest accepted step from a point up to `size`. Raises ConvergenceError.
 
-    It names what most lengths were refused for: of the shortest ones, round-off decides.
+    It names the most frequent reason for rejections: for the shortest lengths, round-off decides.
     """
     size = min(size, longest_step(line, point))
     reasons: list[str] = []
@@ -175,7 +175,7 @@ def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord)
 
 
 def _landing(line: Continuation, step: Step, load_factor: float) -> PathPoint | None:
-    """Return the first point of a step with the load factor, None where it does not come to it."""
+    """Return the first point of a step with the load factor, None if the step does not reach it."""
     fractions = [0.0, *(x for x in step.limits if x in step.segment.found), 1.0]
     stops = [step.segment.at(x) for x in fractions]
     for before, after in pairwise(stops):

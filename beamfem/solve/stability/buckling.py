@@ -104,7 +104,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
 
     about: the stable equilibrium to start from, by default that at load factor 0. The true equilibria from there are
     followed up to their largest load factor, and negative pivots of the tangent are counted: no change is left out.
-    Warns of results with less than four digits. Raises InputError where no load factor is critical, loads do nothing
+    Warns of results with less than four digits. Raises InputError if no load factor is critical, loads do nothing
     or follow the beam; FreeMotionError; ConvergenceError, with the equilibria found, where the path was lost before.
     """
     whole_number("count", count)

@@ -59,7 +59,7 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
 def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoint:
     """Return a point inside a step, where the load's slope differs most from those at the ends.
 
-    Raises PathLostError where the path is not the smooth one that the ends foretell: they lie on different paths.
+    Raises PathLostError if the path is not the smooth one that the ends foretell: they lie on different paths.
     """
     normal = path.normal(before, after)
     reach = path.line.dot(normal, after.y - before.y)
@@ -173,7 +173,7 @@ class Search:
         return sorted(result, key=lambda one: one.load_factor)
 
     def _require_crossing(self, window: Window, zero: Zero, mode: np.ndarray) -> None:
-        """Raise PathLostError where the path bends aside along the mode, on a hyperbola, instead of being crossed.
+        """Raise PathLostError if the path bends aside along the mode, on a hyperbola, instead of being crossed.
 
         Round-off bends it as well: by the force that it leaves, over the stiffness of the mode.
         """

@@ -23,7 +23,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     """Return the `count` lowest critical lambda (m,) above a load factor of K0 phi = -(lambda - lambda0) K' phi.
 
     K0: tangent in the stable state p (n,); K' = dK/dlambda along slope = dp/dlambda (n,), a difference of fourth order.
-    m is smaller where loads soften the model in fewer ways. Raises InputError where loads are not conservative.
+    m is smaller where loads soften the model in fewer ways. Raises InputError if loads are not conservative.
     """
     moved = float(np.max(np.abs(slope) / system.scale))
     width = _CHANGE / moved

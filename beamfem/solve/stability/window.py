@@ -138,7 +138,7 @@ class Window:
         return eigh(np.tensordot(self.weights(x), self._turned[1], axes=1))
 
     def turn(self) -> float | None:
-        """Return the distance at which the load has an extremum between the inner points, None where it has none."""
+        """Return the distance at which the load has an extremum between the inner points, None if it has none."""
         from scipy.optimize import brentq  # slow to import
 
         inner = self.at[_REFERENCE], self.at[_REFERENCE + 1]

@@ -1,1 +1,1 @@
-"""What every solve asks before its first step: where it starts, whether the model can move freely, whether it fits."""
+"""Checks before the first step of a solve: the initial state, mechanisms, memory."""

@@ -11,7 +11,7 @@ _CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, 
 
 
 def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
-    """Return the largest force [N, N m] that is not balanced in the state p (n,); 0 if it is small enough."""
+    """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
     zeros = np.zeros_like(p)
     unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
     left = np.abs(system.along_free(unbalanced))

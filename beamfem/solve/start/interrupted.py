@@ -1,4 +1,4 @@
-"""What has been found outlives whatever ends the work."""
+"""Results so far are kept however the work ends."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ from beamfem.results.solution import Solution
 
 @contextmanager
 def kept(found: Callable[[], Solution | None]) -> Iterator[None]:
-    """Give what was found so far to whatever exception ends the work inside, KeyboardInterrupt too, as `solution`."""
+    """Attach the results so far as `solution` to any exception raised inside, KeyboardInterrupt included."""
     try:
         yield
     except BaseException as error:

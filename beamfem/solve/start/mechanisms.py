@@ -1,4 +1,4 @@
-"""Refuse models that supports and joints leave free to move when every beam is taken as rigid."""
+"""Refuse models that are mechanisms if every beam is taken as rigid."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ _PROVEN = "supported"
 
 
 def require_support(system: System) -> None:
-    """Raise FreeMotionError naming a beam, a point and the motion where a rigid motion or a mechanism is left free."""
+    """Raise FreeMotionError with a beam, a point and the motion if a rigid-body motion or a mechanism is possible."""
     if _PROVEN in system.proven:
         return
     model = system.model
@@ -41,7 +41,7 @@ def require_support(system: System) -> None:
 
 
 def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:
-    """Say a rigid motion in words: the velocity (2,) of the point `origin` and the turn; reach: size of the body."""
+    """Return a rigid motion in words: the velocity (2,) of the point `origin` and the rotation; reach: body size."""
     if abs(turn) * reach < 1e-6 * np.hypot(*translation):
         x, y = translation / np.hypot(*translation)
         if max(abs(x), abs(y)) > 1.0 - 1e-9:

@@ -1,4 +1,4 @@
-"""Whether the states of a motion fit the memory, asked before the first of them is computed."""
+"""Check that the states of a motion fit into memory, before the first of them is computed."""
 
 from beamfem.errors import InputError
 from beamfem.memory import SHARE, in_gib, installed_memory
@@ -8,7 +8,7 @@ _STEP = 8 * 8  # bytes of a step whether it is kept or not: its time, what is pr
 
 
 def require_memory(coordinates: int, duration: float, step: float, save_every: int) -> None:
-    """Raise InputError where the states of a motion need more memory [bytes] than this computer has."""
+    """Raise InputError if the states of a motion need more memory [bytes] than this computer has."""
     steps = duration / step
     memory = installed_memory()
     needed = steps * (_STATE * coordinates / save_every + _STEP)
@@ -26,7 +26,7 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
 
 
 def require_room(states: int, coordinates: int) -> None:
-    """Raise InputError where so many states of a mode need more memory [bytes] than this computer has."""
+    """Raise InputError if this many states of a mode need more memory [bytes] than this computer has."""
     memory, needed = installed_memory(), float(states) * 2 * _STATE * coordinates
     if memory is not None and needed > SHARE * memory:
         raise InputError(

@@ -1,4 +1,4 @@
-"""Unknowns without stiffness or mass: analyses that cannot take them, and conditions that say the same twice."""
+"""Unknowns without stiffness or mass: analyses that do not support them, and redundant conditions."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _DEPENDENT = 1e-10  # of a condition of unit size: what is left of it across all
 
 
 def refuse_multipliers(system: System, analysis: str) -> None:
-    """Raise InputError where a connector brings along unknowns of its own."""
+    """Raise InputError if a connector has unknowns of its own."""
     for item in system.connectors.items:
         if len(item.own):
             raise InputError(
@@ -22,7 +22,7 @@ def refuse_multipliers(system: System, analysis: str) -> None:
 
 
 def refuse_memory(system: System, analysis: str) -> None:
-    """Raise InputError where a connector depends on its past, so that states are none of the load alone."""
+    """Raise InputError if a connector has history, so that states depend on more than the load."""
     for item in system.connectors.items:
         if len(item.memory):
             raise InputError(
@@ -31,7 +31,7 @@ def refuse_memory(system: System, analysis: str) -> None:
 
 
 def refuse_dampers(system: System) -> None:
-    """Raise InputError where the force of a connector depends on velocities, which free vibrations leave out."""
+    """Raise InputError if the force of a connector depends on velocities, which free vibrations neglect."""
     for item in system.connectors.items:
         if resists_rates(item):
             raise InputError(
@@ -41,7 +41,7 @@ def refuse_dampers(system: System) -> None:
 
 
 def require_independent(system: System, p: np.ndarray) -> None:
-    """Raise InputError where conditions of connectors, supports and joints say the same twice in a state p (n,)."""
+    """Raise InputError if conditions of connectors, supports and joints are redundant in a state p (n,)."""
     multipliers = len(system.connectors.multipliers)
     if multipliers == 0:
         return
@@ -56,7 +56,7 @@ def require_independent(system: System, p: np.ndarray) -> None:
 
 
 def dependent(system: System) -> str:
-    """Say that conditions of connectors depend on each other."""
+    """Return the message that conditions of connectors are linearly dependent."""
     names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
     return (
         f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "

@@ -22,10 +22,10 @@ _ADVICE = "take it from a model of the same beams, elements and points with supp
 def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return coordinates and rates (n,) of a state in the model of a system.
 
-    Beams are found again by themselves, in a copy of their model by where they lie, whatever their order. Nodes are the
-    same; whether gradients or angles carry them depends on what holds and joins them. Connectors that are in both
-    models remember what they did.
-    Raises InputError where the beams do not match.
+    Beams are identified by identity, in a copy of their model by position, in any order. Nodes are the same; whether
+    their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models keep
+    their history.
+    Raises InputError if the beams do not match.
     """
     source, target = state.model, system.model
     if source is target:
@@ -47,7 +47,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:
     """Return the rotation at the start (m,) [rad], full turns included, of each beam of a model that does not count it.
 
-    Zero without a state. Raises InputError where the beams do not match.
+    Zero without a state. Raises InputError if the beams do not match.
     """
     meshes = uncounted(model)
     if state is None or not meshes:
@@ -88,7 +88,7 @@ def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict
 
 
 def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
-    """Return the mesh of each beam in both models. Raises InputError where a beam has no like one."""
+    """Return the mesh of each beam in both models. Raises InputError if a beam has no counterpart."""
     own = {id(mesh.beam): mesh for mesh in source.meshes}
     left = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
     pairs = []

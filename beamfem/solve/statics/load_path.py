@@ -1,4 +1,4 @@
-"""Follow the equilibrium path through a row of a static solve, where a load step alone does not stay on it."""
+"""Follow the equilibrium path through a row of a static solve if a load step alone leaves it."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half 
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """A point of the path, how many iterations it took and how many steps were refused on the way to it."""
+    """A point of the path, the iterations it took, and the number of steps rejected on the way."""
 
     point: PathPoint
     iterations: int
@@ -33,7 +33,7 @@ class Followed:
 
 
 class PathLostError(BeamfemError):
-    """The path could not be followed: why, after how many iterations and refused steps."""
+    """The path could not be followed: the reason, the iterations and the rejected steps."""
 
     def __init__(self, reason: str, iterations: int, cuts: int) -> None:
         super().__init__(reason)
@@ -42,11 +42,11 @@ class PathLostError(BeamfemError):
 
 
 class OutOfReachError(PathLostError):
-    """The path can be followed, but not to load factor 1 in any reasonable number of steps."""
+    """The path can be followed, but not to load factor 1 in a reasonable number of steps."""
 
 
 class TurnsBackError(BeamfemError):
-    """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path behind it."""
+    """The path turns back at the limit point y (n + 1,); beyond (n + 1,): a point of the path after it."""
 
     def __init__(self, limit: np.ndarray, beyond: np.ndarray, iterations: int, cuts: int) -> None:
         super().__init__(f"the path turns back at load factor {limit[-1]:.6g}")
@@ -57,7 +57,7 @@ class TurnsBackError(BeamfemError):
 
 
 class PathFollower:
-    """The path of a system from the equilibrium p (n,), followed by its length; steps go on as long as they were."""
+    """The path of a system from the equilibrium p (n,), followed by arc length; step lengths carry over."""
 
     def __init__(self, system: System, newton: Newton, p: np.ndarray, load_factor: float) -> None:
         self.system = system
@@ -69,14 +69,14 @@ class PathFollower:
 
     @cached_property
     def line(self) -> Continuation:
-        """How lengths along the path are measured: by what the loads do at its start."""
+        """The continuation of the path; its lengths are measured by the effect of the loads at its start."""
         return begin(self.system, *self.start, self.newton)[0]
 
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
         """Yield the points from the equilibrium p (n,) to the first one at or above the load factor `beyond`.
 
-        end: the load factor that none exceeds. Raises TurnsBackError at a limit point; PathLostError where no step
-        along the path is accepted elsewhere, OutOfReachError where load factor 1 is too far at the pace of the steps.
+        end: the largest load factor allowed. Raises TurnsBackError at a limit point; PathLostError if no step along the
+        path is accepted elsewhere, OutOfReachError if load factor 1 is too far at the present step length.
         """
         growing = np.zeros(len(p) + 1)
         growing[-1] = 1.0
@@ -108,7 +108,7 @@ class PathFollower:
             yield Followed(point, iterations, cuts)
 
     def _require_pace(self, load_factor: float) -> None:
-        """Raise PathLostError where far too many steps are needed from here on. Load steps in between count as well."""
+        """Raise PathLostError if far too many further steps would be needed, intermediate load steps included."""
         if len(self.passed) == _PACE:
             half = _PACE // 2
             before, gained = self.passed[half] - self.passed[0], load_factor - self.passed[half]
@@ -122,7 +122,7 @@ class PathFollower:
 
 
 def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:
-    """Return whether the load factor would not grow any more if the path went on as it did from the point before.
+    """Return whether the load factor would stop growing if the path continued as from the previous point.
 
     Where several paths cross in a limit point no step leads over it, as in a bar that softens everywhere at once.
     """
@@ -141,7 +141,7 @@ def _at_load(segment: Segment, target: float, iterations: int, cuts: int) -> Pat
 
 
 def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int, int]:
-    """Return the longest step up to `size` that is accepted, the iterations of all that were tried, and those cut."""
+    """Return the longest accepted step up to `size`, the iterations of all attempts, and the number rejected."""
     size = min(size, longest_step(line, point))
     iterations = cuts = 0
     while True:

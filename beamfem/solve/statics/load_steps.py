@@ -1,4 +1,4 @@
-"""Load steps that stay on the path: by the load where that is safe, else by the length of the path."""
+"""Load steps that stay on the path: by load if that is safe, otherwise by arc length."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -34,9 +34,9 @@ def reach(
     stops: Sequence[float] = (),
     end: float = 1.0,
 ) -> None:
-    """Add the rows from the last one to the load factor `end`, 1 at most; `step` is the first load step.
+    """Add the rows from the last one to the load factor `end`, at most 1; `step` is the first load step.
 
-    stops: load factors that get a row of their own, but for those that a jump leaves out.
+    stops: load factors that get a row of their own, except those skipped by a jump.
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
     ahead = sorted({stop for stop in stops if SAME < stop < end - SAME} | {end})
@@ -82,7 +82,7 @@ def reach(
 
 
 def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
-    """Return a load step in which no prescribed rotation turns too far. Raises ConvergenceError at a jump."""
+    """Return a load step in which no prescribed rotation exceeds the largest allowed turn. Raises ConvergenceError."""
     while system.largest_turn(done.reached, min(done.reached + step, 1.0)) > _LARGEST_TURN:
         step *= 0.5
         if step < _SHORTEST_TURN:
@@ -95,9 +95,9 @@ def _within_a_turn(system: System, done: StaticRecord, step: float) -> float:
 
 
 def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float], snap: Snap) -> None:
-    """Add the rows along the path or, where the path turns back, to the state behind the jump.
+    """Add the rows along the path or, if the path turns back, up to the state after the jump.
 
-    to: the load factor to reach, and the one that no row exceeds.
+    to: the load factor to reach, and the largest one allowed for rows.
     """
     try:
         for followed in follower.follow(done.state, done.reached, *to):
@@ -142,7 +142,7 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
 
 
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
-    """Add the state of rest behind a limit point. Raises LimitPointError where no jump is wanted."""
+    """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
     where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
     if snap == "error":

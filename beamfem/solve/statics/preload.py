@@ -1,4 +1,4 @@
-"""The equilibrium at load factor 0, under the loads that do not scale and what is prescribed there."""
+"""The equilibrium at load factor 0, under unscaled loads and prescribed values."""
 
 from copy import copy
 from dataclasses import replace
@@ -23,7 +23,7 @@ _AT_REST = "nothing acts at load factor 0"
 
 
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
-    """Return the equilibrium at load factor 0; where it is far, that of the path along which all loads grow at once."""
+    """Return the equilibrium at load factor 0; if it is far from the start, all loads are grown along a path."""
     if _at_rest(system):
         return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
@@ -31,7 +31,7 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
 
 
 def _at_rest(system: System) -> bool:
-    """Return whether nothing acts yet at load factor 0."""
+    """Return whether nothing acts at load factor 0."""
     if _AT_REST not in system.proven:
         # a load that is lost in the round-off of stiff rows may bend the beam all the same
         moved = system.prescribed_changes(0.0).any()
@@ -42,7 +42,7 @@ def _at_rest(system: System) -> bool:
 
 
 def _free_of_force(system: System) -> bool:
-    """Return whether what users have written, laws of sections and connectors, resists nothing in the reference."""
+    """Return whether user-defined section laws and connectors have no stiffness in the reference."""
     if not system.connectors.items and all(block.law is None for block in system.blocks):
         return True
     p = system.reference
@@ -51,7 +51,7 @@ def _free_of_force(system: System) -> bool:
 
 
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:
-    """Return the end of the path along which what acts at load factor 0 grows from nothing."""
+    """Return the end of the path along which the loads at load factor 0 grow from zero."""
     growing = system_of(_growing(system.model), static=True)
     done = StaticRecord(growing.model, growing.symmetric)
     done.iterations = failed.iterations
@@ -64,7 +64,7 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
 
 
 def _growing(model: Model) -> Model:
-    """Return the model with what acts at load factor 0 in proportion to the load factor, and nothing else."""
+    """Return the model with the loads and prescribed values of load factor 0 in proportion to the load factor."""
     loads = [_in_proportion(load) for load in model.loads]
     moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
     supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
@@ -72,12 +72,12 @@ def _growing(model: Model) -> Model:
 
 
 def _moves(support: PointSupport) -> bool:
-    """Return whether a support prescribes more than zeros."""
+    """Return whether a support prescribes nonzero values."""
     return any(callable(value) or value != 0.0 for value in support.prescribed().values())
 
 
 def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
-    """Return supports like one, with what it prescribes at load factor 0 in proportion to the load factor."""
+    """Return supports like one, with its values at load factor 0 in proportion to the load factor."""
     values = {
         name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
         for name, value in support.prescribed().items()
@@ -93,7 +93,7 @@ def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
 
 
 def _in_proportion(load: Load) -> Load:
-    """Return a load with its size at load factor 0 in proportion to the load factor."""
+    """Return a load whose factor is proportional to the load factor, with its value at load factor 0 reached at 1."""
     weight = factor(load, 0.0, True)
     found: Load = copy(load)
     # whether its class has it as a field or not

@@ -1,4 +1,4 @@
-"""Whether a load step may have gone over limit points to a state as stable as the one it left."""
+"""Detection of load steps that may have passed limit points to another stable state."""
 
 import numpy as np
 from scipy.linalg import LinAlgError

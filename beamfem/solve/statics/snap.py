@@ -1,8 +1,8 @@
-"""Where a structure comes to rest that snaps at a limit point under a load that stays.
+"""State of rest of a structure that snaps at a limit point under constant load.
 
-Slow loading and damping: the motion is the overdamped one, M q' = -r(q), in implicit Euler steps that grow as it comes
-to rest. Loads that keep their direction lose potential energy in every step, so it ends in a stable equilibrium, as
-long as a step does not leave the valley it is in: M / dt + K must be positive on the way.
+Slow loading and damping: the motion is overdamped, M q' = -r(q), in implicit Euler steps that grow as it comes to rest.
+Loads of constant direction lose potential energy in every step, so it ends in a stable equilibrium, as long as no step
+leaves its energy valley: M / dt + K must be positive definite on the way.
 """
 
 import numpy as np
@@ -27,10 +27,10 @@ _SAME_PLACE = 1e-3  # of the model, or of a gradient: by 1e-6 loads beside a lim
 def rest_state(
     system: System, limit: np.ndarray, beyond: np.ndarray, newton: Newton, farthest: float = np.inf
 ) -> NewtonResult:
-    """Return the equilibrium at the load of a limit point (n + 1,) that the structure snaps to.
+    """Return the equilibrium to which the structure snaps at the load of a limit point (n + 1,).
 
-    beyond (n + 1,): a point of the path behind the limit point, on the side that it leaves to; farthest: of the model,
-    how far from the limit point it is looked for.
+    beyond (n + 1,): a point of the path after the limit point, on the side of departure; farthest: search distance from
+    the limit point, in sizes of the model.
     """
     load_factor, free = float(limit[-1]), system.free_dofs
     aside = np.zeros(len(limit) - 1)
@@ -68,9 +68,9 @@ def rest_state(
 
 
 def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two limit points (n + 1,) are the same but for whole turns, which loads that follow may add.
+    """Return whether two limit points (n + 1,) are equal except for full turns, which follower loads may add.
 
-    Slow loading never lowers the load factor, so that a limit point met again at the same one is where a cycle closes.
+    Slow loading never lowers the load factor, so a limit point met again at the same load factor closes a cycle.
     """
     if abs(one[-1] - other[-1]) > _SAME_LOAD * abs(one[-1]):
         return False
@@ -81,9 +81,9 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
-    """Return the state after an implicit Euler step, None where Newton's method fails; and the iterations.
+    """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations.
 
-    It fails as well where the step is so long that more than one state is at its end: some lie in other valleys.
+    It also fails if the step is so long that several states are possible at its end: some lie in other valleys.
     """
     free, moved, zeros = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)

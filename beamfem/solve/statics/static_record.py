@@ -1,4 +1,4 @@
-"""What a static solve has found, and how it becomes a solution."""
+"""Results of a static solve, and their conversion into a solution."""
 
 import warnings
 
@@ -47,9 +47,9 @@ class StaticRecord:
         self.rows.append((load_factor, state, negative_pivots))
 
     def solution(self, complete: bool = False) -> Solution:
-        """Return the rows as a solution; complete: the solve came to its end.
+        """Return the rows as a solution; complete: the solve reached its end.
 
-        Warns of few digits and, where the solve is complete, of unstable rows: where it is not, an error is on its way.
+        Warns of few accurate digits and, for complete solves, of unstable rows; incomplete ones raise an error anyway.
         """
         load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
         counts = [count for _, _, count in self.rows]

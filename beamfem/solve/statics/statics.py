@@ -35,15 +35,15 @@ def solve_static(
 ) -> Solution:
     """Return the equilibria from load factor 0 to 1 along the path that starts at 0.
 
-    A load step is accepted where the iterates keep the count of negative pivots; else the path is followed by its
-    length. At a bifurcation it goes on along the primary path, and a warning tells of unstable rows.
-    steps: load steps to start with, grown and cut as needed. Rows of the result: load factor 0 (loads with
-    scale=False), ..., 1. at: load factors from 0 to 1, ascending, to have rows at instead: exactly these, but for those
-    that a jump leaves out; the last of them ends the solve. snap: what to do at a limit point, "error", or "jump" to
-    the state in which a slow, damped structure comes to rest under the same load, and go on from there.
-    Raises InputError and FreeMotionError before; LimitPointError with its load factor, and ConvergenceError where it
-    cannot go on, both with the states found. Any other exception on the way, such as KeyboardInterrupt, gets them as
-    its `solution` as well.
+    A load step is accepted if the iterates keep the number of negative pivots; otherwise the path is followed by arc
+    length. At a bifurcation the primary path is continued, and a warning reports unstable rows.
+    steps: initial number of load steps, which are grown and cut as needed. Rows of the result: load factor 0 (loads
+    with scale=False), ..., 1. at: ascending load factors from 0 to 1 for the rows instead, reached exactly, except
+    those skipped by a jump; the last of them ends the solve. snap: at a limit point raise an "error", or "jump" to the
+    state in which a slow, damped structure comes to rest under the same load, and continue from there.
+    Raises InputError and FreeMotionError before the solve; LimitPointError with the load factor, and ConvergenceError
+    if no step converges, both with the states found. Any other exception during the solve, such as KeyboardInterrupt,
+    carries them as its `solution` too.
     """
     if at is None:
         return solve_through(model, (), steps, newton, snap=snap)
@@ -52,7 +52,7 @@ def solve_static(
 
 
 def _ascending(at: Sequence[float]) -> list[float]:
-    """Check the load factors that a user wants rows at."""
+    """Check the load factors requested by a user."""
     wanted = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
     rising = all(after - before > SAME for before, after in pairwise(wanted))
     if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
@@ -64,7 +64,7 @@ def _ascending(at: Sequence[float]) -> list[float]:
 
 
 def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
-    """Return the rows at some load factors, with the turns of sections as all rows counted them."""
+    """Return the rows at some load factors, with the rotations counted over all rows."""
     near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
     # behind a jump the last of several states at a load factor
     rows = np.array([np.flatnonzero(own)[-1] for own in near if own.any()], dtype=int)

@@ -17,6 +17,10 @@ _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_PRESCRIBED_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
+# An arc deviates from its tangent by half its turn. An equilibrium that is further away, as a fraction of the step, is
+# on another path, or the path bends there and back within the step.
+_ARC = 0.6
+_BESIDE = 0.01
 _FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
@@ -82,7 +86,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     corrected = line.correct(start, stresses, plane, farthest, counted=True)
     if not corrected.ended.good:
         return Refused(corrected.ended.value, corrected.iterations)
-    if line.length(corrected.y - point.y - change) > _LARGEST_CORRECTION * size:
+    correction = line.length(corrected.y - point.y - change) / size
+    if correction > _LARGEST_CORRECTION:
         return Refused("the equilibrium beside the end of the step is too far away", corrected.iterations)
     try:
         new = line.linearised(corrected.y, point.tangent)
@@ -93,6 +98,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
+    if correction > _ARC * turn + _BESIDE:
+        return Refused("the equilibrium beside the end of the step is on another path", corrected.iterations)
     segment = Segment(line, point, new)
     try:
         limits = segment.limit_points()

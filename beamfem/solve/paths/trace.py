@@ -13,8 +13,8 @@ from beamfem.model.model import Model
 from beamfem.progress import progress
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
-from beamfem.solve.continuation.critical_points import Segment
-from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_small
+from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
+from beamfem.solve.continuation.steps import Refused, Step, longest_step, take_step, too_small
 from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.paths.branches import leave
 from beamfem.solve.paths.path_record import PathRecord
@@ -93,9 +93,8 @@ def trace_equilibrium(
             if len(record.rows) >= points:
                 record.end(f"the {points} points are used up")
                 break
-            taken = _step(line, point, size, record)
+            taken, landing = _step(line, point, size, record, until if isinstance(until, float) else None)
             size = taken.next_size
-            landing = _landing(line, taken, until) if isinstance(until, float) else None
             landed = landing is not None
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
@@ -150,10 +149,12 @@ def _branch(line: Continuation, start: Bifurcation, direction: int, record: Path
     return found, line.length(found.y - record.rows[0][0])
 
 
-def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord) -> Step:
-    """Return the longest accepted step from a point up to `size`. Raises ConvergenceError.
+def _step(
+    line: Continuation, point: PathPoint, size: float, record: PathRecord, end: float | None
+) -> tuple[Step, PathPoint | None]:
+    """Return the longest accepted step from a point up to `size`, and the point on it with the load factor `end`.
 
-    It names the most frequent reason for rejections: for the shortest lengths, round-off decides.
+    Raises ConvergenceError, which names the most frequent reason for rejections: round-off decides for the shortest.
     """
     size = min(size, longest_step(line, point))
     reasons: list[str] = []
@@ -161,7 +162,12 @@ def _step(line: Continuation, point: PathPoint, size: float, record: PathRecord)
         taken = take_step(line, point, size)
         record.iterations += taken.iterations
         if isinstance(taken, Step):
-            return taken if not reasons else replace(taken, next_size=min(taken.next_size, size))
+            try:
+                landing = None if end is None else _landing(line, taken, end)
+            except SegmentLostError as error:
+                taken = Refused(f"the load factor {end:g} was not found on the path: {error}", taken.iterations)
+            else:
+                return taken if not reasons else replace(taken, next_size=min(taken.next_size, size)), landing
         record.cuts += 1
         reasons.append(taken.reason)
         size *= 0.5

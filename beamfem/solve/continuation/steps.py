@@ -17,10 +17,10 @@ _WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
 _LARGEST_TURN = 0.5
 _LARGEST_PRESCRIBED_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
-# An arc deviates from its tangent by half its turn. An equilibrium that is further away, as a fraction of the step, is
-# on another path, or the path bends there and back within the step.
-_ARC = 0.6
-_BESIDE = 0.01
+# An arc deviates from its tangent by half its turn, by a third to two thirds where its curvature changes linearly. An
+# equilibrium that is further away, as a fraction of the step, is on another path, or the path bends within the step.
+_ARC = 0.75
+_BESIDE = 0.03
 _FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0

@@ -21,6 +21,7 @@ _LARGEST_CORRECTION = 0.5  # of the step
 # equilibrium that is further away, as a fraction of the step, is on another path, or the path bends within the step.
 _ARC = 0.75
 _BESIDE = 0.03
+_ANOTHER = 1e-4  # of the model: another path is no nearer; beside limit points the tangent itself has an error
 _FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
@@ -98,7 +99,7 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
-    if correction > _ARC * turn + _BESIDE:
+    if correction > _ARC * turn + _BESIDE and correction * size > _ANOTHER:
         return Refused("the equilibrium beside the end of the step is on another path", corrected.iterations)
     segment = Segment(line, point, new)
     try:

@@ -123,7 +123,7 @@ def test_what_is_not_known_is_no_number():
         found = solution.stresses(own)
         assert np.isnan(found.von_mises).all()
         assert np.isnan(found.peak().value)
-        with pytest.raises(bf.InputError, match="no beam has a von Mises stress to draw: sections tell a stress where"):
+        with pytest.raises(bf.InputError, match="no beam has a von Mises stress to draw: stresses need sections"):
             solution.plot(colour="stress")
     own, solution = cantilever(bf.Rectangle(0.02, 0.04), bf.Material(2e11, 0.3, 7800.0))
     assert np.isnan(solution.stresses(own).utilisation).all()

@@ -172,7 +172,7 @@ def test_a_beam_is_stopped_by_a_wall():
     # what the wall bears and what the clamp bears is the load
     pushed = solution.connector_force(wall)[-1, 0, 1]
     assert solution.reaction(own.start)[-1, 1] + pushed == pytest.approx(3.0 * BENDING, rel=1e-7)
-    with pytest.raises(bf.InputError, match="no connector of this model"):
+    with pytest.raises(bf.InputError, match="not a connector of this model"):
         solution.multipliers(Anchor(own.end, (1.0, 1.0, 1.0)))
 
 

@@ -118,7 +118,7 @@ def test_a_slice_of_a_solution_is_a_solution_of_these_rows():
     assert [state.at for state in whole] == whole.time.tolist()
     assert whole[np.int64(-1)].at == whole.time[-1]
     for rows in (slice(5, 5), slice(20, 30), slice(4, 2)):
-        with pytest.raises(bf.InputError, match=r"holds no row; this solution has the rows 0 to 10"):
+        with pytest.raises(bf.InputError, match=r"selects no row; this solution has rows 0 to 10"):
             whole[rows]
     for row in ("last", 1.0, None, (0, 1), [0, 1]):
         with pytest.raises(bf.InputError, match="a slice such as solution"):

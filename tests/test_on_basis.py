@@ -79,7 +79,7 @@ def test_beams_without_one_basis_are_refused(curve, elements, said):
 
 def test_what_is_no_solution_or_no_row_is_named():
     beam, solution = bent(bf.CRBF(2))
-    with pytest.raises(bf.InputError, match="takes a solution, such as that of solve_static, got None"):
+    with pytest.raises(bf.InputError, match="needs a Solution, such as solve_static returns, got None"):
         bf.field_on_basis(None, beam)
     with pytest.raises(bf.InputError, match="row of interpolate"):
         bf.field_on_basis(solution, beam).interpolate(9)

@@ -1,4 +1,4 @@
-"""States of a model as solves hand them back, and what follows: reactions, section forces, stresses, energies."""
+"""States of a model as returned by the solvers, and derived results: reactions, section forces, stresses, energies."""
 
 from beamfem.model.model import Model
 from beamfem.registry import offer

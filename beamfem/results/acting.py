@@ -1,4 +1,4 @@
-"""What acts on elements that are cut free: weight, inertia, loads and foundations, as forces at points of them."""
+"""Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Rows of a solution and what acts in them.
+    """Rows of a solution and the forces that act in them.
 
-    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: of each block (steps, nl, 3), see `Actions`;
+    p, v, a (steps, n); body (steps, beams, 4): see `System.body`; values: for each block (steps, nl, 3), see `Actions`;
     imposing (steps, k): factors of the loads that impose strains.
     """
 
@@ -37,7 +37,7 @@ class Rows:
 
 
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
-    """Return some rows of a solution, and what acts in them."""
+    """Return some rows of a solution with the forces that act in them."""
     system, at = loading(solution)
     times = at[rows].tolist()
     body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
@@ -51,10 +51,10 @@ def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
 
 @dataclass(frozen=True, eq=False)
 class Acting:
-    """Forces at points of elements, their virtual work f . delta r + h . delta g of a vector g that turns with them.
+    """Forces at points of elements; virtual work f . delta r + h . delta g, where g is a vector that turns with them.
 
-    element (m,): place among the elements that are cut free; xi (m,); rule (m,): Gauss points of the element that share
-    what is spread over it; position, direction (m, nv): r = sum position_i e_i, and g;
+    element (m,): index among the elements cut free; xi (m,); rule (m,): number of Gauss points over which the
+    distributed force is lumped; position, direction (m, nv): r = sum position_i e_i, likewise g;
     force f (steps, m, 2) [N], turning h (steps, m, 2) [N m over the unit of g].
     """
 
@@ -67,7 +67,7 @@ class Acting:
     turning: np.ndarray
 
     def moments(self, e: np.ndarray, origin: np.ndarray) -> np.ndarray:
-        """Return their moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
+        """Return the moments (steps, m) [N m] about an origin (steps, elements, 2) of each element; e: `vectors`."""
         arm = _at(self.position, e, self.element) - origin[:, self.element]
         return cross(arm, self.force) + cross(_at(self.direction, e, self.element), self.turning)
 
@@ -81,9 +81,9 @@ class Acting:
 
 
 def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
-    """Return what acts on elements (ne,) of a beam with nodal vectors e and e'' (steps, ne, nv, 2).
+    """Return the forces on elements (ne,) of a beam with nodal vectors e and accelerations e'' (steps, ne, nv, 2).
 
-    Point loads are left out: they have nodes, and act between elements.
+    Point loads are excluded: they act at nodes, that is between elements.
     """
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
@@ -98,9 +98,9 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
 
 
 def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
-    """Return the same with what is spread over elements (ne,) at as many Gauss points as its moments need.
+    """Return the same forces, distributed ones at as many Gauss points of elements (ne,) as their moments need.
 
-    The moment of a density that is interpolated is a polynomial of a higher degree, by that of the field.
+    The moment of an interpolated density is a polynomial whose degree is higher by that of the field.
     """
     field = mesh.beam.element.field
     extra = max(field.degree, field.director_degree)
@@ -115,7 +115,7 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
             np.add.at(summed, place, np.moveaxis(values, 1, 0))
             spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
         element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
-        # what turns where it is spread is inertia, and that turns with d
+        # distributed moments come from inertia alone, which turns with d
         tables = _tables(mesh, elements[element], xi)
         parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
     joined = zip(*parts, strict=True)
@@ -123,7 +123,7 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
 
 
 def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
-    """Weight less mass times acceleration, of r0 + y d."""
+    """Return weight less mass times acceleration of the body r0 + y d."""
     pull = rows.body[:, rows.system.model.number_of(mesh.beam), :2]
     if not pull.any() and not acceleration.any():
         return _nothing(e)
@@ -137,7 +137,7 @@ def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, ac
 
 
 def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
-    """Forces per length that keep their direction."""
+    """Return forces per length that keep their direction."""
     load = rows.body[:, rows.system.model.number_of(mesh.beam), 2:]
     where, xi, weight = length_points(mesh, elements)
     force = load[:, None] * weight[:, None]
@@ -147,7 +147,7 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
 
 
 def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
-    """Loads along beams that follow or vary and springs of foundations, as the kernels have them."""
+    """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
     points, own = actions.points, actions.points.element - mesh.first_element
     here = np.flatnonzero(np.isin(own, elements) & (actions.rule > 0))
@@ -170,12 +170,12 @@ def _nothing(e: np.ndarray) -> Acting:
 
 
 def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
-    """Places of elements among those that are cut free, which rise."""
+    """Return the indices of elements among those cut free, which are in ascending order."""
     return np.searchsorted(elements, where)
 
 
 def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Tables (m, nv) of r and of d at points (element, xi) of a beam."""
+    """Return the shape function tables (m, nv) of r and of d at points (element, xi) of a beam."""
     own = mesh.beam.element
     scale = scales(own, mesh.lengths[element])
     position, direction = np.zeros_like(scale), np.zeros_like(scale)
@@ -185,5 +185,5 @@ def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.nda
 
 
 def _at(table: np.ndarray, vectors: np.ndarray, element: np.ndarray) -> np.ndarray:
-    """Return what nodal vectors (steps, ne, nv, 2) give at points (steps, m, 2)."""
+    """Return the interpolation (steps, m, 2) of nodal vectors (steps, ne, nv, 2) at points."""
     return np.einsum("mi,smic->smc", table, vectors[:, element])

@@ -1,4 +1,4 @@
-"""Fields along the axes of beams at points fit for drawing and export."""
+"""Fields along the axes of beams, at points suited to plotting and export."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class AxisPoints:
-    """Points of a beam's axis: `pieces` equal intervals an element, so that neighbours both have their common end.
+    """Points of a beam's axis: `pieces` equal intervals per element; adjacent elements both include their common end.
 
     element, xi (points,).
     """
@@ -41,27 +41,27 @@ class AxisPoints:
 
     @cached_property
     def arc_length(self) -> np.ndarray:
-        """Arc length in the reference (points,) [m]."""
+        """Arc length in the reference configuration (points,) [m]."""
         return self.mesh.arc_length(self.element, self.xi)
 
     @cached_property
     def distributions(self) -> Distributions:
-        """The layers of the section at each point, and how they distribute forces over their height."""
+        """The layers of the section at each point, and the distribution of section forces over their height."""
         return distributions(self.mesh, self.element, self.xi)
 
     @cached_property
     def layers(self) -> np.ndarray:
-        """Lower and upper y of each layer of the body (points, layers, 2) [m], from the bottom up."""
+        """Lower and upper y of each layer of the section (points, layers, 2) [m], from the bottom up."""
         return layers(self.mesh, self.element, self.xi)
 
     @cached_property
     def faces(self) -> np.ndarray:
-        """Lower and upper y of the body (points, 2) [m]."""
+        """Lower and upper y of the section (points, 2) [m]."""
         return self.layers[:, [0, -1], [0, 1]]
 
     @cached_property
     def reference(self) -> np.ndarray:
-        """Position in the reference (points, 2) [m]."""
+        """Position in the reference configuration (points, 2) [m]."""
         return self.mesh.position[self.mesh.node[self.element, 0]] + self._reference_axis.r
 
     @cached_property
@@ -69,12 +69,12 @@ class AxisPoints:
         return reference_axis(self.mesh, self.element, self.xi)
 
     def positions(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return r and d (steps, points, 2) of the states p (steps, n)."""
+        """Return r [m] and d [-] (steps, points, 2) in the states p (steps, n)."""
         now = self.now(p)
         return now.r, now.d
 
     def now(self, p: np.ndarray) -> postprocess.Axis:
-        """Return the axis at the points in the states p (steps, n)."""
+        """Return the deformed axis at the points in the states p (steps, n)."""
         return postprocess.axis(self.mesh, postprocess.nodal_vectors(self.mesh, p), self.element, self.xi)
 
     def velocities(self, p: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -91,7 +91,7 @@ def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.nd
 
 
 def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
-    """Return the rotation of the section from the reference (rows, points) [rad]."""
+    """Return the rotation of the section from the reference configuration (rows, points) [rad]."""
     turned, p = turned_of(solution, points.mesh), solution.p[rows]
     counted = None if turned is None else turned[rows]
     return postprocess.turning(points.mesh, p, points.now(p), points.element, points.xi, counted)
@@ -99,9 +99,9 @@ def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray)
 
 @dataclass(frozen=True)
 class Quantity:
-    """A field along the axis: its name for people, its unit, and values(points, solution, rows) -> (rows, points).
+    """A field along the axis: label for plots, unit, and values(points, solution, rows) -> (rows, points).
 
-    unknown: what is missing where a beam has no values, which are nan then.
+    unknown: what the model must define if the values are nan.
     """
 
     label: str
@@ -148,7 +148,7 @@ QUANTITIES = {
         "von Mises stress",
         "Pa",
         _stress("von_mises"),
-        "sections tell a stress where they have a material and a height",
+        "stresses need sections with a material and a height",
     ),
     "utilisation": Quantity(
         "utilisation of the strength",

@@ -1,4 +1,4 @@
-"""Stress of a beam over its sections: extremes of each, where they are, and how much of the strength they take."""
+"""Stress of a beam: extremes over each section, their peaks along the beam, and the utilisation of the strength."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 Part = Literal["lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation"]
-_HEIGHTS = np.linspace(0.0, 1.0, 9)  # of a layer: its faces, and where a parabola of shear stress is largest
-_VALUES = 4_000_000  # in one array
+_HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
+_VALUES = 4_000_000  # most values in one array
 
 
 class Peak(NamedTuple):
-    """The extreme of a stress: its value, where it is along the beam [m], and in which row."""
+    """The extreme of a stress: its value, arc length [m] and row."""
 
     value: float
     arc_length: float
@@ -37,12 +37,11 @@ class Peak(NamedTuple):
 class BeamStress:
     """Extreme stress [Pa] of the sections of a beam (steps, stations); arc_length (stations,) [m], as `SectionForces`.
 
-    lower, upper: along the beam at the two faces; tension, compression: the largest and the smallest along the beam
-    over the height, at the faces of layers too; shear: the largest size over the height; von_mises: the largest
-    sqrt(sigma^2 + 3 tau^2) over the height, of the faces alone where the shear stress inside is not known; utilisation
-    [-]: the largest ratio of stress to the strength of the material there, nan if none is given (`Material`). Cauchy
-    stress, as in `Fields`; nan for sections that give none. Seven more heights are evaluated between the faces of a
-    layer.
+    lower, upper: normal stress at the two faces; tension, compression: largest and smallest normal stress over the
+    height; shear: largest magnitude over the height; von_mises: largest sqrt(sigma^2 + 3 tau^2) over the height, at
+    faces only if the shear stress inside is not known; utilisation [-]: largest ratio of von Mises stress to the
+    strength of the material there, nan if none is given (`Material`). Cauchy stress, as in `Fields`; nan for sections
+    that define none. Each layer is evaluated at its faces and at seven heights between them.
     """
 
     arc_length: np.ndarray
@@ -62,9 +61,9 @@ class BeamStress:
         return f"<b>Stress, peaks</b>{as_html(('', 'extreme', 'at arc length', 'row'), rows)}"
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the extreme of one of these, nan if none is known. Raises InputError.
+        """Return the peak along the beam and over the rows, nan if none is known. Raises InputError.
 
-        The smallest of `compression`, the largest by its size of `lower` and `upper`, else the largest.
+        It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, else the largest value.
         """
         known = [name for name in self.__dataclass_fields__ if name != "arc_length"]
         require_known(f"there is no stress {shown(part)}", part, known)
@@ -92,7 +91,7 @@ def stress_at(
     xi: np.ndarray,
     rows: slice | np.ndarray = slice(None),
 ) -> dict[str, np.ndarray]:
-    """Return what `BeamStress` has (steps, points) of some rows at points (element, xi) of a beam, by name."""
+    """Return the stresses of `BeamStress` (steps, points) of some rows at points (element, xi) of a beam, by name."""
     chosen, parts = np.arange(len(solution))[rows], []
     chunk = max(1, _VALUES // (len(_HEIGHTS) * max(len(xi), 1)))
     for first in range(0, max(len(chosen), 1), chunk):
@@ -118,11 +117,11 @@ def _of_rows(
             "tension": along.max(axis=-1),
             "compression": along.min(axis=-1),
             "shear": np.abs(sheared).max(axis=-1),
-            # where the width inside is not known, nor is the shear stress there: the faces, without any, still count
+            # without a known width there is no shear stress inside: the faces, free of shear stress, still count
             "von_mises": np.fmax.reduce(equivalent, axis=-1),
             "utilisation": np.fmax.reduce(fraction, axis=-1),
         }
-        # a layer that a section has not is its upper face
+        # missing layers of a section coincide with its upper face
         extremes = {name: _joined(name, extremes[name], found[name]) for name in found} if extremes else found
     return extremes
 

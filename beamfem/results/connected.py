@@ -32,7 +32,7 @@ def momenta_of_connectors(solution: "Solution") -> np.ndarray:
 
 
 def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray:
-    """Return what a connector does to its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
+    """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
     system, times = loading(solution)
     item = _bound(solution, connector)
     found = [
@@ -43,7 +43,7 @@ def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray
 
 
 def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
-    """Return the unknowns of its own of a connector (steps, k). Raises InputError."""
+    """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
     return solution.p[:, _bound(solution, connector).own]
 
 
@@ -51,7 +51,7 @@ def _bound(solution: "Solution", connector: Contribution) -> Connector:
     for item in loading(solution)[0].connectors.items:
         if item.item is connector:
             return item
-    raise InputError(f"{shown(connector)} is no connector of this model; take one of model.connectors")
+    raise InputError(f"{shown(connector)} is not a connector of this model; use one of model.connectors")
 
 
 def _energies(solution: "Solution") -> np.ndarray:

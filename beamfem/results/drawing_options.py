@@ -1,10 +1,10 @@
-"""What the pictures, films and pages of results may be asked for, by name and type, for editors and type checkers."""
+"""Options of plots, animations and HTML pages of results, for editors and type checkers."""
 
 from typing import TypedDict
 
 
 class ShapeOptions(TypedDict, total=False):
-    """Of `solution.plot`, see `beamfem.view.drawing.plot_shapes`."""
+    """Options of `solution.plot`, see `beamfem.view.drawing.plot_shapes`."""
 
     colour: str | None
     shapes: int
@@ -14,7 +14,7 @@ class ShapeOptions(TypedDict, total=False):
 
 
 class FilmOptions(TypedDict, total=False):
-    """Of `solution.animate`, see `beamfem.view.animation.animate`."""
+    """Options of `solution.animate`, see `beamfem.view.animation.animate`."""
 
     fps: float
     seconds: float
@@ -26,26 +26,26 @@ class FilmOptions(TypedDict, total=False):
 
 
 class PageOptions(TypedDict, total=False):
-    """Of `solution.to_html`, see `beamfem.view.player.write_player`."""
+    """Options of `solution.to_html`, see `beamfem.view.player.write_player`."""
 
     title: str | None
     frames: int
 
 
 class WindowOptions(TypedDict, total=False):
-    """Of `solution.show`, see `beamfem.view.body.show`."""
+    """Options of `solution.show`, see `beamfem.view.body.show`."""
 
     colour: str | None
     size: tuple[int, int]
 
 
 class PictureOptions(WindowOptions, total=False):
-    """Of `solution.picture`, see `beamfem.view.body.picture`."""
+    """Options of `solution.picture`, see `beamfem.view.body.picture`."""
 
     row: int
 
 
 class ModeOptions(TypedDict, total=False):
-    """Of `modes.plot` and `buckling.plot`, see `beamfem.view.mode_shapes`."""
+    """Options of `modes.plot` and `buckling.plot`, see `beamfem.view.mode_shapes`."""
 
     most: int

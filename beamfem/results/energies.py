@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Energy:
-    """Energies (steps,) [J]; potential is that of gravity, of the other constant dead forces, springs and foundations.
+    """Energies (steps,) [J]; potential: of gravity, other constant dead loads, springs and foundations.
 
-    Forces that follow and pressures have none.
+    Follower forces and pressures have no potential.
     """
 
     kinetic: np.ndarray
@@ -39,7 +39,7 @@ class Energy:
 
 
 def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference.
+    """Return the potential (steps,) [J] of loads, springs and foundations, zero in the reference configuration.
 
     first_moments: integral of the position over the mass of each beam (steps, 2) [kg m].
     """
@@ -97,7 +97,7 @@ def _along(solution: "Solution", beam: Beam) -> tuple[np.ndarray, np.ndarray, np
 
 
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:
-    """Integral of the reference position over the mass (2,) [kg m]."""
+    """Return the integral of the reference position over the mass (2,) [kg m]."""
     element, xi, inertia = inertia_points(mesh)
     return np.asarray(
         inertia[:, 0] @ reference_position(mesh, element, xi) + inertia[:, 1] @ reference_axis(mesh, element, xi).d

@@ -1,4 +1,4 @@
-"""By how much the energy of a motion changed though nothing drove it: the error of its time steps."""
+"""Energy drift of a conservative motion: the error of its time integration."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -11,20 +11,20 @@ from beamfem.results.turns import start_rotations
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_MUCH = 0.1  # of the energy that a motion exchanges: its numbers are not those of the beam then
-_ROWS = 100  # at which energies are looked at, for what they are measured by
+_MUCH = 0.1  # fraction of the exchanged energy; a larger drift makes the results meaningless
+_ROWS = 100  # rows at which the exchanged energy is evaluated
 
 
 @dataclass(frozen=True)
 class EnergyDrift:
-    """Change of the total energy from start to end of a motion, and the largest energy that it exchanges, both [J]."""
+    """Change of the total energy from start to end of a motion, and the largest energy exchanged, both [J]."""
 
     change: float
     exchanged: float
 
     @property
     def digits(self) -> float:
-        """Decimal digits of the energy that are left; inf where none is lost."""
+        """Decimal digits of the energy that remain; inf if none is lost."""
         if self.change == 0.0:
             return np.inf
         return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0
@@ -34,9 +34,9 @@ class EnergyDrift:
 
 
 def energy_drift(solution: "Solution") -> EnergyDrift | None:
-    """Return the drift of a motion's energy; None if something does work on it.
+    """Return the energy drift of a motion; None if work is done on it.
 
-    That is so under loads with an amplitude, loads that follow and pressures, where supports move and materials damp.
+    Work is done by loads with an amplitude, follower loads and pressures, moving supports and damping.
     """
     if solution.static or solution.loaded is not None or not _conservative(solution):
         return None
@@ -49,13 +49,13 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
 
 
 def drift_warnings(solution: "Solution") -> tuple[str, ...]:
-    """Return what to know of a motion whose energy rises though nothing adds any."""
+    """Return a warning if the energy of a motion rises although no work is done on it."""
     drift = solution.energy_drift
     if drift is None or not drift.change > _MUCH * drift.exchanged:
         return ()
     return (
-        f"the energy rises by {drift.change:.3g} J, where {drift.exchanged:.3g} J are exchanged at most, though "
-        "nothing drives the motion: its steps are too long for what rings in it. Take shorter ones",
+        f"the energy rises by {drift.change:.3g} J, compared with {drift.exchanged:.3g} J exchanged at most, although "
+        "no work is done on the motion: the time steps do not resolve its high-frequency vibration. Use smaller steps",
     )
 
 

@@ -1,4 +1,4 @@
-"""Whether the arrays of states fit their model: what a user makes by hand is asked where it is made."""
+"""Checks that the arrays of states fit their model, made on construction because users can build states themselves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from beamfem.results.path import Bifurcation
     from beamfem.results.solution import Solution, State
 
-_REAL = "fiu"  # kinds of dtypes
+_REAL = "fiu"  # dtype kinds
 
 
 def require_state(state: "State") -> None:
-    """Raise InputError if the arrays of a state have not one number for each coordinate of its model."""
+    """Raise InputError unless the arrays of a state have one number for each coordinate of its model."""
     model = _model_of(state)
     for name in ("p", "v", "a"):
         _require_array(state, name, (model.size,))
@@ -27,7 +27,7 @@ def require_state(state: "State") -> None:
 
 
 def require_crossing(state: "Bifurcation") -> None:
-    """Raise InputError if the directions of a bifurcation do not fit its model, or are not finite."""
+    """Raise InputError if the directions of a bifurcation do not fit its model or are not finite."""
     _require_array(state, "mode", (state.model.size,))
     _require_array(state, "tangent", (state.model.size + 1,))
     for name in ("mode", "tangent"):
@@ -35,9 +35,9 @@ def require_crossing(state: "Bifurcation") -> None:
 
 
 def require_rows(solution: "Solution") -> None:
-    """Raise InputError if the arrays of a solution have not a row of its model's coordinates for each `at`.
+    """Raise InputError unless the arrays of a solution have a row of its model's coordinates for each `at`.
 
-    Of the numbers, `at` and p must be finite; v and a of static solutions take no memory until they are read.
+    Only `at` and p are checked for finite values: reading v and a of static solutions would allocate their memory.
     """
     model, kind = _model_of(solution), type(solution).__name__
     flag(f"static of {kind}", solution.static)
@@ -58,7 +58,7 @@ def require_rows(solution: "Solution") -> None:
 
 
 def require_finite(name: str, state: "State") -> None:
-    """Raise InputError if a number of a state that a user gives for `name` is not finite."""
+    """Raise InputError if a state passed as argument `name` has numbers that are not finite."""
     for part in ("p", "v", "a"):
         _require_finite(f"{part} of {name}", getattr(state, part))
 
@@ -70,7 +70,7 @@ def _model_of(item: Any) -> Model:
 
 
 def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _REAL) -> None:
-    """Make an attribute an array of double precision, or of truth values, of a shape. Raises InputError."""
+    """Convert an attribute to a double precision or boolean array; raise InputError if its shape is wrong."""
     given = getattr(item, name)
     if type(given) is np.ndarray and given.shape == shape and given.dtype == (bool if kinds == "b" else float):
         return
@@ -91,4 +91,4 @@ def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _R
 
 def _require_finite(name: str, values: np.ndarray) -> None:
     if not np.isfinite(values).all():
-        raise InputError(f"{name} must be finite, but holds nan or infinity; take a state that a solve has found")
+        raise InputError(f"{name} must be finite, but contains nan or infinity; use a state found by a solver")

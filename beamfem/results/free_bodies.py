@@ -1,7 +1,7 @@
-"""Elements cut free of their neighbours in rows of a solution: the forces at their two ends, and at cuts between.
+"""Elements as free bodies in rows of a solution: the section forces at their two ends and at cuts between them.
 
-The nodal forces of an element, elastic ones and inertia less its loads, are what its neighbours do to it. Rigid motions
-are among those of its nodes, so that these forces balance its loads exactly, however coarse the mesh is.
+The nodal forces of an element, internal and inertia forces less its loads, are those that its neighbours exert on it.
+Its interpolation contains rigid-body motions, so these forces balance its loads exactly on any mesh.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from beamfem.results.spread import fractions_before
 
 @dataclass(frozen=True, eq=False)
 class Cuts:
-    """Points of a beam (points,) that cut it: element and xi."""
+    """Cuts (points,) through a beam: element and xi."""
 
     element: np.ndarray
     xi: np.ndarray
@@ -29,10 +29,10 @@ class Cuts:
 
 @dataclass(frozen=True, eq=False)
 class FreeBodies:
-    """Elements (ne,) of a beam cut free.
+    """Elements (ne,) of a beam as free bodies.
 
-    vectors (steps, ne, nv, 2): e; acting: what acts on them; force (2, steps, ne, 2) [N] and moment (2, steps, ne)
-    [N m] about their first node, of what stands on the side of the beam's end at their start and at their end.
+    vectors (steps, ne, nv, 2): e; acting: forces on them; force (2, steps, ne, 2) [N] and moment (2, steps, ne) [N m]
+    about their first node: those exerted by the part towards the beam's end on cuts at their start and at their end.
     """
 
     mesh: BeamMesh
@@ -45,8 +45,8 @@ class FreeBodies:
     def at(self, cuts: Cuts) -> np.ndarray:
         """Return normal and shear force [N] and moment [N m] (steps, 3, points) at cuts.
 
-        Balance of what is before a cut, and of what is behind it; where nodes inside of an element are at rest to
-        round-off only, in proportion to the distance from its ends.
+        They balance the part before a cut and the part after it. If the two differ by round-off of the equilibrium of
+        inner nodes, they are weighted by the distance from the ends.
         """
         element = np.searchsorted(self.elements, cuts.element)
         now = interpolate(self.mesh, self.vectors[:, element], cuts.element, cuts.xi)
@@ -61,7 +61,7 @@ class FreeBodies:
     def _carried(
         self, ends: np.ndarray, acts: np.ndarray, fraction: csr_array, xi: np.ndarray, element: np.ndarray
     ) -> np.ndarray:
-        """Return what cuts (points,) carry (steps, points, ...) from both ends (2, steps, ne, ...), less what acts."""
+        """Return resultants at cuts (steps, points, ...) from those of both ends (2, steps, ne, ...) and the loads."""
         total = np.zeros((len(self.elements), len(acts), *acts.shape[2:]))
         np.add.at(total, self.acting.element, np.moveaxis(acts, 1, 0))
         weight = xi.reshape(-1, *(1,) * (acts.ndim - 2))
@@ -73,7 +73,7 @@ class FreeBodies:
         return self.vectors[:, :, 0]
 
     def _before(self, cuts: Cuts, element: np.ndarray) -> csr_array:
-        """Share (points, m) of each force in what acts between the start of its element and a cut."""
+        """Return the fraction (points, m) of each force that acts between the start of its element and a cut."""
         acting = self.acting
         order = np.argsort(acting.element, kind="stable")
         starts = np.searchsorted(acting.element[order], np.arange(len(self.elements) + 1))
@@ -89,7 +89,7 @@ class FreeBodies:
 
 
 def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) -> FreeBodies:
-    """Return elements (ne,), which rise, of a beam cut free in rows; p (steps, n): coordinates to take there."""
+    """Return elements (ne,), in ascending order, as free bodies in rows; p (steps, n): coordinates to use there."""
     block = rows.system.blocks[mesh.block]
     number = mesh.first_element + elements
     q, v, a = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
@@ -99,7 +99,7 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     force -= acting.nodal(len(elements))
     per_node = len(mesh.vectors)
     first, last = slice(0, per_node), slice(-per_node, None)
-    # the vectors of a node behind r turn with it
+    # all nodal vectors after r turn with the node
     turns = [cross(e[:, :, place], force[:, :, place])[:, :, 1:].sum(axis=2) for place in (first, last)]
     pulls = [force[:, :, place][:, :, 0] for place in (first, last)]
     arm = e[:, :, last][:, :, 0] - e[:, :, 0]
@@ -109,7 +109,7 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
 
 
 def _parted(block: Block, elements: np.ndarray) -> Block:
-    """Return elements of a block with nodes of their own."""
+    """Return elements of a block, without shared nodes."""
     nodes = block.node[elements]
     flat = nodes.ravel()
     return block._replace(

@@ -21,12 +21,12 @@ from beamfem.results.postprocess import axis, nodal_velocities
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import finite, number_below, shown, squared
 
-_PIECES = 4  # cubics of the crooked axis in an element, at least; of a linear field there is one
+_PIECES = 4  # minimum number of cubic segments per element of the imperfect axis; one for a linear field
 
 
 @dataclass(frozen=True)
 class _Crooked:
-    """A beam in the place of another: old and new arc lengths (k,) [m] of the same points."""
+    """An imperfect beam that replaces a perfect one: old and new arc lengths (k,) [m] of the same points."""
 
     beam: Beam
     old: np.ndarray
@@ -39,7 +39,7 @@ class _Crooked:
 
 @dataclass(frozen=True)
 class Moved:
-    """A function of the arc length of a straighter beam, at that of the same points of a crooked one."""
+    """A function of the arc length of the perfect beam, evaluated at the arc length of the imperfect one."""
 
     function: Callable[[float], Any]
     old: tuple[float, ...]
@@ -59,19 +59,20 @@ class Moved:
 
 
 def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> Model:
-    """Return the model with the axes of its beams displaced by a mode, up to `size` [m], free of stress there.
+    """Return the model with the axes of its beams displaced by a mode, `size` [m] at most, stress-free in that shape.
 
-    modes: of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: which of them. Axes become
-    cubic splines; elements, sections, supports, joints, loads and connectors stay at their points (what a connector
-    keeps besides, such as a length at rest, stays as it is). Knot spans as elements become elements by arc length.
-    Raises InputError for modes of a model of another size, where nothing moves, or for a connector whose points are not
-    fields of a dataclass.
+    modes: result of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates; mode: index of the one to
+    use. Axes become cubic splines; elements, sections, supports, joints, loads and connectors stay attached to the same
+    points (other data of a connector, such as a free length, are unchanged). Elements defined by knot spans become
+    elements defined by arc length.
+    Raises InputError if the modes belong to a model of another size, if the mode moves no axis, or if the points of a
+    connector are not fields of a dataclass.
     """
     (p, shape), size = _shape(model, modes, mode), squared(finite)("size", size)
     moved = [_rates(mesh, p, shape) for mesh in model.meshes]
     largest = max(float(np.linalg.norm(position, axis=-1).max()) for position, _ in moved)
     if largest == 0.0:
-        raise InputError("this mode moves no point of an axis, so it makes no imperfection")
+        raise InputError("this mode displaces no point of an axis, so it gives no imperfection")
     crooked = {
         id(mesh.beam): _crooked(mesh, *(size / largest * own for own in rates))
         for mesh, rates in zip(model.meshes, moved, strict=True)
@@ -82,20 +83,18 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     for connector in connectors:
         if any(id(point.beam) in crooked for point in connector.points):
             raise InputError(
-                f"{type(connector).__name__} keeps its points where a crooked model cannot exchange them: make it a "
-                "dataclass with points, or tuples of points, as its fields"
+                f"the points of {type(connector).__name__} cannot be moved to the imperfect model: make it a dataclass "
+                "with points, or tuples of points, as its fields"
             )
     return Model(beams, supports, loads, joints, connectors, model.units)
 
 
 def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the state p (n,) that a mode (n,) is a change of, and the mode."""
+    """Return the state p (n,) that a mode (n,) perturbs, and the mode."""
     found, p = getattr(modes, "modes", modes), system_of(model, static=True).reference
     if found is not modes:
         if not len(found):
-            raise InputError(
-                f"there is no mode to take an imperfection from: {getattr(modes, 'ended', 'none was found')}"
-            )
+            raise InputError(f"there is no mode to use as an imperfection: {getattr(modes, 'ended', 'none was found')}")
         number = number_below("mode", mode, len(found))
         found, p = found[number], modes.states[number] if hasattr(modes, "states") else modes.state.p
     try:
@@ -104,8 +103,8 @@ def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]
         shape = np.empty(0)
     if shape.shape != (model.size,) or p.shape != shape.shape or not np.isfinite(shape).all():
         raise InputError(
-            f"an imperfection needs the modes of this model, with {model.size} coordinates, as solve_buckling returns "
-            f"them, got {shown(modes)}"
+            f"an imperfection needs modes of this model with {model.size} coordinates, such as those returned by "
+            f"solve_buckling, got {shown(modes)}"
         )
     return p, shape.real
 
@@ -116,15 +115,15 @@ def _pieces(mesh: BeamMesh) -> int:
 
 
 def _places(mesh: BeamMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Element and xi (ne * (pieces + 1),) of the ends of the cubics."""
+    """Return element and xi (ne * (pieces + 1),) of the ends of the cubic segments."""
     ends = np.linspace(0.0, 1.0, _pieces(mesh) + 1)
     return np.repeat(np.arange(mesh.elements), len(ends)), np.tile(ends, mesh.elements)
 
 
 def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements and their derivatives by the arc length (ne * (pieces + 1), 2) of a mode (n,) about p (n,).
+    """Return displacements and their arc length derivatives (ne * (pieces + 1), 2) for a mode (n,) about p (n,).
 
-    A linear field has no slope at its nodes: there the axis turns with the section.
+    A linear field has no unique slope at its nodes: the axis is taken to turn with the section there.
     """
     element, xi = _places(mesh)
     found = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
@@ -138,7 +137,7 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     inside = mesh.arc_length_inside(element, xi, curve.corners)
     at = mesh.arc_length(element, xi)
     position, rate = curve.position(at) + moved, curve.tangent(inside) + slope
-    # ends of elements: one point, with the mean of the slopes on both sides, but at corners
+    # element ends are one point with the mean of the slopes on both sides, except at corners
     first = np.arange(_pieces(mesh) + 1, len(at), _pieces(mesh) + 1)
     corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)
     rate[first - 1], rate[first] = (
@@ -169,7 +168,7 @@ def _along(function: Any, old: np.ndarray, new: np.ndarray) -> Moved:
 
 
 def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
-    """Return a support, load, joint or connector at the same points of the crooked beams."""
+    """Return a support, load, joint or connector at the same points of the imperfect beams."""
     if isinstance(item, Beam):
         return crooked[id(item)].beam
     if isinstance(item, Point):
@@ -181,7 +180,7 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
     if not is_dataclass(item) or isinstance(item, type):
         return item
     if not type(item).__module__.startswith("beamfem."):
-        require_remade(f"a {type(item).__name__} cannot be placed on crooked beams", item)
+        require_remade(f"a {type(item).__name__} cannot be placed on imperfect beams", item)
     changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
     if isinstance(item, AlongBeam):
         own = crooked[id(item.beam)]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def imposed_measures(
     solution: "Solution", mesh: BeamMesh, rows: slice | np.ndarray = slice(None)
 ) -> np.ndarray | float:
-    """Return the measures (steps, points, ns) at the points of the strain energy of a beam; 0 if there are none."""
+    """Return the imposed strains (steps, points, ns) at the strain energy points of a beam; 0 if there are none."""
     system, at = loading(solution)
     imposed = system.blocks[mesh.block].imposed
     if imposed is None:

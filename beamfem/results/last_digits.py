@@ -1,7 +1,7 @@
-"""What the coordinates of a static solution lack below their last digit, and what that adds to its forces.
+"""Corrections smaller than the last digit of the coordinates of a static solution, and their effect on its forces.
 
-A stiff part of a model turns the last digit of a position into a force that may be larger than what acts. The state
-still is the equilibrium; what it lacks is found from the balance (`assembly.round_off.remainder`) and kept apart.
+In a stiff part of a model the last digit of a position may amount to a force larger than the applied loads. The state
+is still the equilibrium; the correction is found from the residual (`assembly.round_off.remainder`) and stored apart.
 """
 
 from collections.abc import Callable
@@ -16,11 +16,11 @@ from beamfem.assembly.system import system_of
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_ENOUGH = 7.0  # digits of the forces that a state has by itself
+_ENOUGH = 7.0  # digits of the forces at which a state needs no correction
 
 
 def remainders(solution: "Solution") -> np.ndarray:
-    """Return what is to be added to the coordinates of each row (steps, n); zero if they are exact enough."""
+    """Return the corrections of the coordinates of each row (steps, n); zero if they are exact enough."""
     result = np.zeros(solution.p.shape)
     if not solution.static:
         return result
@@ -34,7 +34,7 @@ def remainders(solution: "Solution") -> np.ndarray:
 def exactly(
     solution: "Solution", values: Callable[[np.ndarray], np.ndarray], rows: slice | np.ndarray = slice(None)
 ) -> np.ndarray:
-    """Return a function (steps, ...) of the coordinates (steps, n) of rows, digits below their last one included."""
+    """Return a function (steps, ...) of the coordinates (steps, n) of rows; remainders are included to first order."""
     p, steps = solution.p[rows], solution.remainders[rows]
     found = values(p)
     if not steps.any():

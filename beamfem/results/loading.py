@@ -1,4 +1,4 @@
-"""The equations that the rows of a solution solve, and the load factors or times of their loads."""
+"""The equations that the rows of a solution satisfy, and the load factors or times of their loads."""
 
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def loading(solution: "Solution") -> tuple[System, np.ndarray]:
-    """Return the system of a solution and the load factor or time [s] (steps,) that its loads have in each row."""
+    """Return the system of a solution and the load factor or time [s] (steps,) of its loads in each row."""
     if solution.loaded is not None:
         return system_of(solution.model, static=True), solution.loaded
     return system_of(solution.model, solution.static), solution.at

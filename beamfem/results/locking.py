@@ -1,7 +1,8 @@
-"""Tells how far locking elements keep a result from that of the same mesh without locking.
+"""Estimate of how far locking changes a result from that of the same mesh without locking.
 
-The indicator is a Newton step: the forces of the same nodes with strains that do not lock, less the model's own, over
-the tangent of the former. It sees a strain that resists and one that shuts a motion out alike, in the digits it costs.
+The indicator is a Newton step: the internal forces of the same nodes with locking-free strains, less those of the
+model, divided by the locking-free tangent. It detects both parasitic stiffness and strains that suppress a motion
+altogether.
 """
 
 from dataclasses import replace
@@ -23,14 +24,14 @@ from beamfem.results.imposed import imposed_measures
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution, State
 
-_TOLD = 1e-3  # change of a result by locking that a user is told of
-# of the step, each with the stresses of the last: those that lock are large and would hold it by themselves
+_TOLD = 1e-3  # relative change of a result above which the user is warned
+# repeated with the stresses of the last prediction: the large locking stresses would restrain the first step
 _PREDICTIONS = 3
-_ROWS = 32  # of a solution, among which the most strained is judged
+_ROWS = 32  # rows of a solution among which the most strained is assessed
 
 
 def locking_warnings(solution: "Solution") -> tuple[str, ...]:
-    """Say in a sentence that elements lock where that changes the displacements by more than 1e-3 of the largest."""
+    """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
     if not _locking_elements(solution.model):
         return ()
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
@@ -44,9 +45,9 @@ def locking_warnings(solution: "Solution") -> tuple[str, ...]:
 
 
 def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
-    """Say the same where it changes a frequency, by Rayleigh's quotient of modes with strains that do not lock.
+    """Return a warning if locking changes a frequency, from the Rayleigh quotient with locking-free strains.
 
-    state: the one that the modes are about; shapes (m, n): over all coordinates.
+    state: the state about which the modes were found; shapes (m, n): over all coordinates.
     """
     if not _locking_elements(state.model):
         return ()
@@ -65,9 +66,9 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
 
 
 def _change(state: "State", span: float | None) -> float:
-    """Return the largest change of a position by one step to the same mesh without locking, over the displacement.
+    """Return the largest change of a position in a Newton step to the locking-free mesh, over the displacement.
 
-    span: duration [s] of a motion, in which inertia lets a body that nothing holds move; None in statics.
+    span: duration [s] of a motion, whose inertia keeps the tangent of an unsupported body regular; None in statics.
     """
     system = system_of(state.model, span is None)
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
@@ -92,7 +93,7 @@ def _change(state: "State", span: float | None) -> float:
 
 
 def _unlocked(element: Element) -> Element:
-    """Return the element with the integration that does not lock."""
+    """Return the element with an integration rule that avoids locking."""
     if "r_x" in element.field.vectors:
         return replace(element, integration="lobatto")
     return replace(element, integration="reduced")
@@ -118,8 +119,8 @@ def _sentences(model: Model, change: float, what: str) -> tuple[str, ...]:
     elements = _locking_elements(model)
     names = ", ".join(dict.fromkeys(f"{element.name} ({element.forces.name} forces)" for element in elements))
     cures = " or ".join(dict.fromkeys(f'integration="{_unlocked(element).integration}"' for element in elements))
-    size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than its own size"
+    size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
     return (
-        f"elements lock: {names}; without that {what} would change by {size} on this mesh. Use {cures}, or more "
+        f"elements lock: {names}; without locking {what} would change by {size} on this mesh. Use {cures}, or more "
         "elements",
     )

@@ -1,4 +1,4 @@
-"""The field of a beam as scikit-fem has it: a basis for forms of one's own, and the states on it."""
+"""The field of a beam on a scikit-fem basis, for user-defined forms, with the states as its coefficients."""
 
 from dataclasses import dataclass
 
@@ -14,14 +14,14 @@ from beamfem.results.postprocess import nodal_vectors
 from beamfem.results.solution import Solution
 from beamfem.validation import flag, number_below, shown
 
-_ALIKE = 1e-9  # of an element: how far the lengths of the mesh may be from arc lengths
+_ALIKE = 1e-9  # fraction of the longest element: tolerance between mesh lengths and arc lengths
 
 
 @dataclass(frozen=True, eq=False)
 class FieldOnBasis:
     """The body r(s, y) = r0(s) + y d(s) [m] of a beam in all states.
 
-    basis: of scikit-fem, over the arc length s [m] and y [m]; values (steps, basis.N): the field in each state.
+    basis: scikit-fem basis over the arc length s [m] and y [m]; values (steps, basis.N): coefficients in each state.
     """
 
     basis: Basis
@@ -30,35 +30,35 @@ class FieldOnBasis:
     __repr__ = brief
 
     def interpolate(self, row: int = -1) -> DiscreteField:
-        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for forms.
+        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for use in forms.
 
-        Raises InputError for a row that there is not.
+        Raises InputError for a row that does not exist.
         """
         row = number_below("row of interpolate", row, len(self.values), -len(self.values))
         return self.basis.interpolate(self.values[row])
 
 
 def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOnBasis:
-    """Return the field of a beam in all states of a solution on a basis of scikit-fem.
+    """Return the field of a beam in all states of a solution on a scikit-fem basis.
 
     body: quadrature over the length and the section, weights times width, for integrals over the volume [m^3]; False:
-    over the axis alone, for integrals over the length [m]. Paper, eqs. (2) to (4). Raises InputError for a beam with
-    corners or with knot spans as elements.
+    over the axis alone, for integrals over the length [m]. Paper, eqs. (2) to (4).
+    Raises InputError for a beam with corners, or with knot spans as elements.
     """
     if not isinstance(solution, Solution):
-        raise InputError(f"field_on_basis takes a solution, such as that of solve_static, got {shown(solution)}")
+        raise InputError(f"field_on_basis needs a Solution, such as solve_static returns, got {shown(solution)}")
     body = flag("body of field_on_basis", body)
     mesh, p = solution.model.meshes[solution.model.number_of(beam)], solution.p
     if len(mesh.beam.curve.corners):
         raise InputError(
-            f"{mesh.beam!r} has corners, where its field has two directions and a basis has one: take a beam for each "
-            "smooth piece and join them"
+            f"{mesh.beam!r} has corners, where its field has two directions but a basis only one: use one beam for "
+            "each smooth piece and join them"
         )
     arc_lengths = np.diff(mesh.vertices)
     if np.abs(mesh.lengths - arc_lengths).max() > _ALIKE * arc_lengths.max():
         raise InputError(
-            f"the elements of {mesh.beam!r} are the knot spans of a spline, and a basis takes arc lengths: give "
-            "elements a number"
+            f"the elements of {mesh.beam!r} are the knot spans of a spline, but a basis needs arc lengths: set "
+            "elements to a number"
         )
     basis = beam_basis(mesh) if body else axis_basis(mesh)
     vectors, element = nodal_vectors(mesh, p), basis.elem

@@ -17,10 +17,10 @@ from beamfem.results.turns import start_rotations
 
 @dataclass(frozen=True, eq=False)
 class PathState(State):
-    """One state of a path, with what a Solution offers but without its axis of steps.
+    """One state of a path: results as those of a Solution, without the axis of steps.
 
-    stability: whether it is a stable equilibrium, where that is known; critical points are not. turned is counted along
-    the path.
+    stability: whether it is a stable equilibrium, None if not known; critical points are not stable. turned is counted
+    along the path.
     """
 
     stability: bool | None = field(default=None, kw_only=True)
@@ -47,15 +47,15 @@ class PathState(State):
         return np.asarray(self._alone.position(point)[0])
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference (2,) [m]."""
+        """Return the displacement of a point from the reference configuration (2,) [m]."""
         return np.asarray(self._alone.displacement(point)[0])
 
     def rotation(self, point: Point) -> float:
-        """Return the rotation of the section from the reference [rad], counter-clockwise, full turns included."""
+        """Return the rotation of the section [rad], counter-clockwise positive, full turns included."""
         return float(self._alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return what a support does to the beam (3,): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        """Return the reaction of the supports on the beam (3,): fx, fy [N], m [N m]. Raises InputError elsewhere."""
         return np.asarray(self._alone.reaction(point)[0])
 
     def fields(self, point: Point) -> Fields:
@@ -72,10 +72,10 @@ class PathState(State):
 
 @dataclass(frozen=True, eq=False)
 class Bifurcation(PathState):
-    """A state where another branch crosses the path.
+    """A bifurcation point, where another branch crosses the path.
 
-    mode (n,): the change of the coordinates that the tangent does not resist, its root mean square 1 in lengths of the
-    model and radians, its largest coordinate positive; tangent (n + 1,): direction of the path, the load factor last.
+    mode (n,): null vector of the tangent stiffness, with root mean square 1 in lengths of the model and radians, and
+    its largest component positive; tangent (n + 1,): direction of the path, the load factor last.
     """
 
     mode: np.ndarray
@@ -90,10 +90,10 @@ class Bifurcation(PathState):
 
 @dataclass(frozen=True, eq=False)
 class Path(Solution):
-    """The equilibria along a path, in order; load factors may fall.
+    """The equilibria along a path, in order; load factors may decrease.
 
     Row i is the state `path[i]`; limit points and bifurcations lie between the rows.
-    The bifurcation that a branch starts from is no stable row.
+    The bifurcation point at which a branch starts does not count as stable.
     """
 
     limit_points: tuple[PathState, ...] = ()

@@ -1,4 +1,4 @@
-"""What is derived from states: fields, section forces, energies, momenta; vectorised over steps."""
+"""Results derived from states: fields, section forces, energies, momenta; vectorised over steps."""
 
 from dataclasses import dataclass
 
@@ -25,10 +25,11 @@ from beamfem.model.reference import (
 class Fields:
     """Fields at points of a beam's axis; the leading shape is (steps,) or (steps, points).
 
-    position (..., 2) [m], r_x (..., 2) [-] by arc length, r_y (..., 2) [-], rotation [rad] of the section from the
-    reference, shear_angle [rad] from r_x to r_y less a right angle, green_strain of the field at y = 0 and stress [Pa]
-    there: Cauchy's, along the normal of the deformed section (x) and in it (y), on its undeformed area, as the
-    section distributes the section forces; yy = 0, as beam theory has it, nan if the section tells no stress there.
+    position (..., 2) [m]; r_x (..., 2) [-]: derivative by arc length; r_y (..., 2) [-]; rotation [rad] of the section
+    from the reference configuration; shear_angle [rad]: angle from r_x to r_y less a right angle; green_strain [-] of
+    the field at y = 0; stress [Pa] there: Cauchy stress along the normal of the rotated section (x) and in it (y), per
+    undeformed area, as the section distributes the section forces; yy = 0 as in beam theory, nan if the section does
+    not define a stress there.
     """
 
     position: np.ndarray
@@ -57,10 +58,10 @@ class Components:
 class SectionForces:
     """Section forces (steps, stations) at the start, the Gauss points and the end of every element of a beam.
 
-    normal force along the section's normal (> 0 in tension) and shear force across it [N], moment about the axis [N m]
-    (> 0 if it raises the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads act,
-    are there twice: just before and just behind them. In equilibrium with each other and with all that acts on the beam
-    where it is, inertia included: exactly, however coarse the mesh is.
+    normal: force along the section's normal [N] (> 0 in tension); shear: force across it [N]; moment about the axis
+    [N m] (> 0 if it increases the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads
+    act, are listed twice: just before and just after them. Section forces balance each other and all loads on the
+    deformed beam, inertia included, exactly on any mesh.
     """
 
     arc_length: np.ndarray
@@ -72,7 +73,7 @@ class SectionForces:
 
 
 def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
-    """Return e (steps, nodes, vectors a node, 2) of the states p (steps, n)."""
+    """Return the nodal vectors e (steps, nodes, vectors per node, 2) of the states p (steps, n)."""
     table = mesh.table(p)
     result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
     for node_kind, nodes in mesh.node_kinds:
@@ -82,7 +83,7 @@ def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
 
 
 def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return e' = B p' (steps, nodes, vectors a node, 2)."""
+    """Return their rates e' = B p' (steps, nodes, vectors per node, 2)."""
     table, rates = mesh.table(p), mesh.table(v)
     result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
     for node_kind, nodes in mesh.node_kinds:
@@ -98,7 +99,7 @@ def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarra
 
 
 def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
-    """Return the position (steps, 2) [m] of a point of the axis, at a node without interpolation."""
+    """Return the position (steps, 2) [m] of a point of the axis; at a node without interpolation."""
     element, xi = mesh.locate(fraction)
     node = mesh.node_of(element, xi)
     if node is not None:
@@ -107,7 +108,7 @@ def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
 
 
 def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
-    """Return the position (2,) [m] of a point of the axis in the reference, likewise."""
+    """Return the position (2,) [m] of a point of the axis in the reference configuration; at a node likewise."""
     element, xi = mesh.locate(fraction)
     node = mesh.node_of(element, xi)
     if node is not None:
@@ -116,7 +117,7 @@ def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
 
 
 def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
-    """Return the normal (..., 2) of the section: across d, or r_x where the curvature comes from r_xx."""
+    """Return the unit normal (..., 2) of the section: normal to d, or along r_x if the curvature is based on r_xx."""
     if mesh.beam.element.forces.turns_with == "r_x":
         return now.r_s / np.linalg.norm(now.r_s, axis=-1, keepdims=True)
     return section_frame(now.d)[0]
@@ -125,7 +126,7 @@ def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
 def turning(
     mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
 ) -> np.ndarray:
-    """Rotation of the section from the reference (steps, points) [rad]; turned: see `nodal_rotations`."""
+    """Return the rotation of the section (steps, points) [rad], full turns included; turned: see `nodal_rotations`."""
     start = direction(mesh, reference_axis(mesh, element, xi))
     normal = direction(mesh, now)
     angle = np.arctan2(cross(start, normal), dot(start, normal))
@@ -136,11 +137,12 @@ def turning(
 
 
 def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:
-    """Return the rotation of each node's section from the reference (steps, nodes) [rad].
+    """Return the rotation of each node's section from the reference configuration (steps, nodes) [rad].
 
-    Angles are coordinates of their own. Gradients know a rotation up to full turns only: it is continued along the beam
-    from its first angle, or else from its start. There it is what is nearest to `turned` (steps,) [rad], as the solve
-    has counted it; else it is continued over the states, the first of them within half a turn.
+    Nodal angles are coordinates and hold full turns. Gradients determine a rotation only up to full turns: it is
+    unwrapped along the beam from its first nodal angle, or from its start if there is none. The rotation of the start
+    is the one nearest to `turned` (steps,) [rad], counted by the solver; without it, the rotation is unwrapped over the
+    states, the first within half a turn.
     """
     table = mesh.table(p)
     result = np.empty(table.shape[:2])
@@ -178,8 +180,8 @@ def fields(
 ) -> Fields:
     """Return the fields at points (element, xi), both (points,); arrays (steps, points, ...).
 
-    forces (steps, 3, points): normal force, shear force and moment there; self_stress (steps, points, 1) [Pa]: what
-    layers do against each other; turned: see `nodal_rotations`.
+    forces (steps, 3, points): normal force, shear force and moment there; self_stress (steps, points, 1) [Pa]: stress
+    in equilibrium over the section, from hindered thermal expansion; turned: see `nodal_rotations`.
     """
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     strain = strain_at_axis(mesh, now, element, xi)
@@ -224,7 +226,7 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
 def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
     """Return the strain energy of a beam (steps,) [J]; imposed: see `imposed_measures`.
 
-    What layers do against each other where they cannot all take their free strains is not in it.
+    The energy of self-stress between layers with different free strains is not included.
     """
     element, xi, weight = energy_points(mesh)
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
@@ -237,7 +239,7 @@ def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0
 
 @dataclass(frozen=True)
 class Momenta:
-    """Kinetic energy [J], linear (steps, 2) [kg m/s] and angular momentum about the origin [kg m^2/s], mass moment.
+    """Kinetic energy [J], linear (steps, 2) [kg m/s] and angular momentum about the origin [kg m^2/s], first moment.
 
     first_moment (steps, 2) [kg m] is the integral of the position over the mass.
     """
@@ -249,7 +251,7 @@ class Momenta:
 
 
 def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
-    """Return what the mass of a beam carries."""
+    """Return kinetic energy, momenta and first moment of a beam (steps, ...), see `Momenta`."""
     element, xi, inertia = inertia_points(mesh)
     mass, first, rotary = inertia.T
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)

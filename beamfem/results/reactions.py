@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def reaction(solution: "Solution", point: Point) -> np.ndarray:
     """Return fx, fy [N] and m [N m] of the supports and springs at a point of a beam (steps, 3).
 
-    Reactions at points of other beams joined there are not included. Raises InputError if there is no support.
+    Supports at joined points of other beams are not included. Raises InputError if the point has no support.
     """
     model = solution.model
     model.mesh_of(point)  # refuses what is no point of this model
@@ -49,7 +49,7 @@ def reaction_of(solution: "Solution", own: Sequence[PointSupport]) -> np.ndarray
 
 
 def _of_some(solution: "Solution", dof: int, prescribed: bool, stiffness: float) -> np.ndarray:
-    """Return the force (steps,) on a coordinate of supports that prescribe it, or not, and have this stiffness."""
+    """Return the force (steps,) of supports with this stiffness on a coordinate, prescribed by them or not."""
     system, _ = loading(solution)
     moved = solution.p[:, dof] - system.reference[dof] + solution.remainders[:, dof]
     if not prescribed:
@@ -59,7 +59,7 @@ def _of_some(solution: "Solution", dof: int, prescribed: bool, stiffness: float)
 
 
 def _supported(system: System) -> set[int]:
-    """Return the coordinates that supports other than springs act on."""
+    """Return the coordinates on which supports other than springs act."""
     inclined = {dof + axis for dof, _ in system.inclined for axis in (0, 1)}
     return {*system.prescribed_dofs.tolist(), *inclined}
 

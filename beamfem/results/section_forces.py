@@ -15,11 +15,11 @@ from beamfem.results.postprocess import SectionForces
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_VALUES = 2_000_000  # in one array
+_VALUES = 2_000_000  # most values in one array
 
 
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
-    """Return the section forces of a beam at both ends of every element, and inside; see `SectionForces`."""
+    """Return the section forces of a beam at the stations listed in `SectionForces`."""
     mesh = solution.model.mesh_of(beam.start)
     cuts = stations(mesh)
     found = at_points(solution, mesh, cuts)

@@ -1,4 +1,4 @@
-"""Stress of layers that heat cannot let expand as each would: in balance with itself over the section."""
+"""Self-equilibrated stress over a section whose layers hinder each other's thermal expansion."""
 
 from typing import TYPE_CHECKING
 
@@ -26,8 +26,8 @@ def self_stress(
 ) -> np.ndarray | float:
     """Return E (eps - y kappa - alpha T(y)) (steps, n, heights) [Pa] at points (element, xi); 0 if there is none.
 
-    eps, kappa: free strain of the section; y (n, heights) [m]; layer: where there are several, the one that y belongs
-    to; None: the one around the axis. It adds nothing to section forces.
+    eps, kappa: free strains of the section; y (n, heights) [m]; layer: the one, of several, to which y belongs; None:
+    the one at the axis. It does not contribute to section forces.
     """
     beam, (system, at) = mesh.beam, loading(solution)
     imposed = [(number, load) for number, (_, load) in enumerate(system.model.imposing) if load.beam is beam]

@@ -1,4 +1,4 @@
-"""A solution: states of a model over load factor or time, and what users ask of them."""
+"""A solution: states of a model over load factor or time, and the results derived from them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -37,9 +37,9 @@ from beamfem.validation import number_below, shown, whole
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2]; at a load factor or a time [s].
+    """Coordinates p (n,) of a model, their rates v (n,) [1/s] and a (n,) [1/s^2], at a load factor or a time [s].
 
-    turned (m,) [rad]: see `turns.start_rotations`, where it is known.
+    turned (m,) [rad]: see `turns.start_rotations`; None if not known.
     """
 
     p: np.ndarray
@@ -60,8 +60,8 @@ class Solution:
     """States of a model: row 0 is the start, the last row the end.
 
     at (steps,): load factors or times [s]; p, v, a (steps, n); stability (steps,): whether each row is a stable
-    equilibrium, where the solver knows it; turned (steps, m) [rad]: see `turns.start_rotations`, where the solver has
-    counted them between the rows; loaded (steps,): load factor that the loads have in a motion about an equilibrium.
+    equilibrium, if the solver knows it; turned (steps, m) [rad]: see `turns.start_rotations`, if the solver has counted
+    them between the rows; loaded (steps,): load factor of the loads in a motion about an equilibrium.
     """
 
     model: Model
@@ -93,9 +93,9 @@ class Solution:
     @overload
     def __getitem__(self, row: slice) -> "Solution": ...
     def __getitem__(self, row: int | slice) -> "State | Solution":
-        """Return the state of a row, or a Solution of the rows of a slice with the statistics of the whole.
+        """Return the state of a row, or a Solution of the rows of a slice with the statistics of the whole solve.
 
-        Raises InputError for an empty slice and what is neither, IndexError beyond the last row.
+        Raises InputError for an empty slice or any other key, IndexError beyond the last row.
         """
         if isinstance(row, slice):
             return self._rows(row)
@@ -112,11 +112,11 @@ class Solution:
         try:
             chosen = range(len(self))[rows]
         except (TypeError, ValueError) as error:
-            raise InputError(f"rows of a solution are chosen by whole numbers, got {shown(rows)}: {error}") from None
+            raise InputError(f"rows of a solution are selected by whole numbers, got {shown(rows)}: {error}") from None
         if not chosen:
             first, last, stride = ("" if value is None else value for value in (rows.start, rows.stop, rows.step))
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
-            raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
+            raise InputError(f"solution[{text}] selects no row; this solution has rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
         stability, loaded = (None if values is None else values[rows] for values in (self.stability, self.loaded))
         turned = start_rotations(self)[rows]
@@ -129,18 +129,18 @@ class Solution:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what to know before using the numbers, of locking too; empty if there is nothing to say."""
+        """Warnings to heed before using the results, on locking too, in sentences; empty if there are none."""
         return (*self.statistics.warnings, *locking_warnings(self), *drift_warnings(self))
 
     @cached_property
     def stable(self) -> np.ndarray:
-        """Return whether each row is a stable equilibrium (steps,): no small motion about it grows.
+        """Whether each row is a stable equilibrium (steps,): no small motion about it grows.
 
-        Without follower loads: the tangent has no negative eigenvalue (Lagrange and Dirichlet). With them, no mode of
-        vibration diverges or flutters. Raises InputError for a motion.
+        Without follower loads: the tangent stiffness has no negative eigenvalue (Lagrange-Dirichlet theorem). With
+        them: no mode of vibration diverges or flutters. Raises InputError for a motion.
         """
         if not self.static:
-            raise InputError("stable is asked of the rows of a static solution; this one is a motion")
+            raise InputError("stable is defined for static solutions only; this one is a motion")
         if self.stability is not None:
             return self.stability
         return self._stable_rows()
@@ -161,13 +161,13 @@ class Solution:
 
     @property
     def iterations(self) -> int:
-        """Newton iterations in all."""
+        """Total number of Newton iterations."""
         return self.statistics.iterations
 
     def fields(self, point: Point) -> Fields:
         """Return position, gradients, rotation, shear angle, strain and stress at a point, over the steps.
 
-        Where two elements meet, or a load acts, strain and stress are those on the side of the beam's end.
+        Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
         """
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
@@ -181,7 +181,7 @@ class Solution:
         return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference (steps, 2) [m]."""
+        """Return the displacement of a point from the reference configuration (steps, 2) [m]."""
         mesh = self.model.mesh_of(point)
         return self.position(point) - postprocess.start(mesh, point.fraction)
 
@@ -190,7 +190,7 @@ class Solution:
         return self._axis(point, postprocess.nodal_velocities(self.model.mesh_of(point), self.p, self.v)).r[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
-        """Return the rotation of the section from the reference (steps,) [rad], counter-clockwise, continuous."""
+        """Return the rotation of the section (steps,) [rad], counter-clockwise positive, full turns included."""
         mesh = self.model.mesh_of(point)
         element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
         now = self._axis(point, postprocess.nodal_vectors(mesh, self.p))
@@ -202,15 +202,18 @@ class Solution:
         return postprocess.axis(mesh, vectors, np.array([element]), np.array([xi]))
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return what a support does to the beam (steps, 3): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        """Return the reaction of the supports on the beam (steps, 3): fx, fy [N], m [N m].
+
+        Raises InputError if the point has no support.
+        """
         return reaction(self, point)
 
     def connector_force(self, connector: Contribution) -> np.ndarray:
-        """Return what a connector does to its points (steps, m, 3): fx, fy [N], m [N m]. Raises InputError."""
+        """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], m [N m]. Raises InputError."""
         return connector_force(self, connector)
 
     def multipliers(self, connector: Contribution) -> np.ndarray:
-        """Return the unknowns of its own that a connector brings along (steps, k). Raises InputError."""
+        """Return the additional unknowns of a connector (steps, k), such as multipliers. Raises InputError."""
         return multipliers(self, connector)
 
     @cached_property
@@ -220,16 +223,16 @@ class Solution:
 
     @cached_property
     def remainders(self) -> np.ndarray:
-        """What the coordinates of a static solution lack below their last digit (steps, n), see `last_digits`."""
+        """Corrections below the last digit of the coordinates of a static solution (steps, n), see `last_digits`."""
         return remainders(self)
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force and moment at both ends of every element of a beam, and inside."""
-        self.model.number_of(beam)  # refuses what is no beam of this model
+        """Return normal force, shear force and moment of a beam (steps, stations), see `SectionForces`."""
+        self.model.number_of(beam)  # rejects beams of other models
         return section_forces(self, beam)
 
     def stresses(self, beam: Beam) -> BeamStress:
-        """Return the extreme stresses of the sections of a beam at the stations of its section forces."""
+        """Return the extreme stresses of the sections of a beam (steps, stations), see `BeamStress`."""
         self.model.number_of(beam)
         return beam_stress(self, beam)
 
@@ -238,7 +241,10 @@ class Solution:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
     def energy(self) -> Energy:
-        """Return kinetic, strain, potential and total energy (steps,) [J]; the potential is zero in the reference."""
+        """Return kinetic, strain, potential and total energy (steps,) [J].
+
+        The potential is zero in the reference configuration.
+        """
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
         parts = (postprocess.strain_energy(mesh, self.p, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         strain = sum(parts, np.zeros(len(self)))
@@ -246,7 +252,7 @@ class Solution:
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:
-        """Error of the energy over a motion that nothing drives; None elsewhere. See `energy_drift.EnergyDrift`."""
+        """Energy error over a motion on which nothing does work, else None; see `energy_drift.EnergyDrift`."""
         return energy_drift(self) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:
@@ -258,14 +264,14 @@ class Solution:
         return np.asarray(sum(m.angular for m in self._momenta) + momenta_of_connectors(self)[:, 2])
 
     def spline(self, beam: Beam, row: int = -1) -> BSpline:
-        """Return the deformed axis of a beam of cubic elements in a row as a cubic B-spline, exactly.
+        """Return the exact deformed axis of a beam of cubic elements in a row as a cubic B-spline.
 
         Knots are those of the beam's own spline, or arc lengths. Raises InputError for other elements.
         """
         mesh = self.model.meshes[self.model.number_of(beam)]
         if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
             raise InputError(
-                f"the axis of {beam.element.name} elements is no cubic spline; cubic ones such as ANCF are"
+                f"the axis of {beam.element.name} elements is not a cubic spline; use cubic elements such as ANCF"
             )
         number = number_below("row", row, len(self), -len(self))
         e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]
@@ -279,23 +285,23 @@ class Solution:
         fields: Sequence[str] | None = None,
         single: bool = False,
     ) -> None:
-        """Write bodies, centrelines, supports and loads for ParaView; `path` ends in .pvd or .vtkhdf, the default."""
+        """Write solids, centrelines, supports and loads for ParaView; `path` ends in .pvd or .vtkhdf (default)."""
         offered(Solution.to_vtk)(self, path, geometry=geometry, fields=fields, single=single)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return what varies along a beam, or along all, over the steps as an xarray.Dataset."""
+        """Return the results along a beam, or along all beams, over the steps as an xarray.Dataset."""
         return offered(Solution.to_xarray)(self, beam)
 
     def to_pandas(self, beam: Beam | None = None) -> Any:
-        """Return what varies along a beam, or along all, over the steps as a pandas.DataFrame."""
+        """Return the results along a beam, or along all beams, over the steps as a pandas.DataFrame."""
         return offered(Solution.to_pandas)(self, beam)
 
     def to_html(self, path: str | PathLike[str], **options: Unpack[PageOptions]) -> Path:
-        """Write a page with a slider over the steps, one file that works offline."""
+        """Write an HTML page with a slider over the steps: a single file that works offline."""
         return offered(Solution.to_html)(self, path, **options)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ShapeOptions]) -> Any:
-        """Draw deformed shapes, into a file where `path` is given; return the figure."""
+        """Draw deformed shapes, to a file if `path` is given; return the figure."""
         return offered(Solution.plot)(self, path, **options)
 
     def plot_history(
@@ -304,33 +310,33 @@ class Solution:
         quantity: str = "displacement",
         path: str | PathLike[str] | None = None,
     ) -> Any:
-        """Draw a quantity of points over the steps, or "energy"; return the figure."""
+        """Plot a quantity of points, or "energy", over the steps; return the figure."""
         return offered(Solution.plot_history)(self, point, quantity, path)
 
     def plot_curve(self, x: Any, y: Any, path: str | PathLike[str] | None = None) -> Any:
-        """Draw one quantity over another, such as ("fx", beam.start) over ("ux", beam.end); return the figure."""
+        """Plot y over x, quantities of points such as ("fx", beam.start) and ("ux", beam.end); return the figure."""
         return offered(Solution.plot_curve)(self, x, y, path)
 
     def plot_load_displacement(
         self, point: Point, quantity: str = "uy", path: str | PathLike[str] | None = None
     ) -> Any:
-        """Draw the load factor over a displacement; return the figure."""
+        """Plot the load factor over a displacement; return the figure."""
         return offered(Solution.plot_load_displacement)(self, point, quantity, path)
 
     def animate(self, path: str | PathLike[str], **options: Unpack[FilmOptions]) -> Path:
-        """Write the moving body as GIF or MP4 by the suffix of `path`."""
+        """Write an animation as GIF or MP4, according to the suffix of `path`."""
         return offered(Solution.animate)(self, path, **options)
 
     def show(self, **options: Unpack[WindowOptions]) -> Any:
-        """Open a window with the body and a slider over the steps."""
+        """Open a window with the solid and a slider over the steps."""
         return offered(Solution.show)(self, **options)
 
     def picture(self, path: str | PathLike[str], **options: Unpack[PictureOptions]) -> Path:
-        """Write a picture of the solid body without a window."""
+        """Write a picture of the solid without opening a window."""
         return offered(Solution.picture)(self, path, **options)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write model and states into one HDF5 file."""
+        """Write model and states to one HDF5 file."""
         offered(Solution.save)(self, path)
 
     def _repr_html_(self) -> str:

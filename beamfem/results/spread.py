@@ -1,4 +1,4 @@
-"""What is spread over elements and known at their Gauss points: how much of it is before a cut, and at more points."""
+"""Distributions over elements known at Gauss points: their fraction before a cut, and their transfer to more points."""
 
 from functools import lru_cache
 
@@ -8,9 +8,9 @@ from beamfem.element.gauss import gauss
 
 
 def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:
-    """Share of what stands for a Gauss point at xi `at` (m,) that is before a cut (m,), its density interpolated.
+    """Return the fraction (m,) before a cut (m,) of the amount lumped at a Gauss point `at` (m,), density interpolated.
 
-    The integral from 0 to the cut of the polynomial that is one there and zero at the other points, over its whole.
+    It is the integral from 0 to the cut of the Lagrange polynomial of that point, over its integral from 0 to 1.
     """
     xi, integral = _integrals(points)
     return np.einsum("mk,mk->m", integral[nearest(xi, at)], np.polynomial.legendre.legvander(2.0 * cut - 1.0, points))
@@ -18,9 +18,9 @@ def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray
 
 @lru_cache(maxsize=32)
 def to_more_points(points: int, more: int) -> np.ndarray:
-    """Return (more, points) what stands for each of more Gauss points by what stands for fewer.
+    """Return the matrix (more, points) that transfers lumped values from `points` to `more` Gauss points.
 
-    The density through the fewer is a polynomial that stays the same.
+    It keeps the polynomial density through the fewer points.
     """
     (xi, _), (fine, weights) = gauss(points), gauss(more)
     here, there = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
@@ -28,16 +28,15 @@ def to_more_points(points: int, more: int) -> np.ndarray:
 
 
 def nearest(xi: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return which of the points xi (n,) those at `at` (m,) are."""
+    """Return the indices (m,) of the points xi (n,) nearest to `at` (m,)."""
     return np.asarray(np.abs(xi - at[:, None]).argmin(axis=1))
 
 
 @lru_cache(maxsize=32)
 def _integrals(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss points on [0, 1] and the integrals, as Legendre series, of the polynomials through them."""
+    """Return Gauss points on [0, 1] and the integrals of their Lagrange polynomials as Legendre series."""
     xi, weights = gauss(points)
     degree = np.arange(points)
     legendre = np.polynomial.legendre.legvander(2.0 * xi - 1.0, points - 1)
-    # a row of coefficients for each polynomial
     coefficients = legendre * weights[:, None] * (2 * degree + 1)
     return xi, np.polynomial.legendre.legint(coefficients, lbnd=-1.0, axis=1) / (2.0 * weights[:, None])

@@ -7,20 +7,20 @@ from numpy import nan
 
 
 class Status(Enum):
-    """How a solve ended; the values are sentences."""
+    """Termination status of a solve; the values are sentences."""
 
-    COMPLETED = "the solve came to its end"
-    ROUND_OFF = "the solve came to its end, where the residual is at the round-off floor of the model"
-    UNSTABLE = "the solve came to its end, but an equilibrium that it found, or started from, is unstable"
-    STOPPED = "the solve stopped before its end"
+    COMPLETED = "the solve completed"
+    ROUND_OFF = "the solve completed, with the residual at the round-off floor of the model"
+    UNSTABLE = "the solve completed, but an equilibrium that it found, or started from, is unstable"
+    STOPPED = "the solve stopped before completion"
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Newton iterations in all, completed steps, steps that were cut, and how the solve ended, in a sentence.
+    """Total Newton iterations, completed steps, cut steps, and the termination reason in a sentence.
 
-    digits: of the forces of the last equilibrium that the balance of loads and reactions makes sure, nan if not known.
-    status: the same as a member of an enum; warnings: sentences on what a user should know before using the numbers.
+    status: the termination as a member of `Status`; warnings: sentences to heed before using the results; digits: exact
+    digits of the forces of the last equilibrium, from the balance of loads and reactions, nan if not known.
     """
 
     iterations: int

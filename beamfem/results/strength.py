@@ -19,7 +19,7 @@ def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layer: int) -> np
 def _strength(grid: Grid, section: CrossSection, layer: int) -> float:
     try:
         parts = [material for material, _ in section.moments(grid.beam.material)]
-    except InputError:  # known by its stiffness
+    except InputError:  # the section is defined by its stiffness and has no materials
         return np.nan
     own = parts[min(layer, len(parts) - 1)].strength
     return np.nan if own is None else own

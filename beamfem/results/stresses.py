@@ -1,4 +1,4 @@
-"""Measures of plane stress in a section: what bends and what shears it."""
+"""Stress measures of a section with normal and shear stress only."""
 
 import numpy as np
 
@@ -6,12 +6,12 @@ from beamfem.element.axis import Axis
 
 
 def von_mises(along: np.ndarray, sheared: np.ndarray) -> np.ndarray:
-    """Return von Mises' equivalent stress [Pa] of a stress along the beam and a shear stress; no other acts."""
+    """Return the von Mises stress sqrt(sigma^2 + 3 tau^2) [Pa] of a normal and a shear stress."""
     return np.sqrt(along**2 + 3.0 * sheared**2)
 
 
 def in_the_plane(along: np.ndarray, sheared: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the stress tensor (steps, points, heights, 6) [Pa] in the axes of the plane: xx, yy, zz, xy, yz, xz.
+    """Return the stress tensor (steps, points, heights, 6) [Pa] in global axes: xx, yy, zz, xy, yz, xz.
 
     along, sheared (steps, points, heights) [Pa]: along the normal (steps, points, 2) of the section, and in it.
     """
@@ -23,15 +23,15 @@ def in_the_plane(along: np.ndarray, sheared: np.ndarray, normal: np.ndarray) -> 
 
 
 def second_piola_kirchhoff(cauchy: np.ndarray, now: Axis, reference: Axis, y: np.ndarray) -> np.ndarray:
-    """Return the second Piola-Kirchhoff stress (steps, points, heights, 6) [Pa] of a Cauchy stress, components alike.
+    """Return the second Piola-Kirchhoff stress (steps, points, heights, 6) [Pa] for a Cauchy stress, in this order.
 
-    S = det(F) F^-1 sigma F^-T in the axes of the plane, with F = (r0' + y d', d) J^-1 and J the same of the reference;
-    nan if F is singular.
+    S = det(F) F^-1 sigma F^-T in global axes, with F = (r0' + y d', d) J^-1 and J the same for the reference
+    configuration; nan where F is singular.
     """
     (ax, ay), (bx, by) = _derivatives(now, y)
     (jx, jy), (kx, ky) = _derivatives(reference, y)
     xx, yy, xy = (cauchy[..., component] for component in (0, 1, 3))
-    # det(G) G^-1 sigma G^-T det(G) with the columns a and b of G: the inverse is written with its minors
+    # det(G) G^-1 sigma G^-T det(G) with the columns a and b of G: minors instead of the inverse avoid a division
     first = by**2 * xx - 2.0 * bx * by * xy + bx**2 * yy
     second = ay**2 * xx - 2.0 * ax * ay * xy + ax**2 * yy
     mixed = (ax * by + ay * bx) * xy - ay * by * xx - ax * bx * yy
@@ -50,7 +50,7 @@ def second_piola_kirchhoff(cauchy: np.ndarray, now: Axis, reference: Axis, y: np
 
 
 def _derivatives(axis: Axis, y: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return components x and y (..., points, heights) of the derivatives of the position by arc length and height."""
+    """Return components x and y (..., points, heights) of the derivatives of the position by arc length and by y."""
     along = axis.r_s[..., None, :] + y[..., None] * axis.d_s[..., None, :]
     up = np.broadcast_to(axis.d[..., None, :], along.shape)
     return [along[..., 0], along[..., 1]], [up[..., 0], up[..., 1]]

@@ -1,4 +1,4 @@
-"""How far beams have turned whose rotation no coordinate counts, in the rows of a solution."""
+"""Full turns of beams without nodal angles, whose coordinates do not hold them, in the rows of a solution."""
 
 from typing import TYPE_CHECKING
 
@@ -35,6 +35,6 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
-    """Return that of one beam (steps,), None if its coordinates count it."""
+    """Return the start rotation of one beam (steps,) [rad]; None if its coordinates hold full turns."""
     own = [i for i, other in enumerate(uncounted(solution.model)) if other is mesh]
     return start_rotations(solution)[:, own[0]] if own else None

@@ -1,4 +1,4 @@
-"""Solves are verbs on a model; they know coordinates, not elements."""
+"""Analyses of a model: statics, equilibrium paths, stability, modes and motion, in terms of coordinates alone."""
 
 from beamfem.registry import offer
 from beamfem.results.solution import Solution

@@ -116,7 +116,7 @@ class Solution:
         if not chosen:
             first, last, stride = ("" if value is None else value for value in (rows.start, rows.stop, rows.step))
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
-            raise InputError(f"solution[{text}] selects no row; this solution has rows 0 to {len(self) - 1}")
+            raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
         stability, loaded = (None if values is None else values[rows] for values in (self.stability, self.loaded))
         turned = start_rotations(self)[rows]
@@ -202,10 +202,7 @@ class Solution:
         return postprocess.axis(mesh, vectors, np.array([element]), np.array([xi]))
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return the reaction of the supports on the beam (steps, 3): fx, fy [N], m [N m].
-
-        Raises InputError if the point has no support.
-        """
+        """Return the reaction on the beam (steps, 3): fx, fy [N], m [N m]. Raises InputError without a support."""
         return reaction(self, point)
 
     def connector_force(self, connector: Contribution) -> np.ndarray:
@@ -271,7 +268,7 @@ class Solution:
         mesh = self.model.meshes[self.model.number_of(beam)]
         if "r_x" not in mesh.vectors or mesh.nodes != len(mesh.parameter):
             raise InputError(
-                f"the axis of {beam.element.name} elements is not a cubic spline; use cubic elements such as ANCF"
+                f"the axis of {beam.element.name} elements is no cubic spline; use cubic elements such as ANCF"
             )
         number = number_below("row", row, len(self), -len(self))
         e = postprocess.nodal_vectors(mesh, self.p[number][None])[0]

@@ -111,7 +111,7 @@ RESULTS = {
     "row as text": (lambda s, out: s["last"], BAD, "a row of a solution"),
     "every 0th row": (lambda s, out: s[::0], BAD, "rows of a solution are selected by whole numbers"),
     "rows from a half": (lambda s, out: s[0.5:], BAD, "rows of a solution are selected by whole numbers"),
-    "no rows": (lambda s, out: s[5:4], BAD, "holds no row"),
+    "no rows": (lambda s, out: s[5:4], BAD, "selects no row"),
     "time of statics": (lambda s, out: s.time, BAD, "use load_factor"),
     "a misspelt colour": (lambda s, out: s.plot(colour="momnt"), BAD, "did you mean moment"),
     "colour as a list": (lambda s, out: s.plot(colour=["moment"]), BAD, "no quantity"),

@@ -116,7 +116,7 @@ class Solution:
         if not chosen:
             first, last, stride = ("" if value is None else value for value in (rows.start, rows.stop, rows.step))
             text = f"{first}:{last}" + (f":{stride}" if stride != "" else "")
-            raise InputError(f"solution[{text}] holds no row; this solution has the rows 0 to {len(self) - 1}")
+            raise InputError(f"solution[{text}] selects no row; this solution has rows 0 to {len(self) - 1}")
         parts = (self.at[rows], self.p[rows], self.v[rows], self.a[rows])
         stability, loaded = (None if values is None else values[rows] for values in (self.stability, self.loaded))
         turned = start_rotations(self)[rows]

@@ -99,7 +99,7 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
     if turn > _LARGEST_TURN:
         return Refused("the path turns too sharply", corrected.iterations)
-    if correction > _ARC * turn + _BESIDE and correction * size > _ANOTHER:
+    if leaves_arc(correction, turn) and correction * size > _ANOTHER:
         return Refused("the equilibrium beside the end of the step is on another path", corrected.iterations)
     segment = Segment(line, point, new)
     try:
@@ -110,6 +110,11 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
     increase = min(_WANTED_TURN / max(turn, 1e-12), _WANTED_ITERATIONS / corrected.iterations, _LARGEST_INCREASE)
     iterations = corrected.iterations + segment.iterations
     return Step(segment, limits, crossings, iterations, size * max(increase, 0.25))
+
+
+def leaves_arc(deviation: float, turn: float) -> bool:
+    """Return whether a step deviates from a tangent [rad] by more than a path does whose tangent turns so far [rad]."""
+    return deviation > _ARC * turn + _BESIDE
 
 
 def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:

@@ -6,6 +6,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, NewtonResult
+from beamfem.solve.statics.path_direction import leaves_path
 from beamfem.solve.statics.static_record import StaticRecord
 
 _OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
@@ -17,7 +18,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
 
     Either linearised stability expects a critical point before its end. Or the tangent at its start goes far beyond its
     end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
-    looked at where the iteration was slow, the state half-way has another count of negative pivots.
+    looked at where the iteration was slow, the state half-way has another count of negative pivots, or the step goes
+    another way than the tangents at its ends.
     """
     if result.linear is not None:
         done.iterations += 1
@@ -29,7 +31,10 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
             return True
     if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
         return False
-    return _differs_half_way(system, done, target, result.state)
+    if _differs_half_way(system, done, target, result.state):
+        return True
+    done.iterations += 2
+    return leaves_path(system, (done.state, done.reached), (result.state, target))
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:

@@ -1,0 +1,48 @@
+"""Whether a load step lies along the tangents of the path at both its ends."""
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.equations import STATICS, linearise, load_slope
+from beamfem.assembly.system import System
+from beamfem.solve.continuation.steps import leaves_arc
+
+_SLOPE_WIDTH = 1e-3  # of the load step; loads are asked for within it only, since functions may end with it
+
+
+def leaves_path(system: System, start: tuple[np.ndarray, float], end: tuple[np.ndarray, float]) -> bool:
+    """Return whether no smooth path leads from one equilibrium, p (n,) and its load factor, to another.
+
+    Along an arc the chord deviates from the tangents at its ends by half of what they turn by; between states of two
+    pieces of a path, on either side of limit points, it does so from one of them by more.
+    """
+    (p, before), (q, after) = start, end
+    width = _SLOPE_WIDTH * (after - before)
+    try:
+        first = _tangent(system, p, before, before + width, width)
+        last = _tangent(system, q, after, after - width, width)
+    except LinAlgError:
+        return True
+    chord = (q - p) / system.scale
+    turn = _angle(first, last)
+    return any(leaves_arc(_angle(chord, tangent), turn) for tangent in (first, last))
+
+
+def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, width: float) -> np.ndarray:
+    """Return the scaled change of p (n,) per load factor, whose difference is taken about `middle`."""
+    zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
+    _, stiffness = linearise(system, p, zeros, zeros, load_factor, STATICS)
+    result = np.zeros(len(p))
+    slope = load_slope(system, p, middle, width)[system.free_dofs]
+    result[system.free_dofs] = stiffness.factorised(system.rotated).solve(-slope)
+    change = system.prescribed_values(middle + width) - system.prescribed_values(middle - width)
+    result[prescribed] = change / (2.0 * width)
+    if not np.isfinite(result).all():
+        raise LinAlgError("the tangent is singular")
+    return result / system.scale
+
+
+def _angle(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the angle [rad] between two changes (n,), zero if one of them vanishes."""
+    size = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(np.arccos(np.clip(float(a @ b) / size, -1.0, 1.0))) if size > 0.0 else 0.0

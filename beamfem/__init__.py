@@ -82,6 +82,7 @@ __all__ = [
     "Pressure",
     "Rectangle",
     "Remembering",
+    "RememberingLaw",
     "Rigid",
     "RigidVelocity",
     "Roller",

@@ -77,7 +77,7 @@ class Assembler:
             },
             np.int64,
         )
-        shapes: dict[object, Sequence[int]] = {"factors": (3,)}
+        shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
         for number, sheet in enumerate(sheets):
             shapes |= {("chunks", number): sheet.chunks, ("space", number): (sheet.space,)}
             if stresses is None:
@@ -160,12 +160,12 @@ class Assembler:
             work.table[record.NATURAL] = place
         return places
 
-    def weigh(self, coefficients: Sequence[float]) -> None:
+    def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
         """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too.
 
-        Likewise cv = ca = 0 leaves out damping.
+        Likewise cv = ca = 0 leaves out damping. dt [s]: time step from the committed history.
         """
-        self._factors[:] = coefficients
+        self._factors[:] = *coefficients, dt
         moving, rated = coefficients[2] != 0.0, coefficients[1] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 

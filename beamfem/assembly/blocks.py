@@ -54,6 +54,7 @@ def build_block(
         director=np.ascontiguousarray(field.director(xi)),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
+        history=_joined([mesh.history for mesh in own]),
         **joined,
     )
 

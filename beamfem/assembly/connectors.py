@@ -39,21 +39,10 @@ class Connectors:
         """What they remember at the start (h,)."""
         return np.concatenate([np.empty(0), *(remembered(item.item) for item in self.items)])
 
-    def after_step(self, motion: Motion, time: float) -> np.ndarray:
-        """Return p (n,) with what they remember once a step to this state is accepted."""
-        if len(self.memory) == 0:
-            return motion[0]
-        gravity, p = self.gravity(time), motion[0].copy()
-        for item in self.items:
-            p[item.memory] = item.remember(item.at(motion, time, gravity))
-        return p
-
-    def after_load_step(self, p: np.ndarray, load_factor: float) -> np.ndarray:
-        """Return p (n,) with what they remember once an equilibrium is accepted."""
-        if len(self.memory) == 0:
-            return p
-        zeros = np.zeros(len(p))
-        return self.after_step((p, zeros, zeros), load_factor)
+    def remember(self, motion: Motion, time: float) -> np.ndarray:
+        """Return what they remember (h,) once a step to this state is accepted."""
+        gravity = self.gravity(time)
+        return np.concatenate([np.empty(0), *(item.remember(item.at(motion, time, gravity)) for item in self.items)])
 
     @property
     def conservative(self) -> bool:

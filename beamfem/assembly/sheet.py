@@ -157,6 +157,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         record.LOAD_NUMBER: number[loads.element].T,
         record.COUNTED: np.arange(elements) if layout.half_width < 0 else np.empty(0, dtype=np.int64),
         record.ROUTINES: own.addresses,
+        record.HISTORY: block.history,
     }
     kept = []
     for field, values in arrays.items():
@@ -164,6 +165,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         kept.append(np.ascontiguousarray(values, dtype=kind))
         table[field] = address_of(kept[-1])
     table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
+    table[record.VARIABLES] = block.history.shape[-1]
     table[record.ORDERED] = (np.diff(block.node, axis=0) > 0).all()
     table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
     table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends

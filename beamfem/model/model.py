@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
+from math import prod
 from os import PathLike
 from typing import Any
 
@@ -133,7 +134,7 @@ class Model:
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int]:
+    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
         require_room(self.beams)
         fractions: list[list[float]] = [[] for _ in self.beams]
         places = [support.point for support in self.point_supports]
@@ -162,12 +163,15 @@ class Model:
         filled = [0] * len(self.groups)
         block_of = {kind: number for number, kind in enumerate(self._kinds)}
         meshes, names = [], [each.name for each in fields(Grid)]
+        behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
         for grid, carried in zip(grids, nodes, strict=True):
             block = block_of[_kind(grid.beam)]
             parts = {name: getattr(grid, name) for name in names}
-            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
+            history = _history(grid, behind)
+            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
             filled[block] += grid.elements
-        return tuple(meshes), size
+            behind += history.size
+        return tuple(meshes), size, behind
 
     def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
         """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
@@ -197,10 +201,10 @@ class Model:
         """Number of coordinates of the beams, including prescribed ones, shared ones counted once."""
         return self._numbered[1]
 
-    @cached_property
+    @property
     def size(self) -> int:
-        """Number of coordinates of the beams, followed by the unknowns and history variables of connectors."""
-        return self.coordinates + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
+        """Number of coordinates of the beams, of unknowns and history variables of connectors and those of sections."""
+        return self._numbered[2]
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:
@@ -282,6 +286,13 @@ def _kind(beam: Beam) -> tuple[Element, Hashable]:
     """Return the key that beams of one block share."""
     law = beam.law
     return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
+
+
+def _history(grid: Grid, first: int) -> np.ndarray:
+    """Return the numbers (ne, nq, k) of the history variables at the integration points of a beam."""
+    law = grid.beam.law
+    shape = grid.elements, len(grid.beam.element.energy_points()[0]), 0 if law is None else len(law.start)
+    return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
 
 
 def _turns(support: PointSupport) -> bool:

@@ -115,7 +115,7 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
     return block._replace(
         imposed=None if block.imposed is None else block.imposed.of(elements),
         node=np.arange(len(flat)).reshape(nodes.shape),
-        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
+        **{name: getattr(block, name)[elements] for name in ("kind", "beam", "history")},
         home=np.indices(nodes.shape).reshape(2, -1).T,
         **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof")},
     )

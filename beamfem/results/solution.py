@@ -238,14 +238,14 @@ class Solution:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
     def energy(self) -> Energy:
-        """Return kinetic, strain, potential and total energy (steps,) [J].
+        """Return kinetic, strain, potential, total and dissipated energy (steps,) [J], see `Energy`.
 
         The potential is zero in the reference configuration.
         """
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
-        parts = (postprocess.strain_energy(mesh, self.p, imposed_measures(self, mesh)) for mesh in self.model.meshes)
-        strain = sum(parts, np.zeros(len(self)))
-        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
+        parts = (postprocess.strain_energies(mesh, self.p, imposed_measures(self, mesh)) for mesh in self.model.meshes)
+        strain, dissipated = sum(parts, np.zeros((len(self), 2))).T
+        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]), dissipated)
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:

@@ -22,12 +22,9 @@ def refuse_multipliers(system: System, analysis: str) -> None:
 
 
 def refuse_memory(system: System, analysis: str) -> None:
-    """Raise InputError if a connector has history, so that states depend on more than the load."""
-    for item in system.connectors.items:
-        if len(item.memory):
-            raise InputError(
-                f"{analysis} takes no connectors that remember, as {item.name} does; solve_static and simulate do"
-            )
+    """Raise InputError if a connector or a section law has history, so that states depend on more than the load."""
+    for kind, name in system.history.holders:
+        raise InputError(f"{analysis} takes no {kind} that remember, as {name} does; solve_static and simulate do")
 
 
 def refuse_dampers(system: System) -> None:

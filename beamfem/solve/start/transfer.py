@@ -8,6 +8,7 @@ from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.kernels.block import TURNED_GRADIENTS
+from beamfem.model.classes import by_value
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_angle
@@ -24,7 +25,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are identified by identity, in a copy of their model by position, in any order. Nodes are the same; whether
     their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models keep
-    their history.
+    their history, and so do beams with the same section law.
     Raises InputError if the beams do not match.
     """
     source, target = state.model, system.model
@@ -37,6 +38,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
             # a turned vector is that of the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
+        if _same_law(old, new):
+            p[new.history] = state.p[old.history]
     known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
         if id(item.item) in known:
@@ -116,6 +119,14 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
     apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
     turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
     return bool(apart <= near and turned <= _SAME * new.speed.max())
+
+
+def _same_law(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether the history variables of two beams mean the same at the same points."""
+    laws = [
+        () if law is None else (by_value(law.section), by_value(law.material)) for law in (old.beam.law, new.beam.law)
+    ]
+    return laws[0] == laws[1] and old.beam.element == new.beam.element and old.history.shape == new.history.shape
 
 
 def _described(model: Model, mesh: BeamMesh) -> str:

@@ -43,7 +43,7 @@ def reach(
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
     # what remembers goes through the steps that are asked for
-    longest = step if len(system.connectors.memory) else 1.0
+    longest = step if len(system.history.numbers) else 1.0
     with progress("load factor", end) as report:
         while done.reached < end:
             step = _within_a_turn(system, done, step)
@@ -52,7 +52,7 @@ def reach(
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not skips_limit_points(system, done, target, result, newton):
-                state = system.connectors.after_load_step(result.state, target)
+                state = system.history.in_equilibrium(result.state, target, system.imposing(target))
                 done.add(target, state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -66,11 +66,11 @@ def reach(
                 done.cuts += 1
                 refused = max(refused, target)
                 step *= 0.5
-            elif len(system.connectors.memory):
+            elif holders := system.history.holders:
                 raise ConvergenceError(
                     f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
-                    f"{result.ended.value}; models with connectors that remember are not followed along a path, but "
-                    "simulate shows where they go",
+                    f"{result.ended.value}; models with {holders[0][0]} that remember are not followed along a path, "
+                    "but simulate shows where they go",
                     done.solution(),
                 )
             else:

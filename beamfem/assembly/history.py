@@ -1,0 +1,69 @@
+"""Committed history: what connectors and section laws remember of the last accepted step, as part of a state."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.assembly.connector import Motion
+from beamfem.assembly.connectors import Connectors
+from beamfem.assembly.points import free_sheet, resultants
+from beamfem.assembly.sheet import Sheet
+from beamfem.kernels.block import Block, Law
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """The history variables of a model, which stand behind its coordinates and change with accepted steps only."""
+
+    connectors: Connectors
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def laws(self) -> tuple[tuple[Law, Block], ...]:
+        """Section laws that remember, each with its block."""
+        return tuple((block.law, block) for block in self.blocks if block.law is not None and block.history.size)
+
+    @cached_property
+    def numbers(self) -> np.ndarray:
+        """Numbers (h,) of all history variables among the coordinates."""
+        return np.concatenate([self.connectors.memory, *(block.history.ravel() for _, block in self.laws)])
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Their initial values (h,)."""
+        own = (np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws)
+        return np.concatenate([self.connectors.start, *own])
+
+    @property
+    def holders(self) -> tuple[tuple[str, str], ...]:
+        """What remembers, in words, and its name."""
+        connectors = (("connectors", item.name) for item in self.connectors.items if len(item.memory))
+        return (*connectors, *(("section laws", law.name) for law, _ in self.laws))
+
+    def committed(self, motion: Motion, time: float, imposing: np.ndarray, dt: float = 0.0) -> np.ndarray:
+        """Return p (n,) with the history variables after an accepted step to a state.
+
+        imposing (k,): factors of the loads that impose strains; dt [s]: time step, 0 in statics. Raises InputError.
+        """
+        p = motion[0]
+        if not len(self.numbers):
+            return p
+        found = p.copy()
+        found[self.connectors.memory] = self.connectors.remember(motion, time)
+        for (law, block), sheet in zip(self.laws, self._strains, strict=True):
+            strain = resultants(sheet, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
+            found[block.history] = law.remember(strain, p[block.history], dt)
+        return found
+
+    def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
+        """Return the same of an accepted load step to an equilibrium p (n,)."""
+        zeros = np.zeros(len(p))
+        return self.committed((p, zeros, zeros), load_factor, imposing)
+
+    @cached_property
+    def _strains(self) -> tuple[Sheet, ...]:
+        """Elements of each law whose resultants are their strains, from the state without stress."""
+        unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
+        blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]
+        return tuple(free_sheet(block, self.connectors.model.size) for block in blocks)

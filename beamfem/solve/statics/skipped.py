@@ -33,6 +33,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         return False
     if _differs_half_way(system, done, target, result.state):
         return True
+    if len(system.history.numbers):
+        return False  # the tangent of a committed state is that of unloading, not of the path
     done.iterations += 2
     return leaves_path(system, (done.state, done.reached), (result.state, target))
 

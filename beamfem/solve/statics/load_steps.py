@@ -18,6 +18,7 @@ from beamfem.solve.statics.static_record import StaticRecord
 Snap = Literal["error", "jump"]
 
 _CUTS = 4  # in succession, before the path is followed by its length
+_CUTS_OF_PAST = 10  # likewise where the past counts, so that no path is followed instead
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 SAME = 1e-12  # of the load factor: no nearer than this are two of them
@@ -39,11 +40,13 @@ def reach(
     stops: load factors that get a row of their own, except those skipped by a jump.
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
-    ahead = sorted({stop for stop in stops if SAME < stop < end - SAME} | {end})
+    remembers = len(system.history.numbers) > 0
+    # what remembers goes through the steps that are asked for, to the end of each, whatever is cut
+    asked = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
+    ahead = sorted({stop for stop in asked if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
-    # what remembers goes through the steps that are asked for
-    longest = step if len(system.history.numbers) else 1.0
+    longest = step if remembers else 1.0
     with progress("load factor", end) as report:
         while done.reached < end:
             step = _within_a_turn(system, done, step)
@@ -61,7 +64,7 @@ def reach(
             elif result.ended is Termination.NO_DIGITS:
                 # what round-off takes of a load it takes of a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
-            elif cuts < _CUTS:
+            elif cuts < (_CUTS_OF_PAST if remembers else _CUTS):
                 cuts += 1
                 done.cuts += 1
                 refused = max(refused, target)

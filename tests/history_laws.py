@@ -6,8 +6,6 @@ import numpy as np
 
 from beamfem.section.stiffness import StiffnessSection
 
-_BEYOND = 1.0 + 1e-9  # of a limit: where a step has just yielded, the section is elastic
-
 
 @dataclass(frozen=True)
 class Plastic(StiffnessSection):
@@ -19,12 +17,13 @@ class Plastic(StiffnessSection):
     limit: float = 1.0
     hardening: float = 0.0
     memory = (0.0, 0.0)
+    beyond = 1.0 + 1e-9  # of the limit: where a step has just yielded, the section is elastic
 
     def _flow(self, strain, history):
         """Return how the plastic curvature changes."""
         over = self.bending * (strain[:, 2] - history[:, 0]) - self.hardening * history[:, 0]
         sign = np.sign(over.real)
-        yields = sign * over.real > self.limit * _BEYOND
+        yields = sign * over.real > self.limit * self.beyond
         return np.where(yields, (over - sign * self.limit) / (self.bending + self.hardening), 0.0)
 
     def resultants(self, strain, material, history, dt):
@@ -67,9 +66,7 @@ class Creeping(StiffnessSection):
         return np.column_stack([crept, history[:, 3] + lost])
 
     def energy(self, strain, material, history):
-        return np.stack(
-            [0.5 * (strain - history[:, :3]) ** 2 @ self.moduli, history[:, 3] + 0.0 * strain[:, 0]], axis=-1
-        )
+        return np.stack([0.5 * (strain - history[:, :3]) ** 2 @ self.moduli, history[:, 3]], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -98,5 +95,4 @@ class Viscous(StiffnessSection):
         return np.column_stack([strain, viscous, history[:, 6] + lost])
 
     def energy(self, strain, material, history):
-        viscous = (history[:, 3:6] * (strain - history[:, :3])).sum(axis=1)
-        return np.stack([0.5 * strain**2 @ self.moduli, history[:, 6] + 0.0 * viscous], axis=-1)
+        return np.stack([0.5 * strain**2 @ self.moduli, history[:, 6]], axis=-1)

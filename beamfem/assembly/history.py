@@ -58,6 +58,8 @@ class History:
 
     def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
         """Return the same of an accepted load step to an equilibrium p (n,)."""
+        if not len(self.numbers):
+            return p
         zeros = np.zeros(len(p))
         return self.committed((p, zeros, zeros), load_factor, imposing)
 

@@ -16,6 +16,7 @@ _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
 _Pass = CFUNCTYPE(None, *(c_int64,) * 6, *(c_void_p,) * 4)
 _Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step from there [s]
+_NOTHING: _Past = (np.empty((0, 0)), 0.0)
 
 
 class LawPass:
@@ -76,7 +77,9 @@ class LawPass:
         try:
             own = _rows(x, POINT_ROWS)[:, :count]
             try:
-                past = self._past(group, system, slice(first, first + count), number)
+                past = _NOTHING
+                if self._law.remembers:
+                    past = _past(group, system, slice(first, first + count), number)
                 rows = _rows(weight, 1)[0, :count], _rows(reference, 3)[:, :count]
                 self._fill_rows(own, *rows, past, tangent != 0)
             except BaseException:
@@ -84,15 +87,6 @@ class LawPass:
                 raise
         except BaseException as error:
             self._errors.append(error)
-
-    def _past(self, group: int, system: int, elements: slice, number: int) -> _Past:
-        """Return what a point of elements remembers of the state that the system stands in."""
-        if not self._law.remembers:
-            return np.empty((elements.stop - elements.start, 0)), 0.0
-        b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
-        table = _wholes(b[record.HISTORY], b[record.ELEMENTS], b[record.POINTS], b[record.VARIABLES])
-        state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
-        return state[table[elements, number]], float(factors[-1])
 
     def _fill_rows(
         self, own: np.ndarray, weight: np.ndarray, reference: np.ndarray, past: _Past, tangent: bool
@@ -108,15 +102,23 @@ class LawPass:
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 
 
+def _past(group: int, system: int, elements: slice, number: int) -> _Past:
+    """Return what a point of elements remembers of the state that the system stands in."""
+    b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
+    table = _wholes(b[record.HISTORY], b[record.ELEMENTS], b[record.POINTS], b[record.VARIABLES])
+    state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
+    return state[table[elements, number]], float(factors[-1])
+
+
 def _rows(address: int, count: int) -> np.ndarray:
     """Return rows of numbers at an address (count, ROW)."""
-    return _reals(address, count, ROW)
+    return _reals(address, count * ROW).reshape(count, ROW)
 
 
-def _reals(address: int, *shape: int) -> np.ndarray:
-    """Return numbers at an address (shape)."""
-    memory: Any = (c_double * prod(shape)).from_address(address)
-    return np.frombuffer(memory).reshape(shape)
+def _reals(address: int, count: int) -> np.ndarray:
+    """Return numbers at an address (count,)."""
+    memory: Any = (c_double * count).from_address(address)
+    return np.frombuffer(memory)
 
 
 def _wholes(address: int, *shape: int) -> np.ndarray:

@@ -107,7 +107,7 @@ class ConstitutiveLaw:
         past = (history, dt) if self.remembers else ()
         with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; then the iteration goes back
             found = self._called("resultants", strain, *past)
-        return self._checked("resultants", found, strain, (3,))
+        return self._checked("resultants", found, strain.shape)
 
     def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """Return resultants (n, 3) and their derivatives (n, 3, 3) at real strains (n, 3), the consistent tangent."""
@@ -115,13 +115,14 @@ class ConstitutiveLaw:
         moved = np.tile(strain.astype(complex), (3, 1))
         for column in range(3):
             moved[column * count : (column + 1) * count, column] += 1j * COMPLEX_STEP
-        found = self.resultants(moved, np.tile(history, (3, 1)), dt).reshape(3, count, 3)
+        past = np.tile(history, (3, 1)) if self.remembers else history
+        found = self.resultants(moved, past, dt).reshape(3, count, 3)
         tangent = np.moveaxis(found.imag / COMPLEX_STEP, 0, -1)
         return found[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
 
     def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
         """Return the history (n, k) after an accepted step to strains (n, 3). Raises InputError for what is none."""
-        found = self._checked("remember", self._called("remember", strain, history, dt), strain, self.start.shape)
+        found = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
         if found.dtype.kind == "c" or not np.isfinite(found).all():
             raise InputError(f"remember of {self.name} must return finite numbers, real ones for real strains")
         return found
@@ -129,15 +130,14 @@ class ConstitutiveLaw:
     def energy(self, strain: np.ndarray, history: np.ndarray) -> np.ndarray:
         """Return the energies per length (n, 2) [J/m], stored and dissipated. Raises InputError for what are none."""
         if self.remembers:
-            return self._checked("energy", self._called("energy", strain, history), strain, (2,))
-        stored = self._checked("energy", self._called("energy", strain), strain, ())
+            return self._checked("energy", self._called("energy", strain, history), (len(strain), 2))
+        stored = self._checked("energy", self._called("energy", strain), (len(strain),))
         return np.stack([stored, np.zeros(len(strain))], axis=-1)
 
     def _called(self, name: str, strain: np.ndarray, *past: Any) -> np.ndarray:
         return np.asarray(called(f"{name} of {self.name}", getattr(self.section, name), strain, self.material, *past))
 
-    def _checked(self, what: str, found: np.ndarray, strain: np.ndarray, row: tuple[int, ...]) -> np.ndarray:
-        shape = len(strain), *row
+    def _checked(self, what: str, found: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
         if found.shape != shape or found.dtype.kind not in "fic":
             raise InputError(
                 f"{what} of {self.name} must return numbers of the shape {shape} for strains ({shape[0]}, 3), "

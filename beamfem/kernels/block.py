@@ -111,7 +111,7 @@ class Block(NamedTuple):
         return self._replace(stiffness=np.ascontiguousarray(stiffness), law=None)
 
     def linearised(self, strain: np.ndarray, p: np.ndarray) -> np.ndarray:
-        """Return the stiffness (ne, nq, ns, ns) at strains (ne, nq, ns) from the reference's and the history in p (n,)."""
+        """Return the stiffness (ne, nq, ns, ns) at strains (ne, nq, ns) from the reference's, p (n,) with history."""
         return self.stiffness[self.kind] if self.law is None else self.law.linearised(strain, p[self.history])[1]
 
 

@@ -170,7 +170,7 @@ class SparseMotion:
         p, v, a, _ = state
         if renew or self._factors is None:
             self._factors = None  # room for the new ones
-            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, dt=self._dt)
+            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self._dt)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1
         else:

@@ -8,7 +8,7 @@ from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import ELASTIC_LINE, Block
+from beamfem.kernels.block import ELASTIC_LINE, NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
@@ -54,7 +54,7 @@ def build_block(
         director=np.ascontiguousarray(field.director(xi)),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
-        history=_joined([mesh.history for mesh in own]),
+        history=_joined([mesh.history for mesh in own]) if own[0].history.size else NO_HISTORY,
         **joined,
     )
 

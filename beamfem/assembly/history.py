@@ -9,7 +9,8 @@ from beamfem.assembly.connector import Motion
 from beamfem.assembly.connectors import Connectors
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.sheet import Sheet
-from beamfem.kernels.block import Block, Law
+from beamfem.kernels.block import Block
+from beamfem.section.law import ConstitutiveLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,9 +21,10 @@ class History:
     blocks: tuple[Block, ...]
 
     @cached_property
-    def laws(self) -> tuple[tuple[Law, Block], ...]:
+    def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
         """Section laws that remember, each with its block."""
-        return tuple((block.law, block) for block in self.blocks if block.law is not None and block.history.size)
+        known = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
+        return tuple((law, self.blocks[number]) for number, law in known.items() if law is not None and law.remembers)
 
     @cached_property
     def numbers(self) -> np.ndarray:
@@ -53,7 +55,8 @@ class History:
         found[self.connectors.memory] = self.connectors.remember(motion, time)
         for (law, block), sheet in zip(self.laws, self._strains, strict=True):
             strain = resultants(sheet, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
-            found[block.history] = law.remember(strain, p[block.history], dt)
+            known, past = strain[..., :3].reshape(-1, 3), p[block.history]
+            found[block.history] = law.remember(known, past.reshape(len(known), -1), dt).reshape(past.shape)
         return found
 
     def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:

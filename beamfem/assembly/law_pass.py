@@ -40,20 +40,6 @@ class LawPass:
         result[..., :3], stiffness[..., :3, :3] = found.reshape(*shape, 3), slope.reshape(*shape, 3, 3)
         return result, stiffness
 
-    def remember(self, strain: np.ndarray, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return the history (..., k) after an accepted step to strains (..., 4), dt [s] from the one before."""
-        known = strain[..., :3].reshape(-1, 3)
-        return self._law.remember(known, history.reshape(len(known), -1), dt).reshape(history.shape)
-
-    @property
-    def start(self) -> np.ndarray:
-        """The initial history (k,) of a point."""
-        return self._law.start
-
-    @property
-    def name(self) -> str:
-        return self._law.name
-
     def raise_error(self) -> None:
         """Raise the first error since the last call, if there is one."""
         if self._errors:

@@ -28,20 +28,6 @@ class Law(Protocol):
         """Where its pass is; whoever calls it by address keeps this object alive."""
         ...
 
-    @property
-    def start(self) -> np.ndarray:
-        """The initial history (k,) of a point."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """What it is called in messages."""
-        ...
-
-    def remember(self, strain: np.ndarray, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return the history (..., k) after an accepted step to strains (..., ns), dt [s] from the one before."""
-        ...
-
     def raise_error(self) -> None:
         """Raise what it could not raise in compiled code."""
         ...
@@ -105,6 +91,10 @@ class Block(NamedTuple):
     law: Law | None = None  # instead of the linear one
     imposed: Imposed | None = None  # strains of the state without stress, besides those of the reference
     history: np.ndarray = NO_HISTORY  # (ne, nq, k) coordinates that are history variables of the law
+
+    def history_of(self, elements: slice | np.ndarray) -> np.ndarray:
+        """Return the history variables of some elements."""
+        return self.history[elements] if self.history.size else self.history
 
     def resisting(self, stiffness: np.ndarray) -> "Block":
         """Return the block with the linear law of a stiffness (nc, nq, ns, ns)."""

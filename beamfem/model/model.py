@@ -12,6 +12,7 @@ import numpy as np
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
+from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
@@ -165,7 +166,7 @@ class Model:
         meshes, names = [], [each.name for each in fields(Grid)]
         behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
         for grid, carried in zip(grids, nodes, strict=True):
-            block = block_of[_kind(grid.beam)]
+            block = block_of[block_key(grid.beam)]
             parts = {name: getattr(grid, name) for name in names}
             history = _history(grid, behind)
             meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
@@ -213,7 +214,7 @@ class Model:
 
     @cached_property
     def _kinds(self) -> tuple[tuple[Element, Hashable], ...]:
-        return tuple(dict.fromkeys(_kind(beam) for beam in self.beams))
+        return tuple(dict.fromkeys(block_key(beam) for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam. Raises InputError, UnknownPointError."""
@@ -282,7 +283,7 @@ def _named(kinds: Sequence[type]) -> str:
     return " or ".join(", ".join(dict.fromkeys(names)).rsplit(", ", 1))  # slots make a class twice
 
 
-def _kind(beam: Beam) -> tuple[Element, Hashable]:
+def block_key(beam: Beam) -> tuple[Element, Hashable]:
     """Return the key that beams of one block share."""
     law = beam.law
     return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
@@ -291,7 +292,9 @@ def _kind(beam: Beam) -> tuple[Element, Hashable]:
 def _history(grid: Grid, first: int) -> np.ndarray:
     """Return the numbers (ne, nq, k) of the history variables at the integration points of a beam."""
     law = grid.beam.law
-    shape = grid.elements, len(grid.beam.element.energy_points()[0]), 0 if law is None else len(law.start)
+    if law is None or not law.remembers:
+        return NO_HISTORY
+    shape = grid.elements, len(grid.beam.element.energy_points()[0]), len(law.start)
     return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
 
 

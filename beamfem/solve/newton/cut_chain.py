@@ -125,8 +125,9 @@ def _part(block: Block, elements: slice, first_dof: int) -> Block:
     dof = block.dof[nodes]
     return block._replace(
         imposed=None if block.imposed is None else block.imposed.of(elements),
+        history=block.history_of(elements),
         node=node - nodes.start,
         dof=np.where(dof >= 0, dof - first_dof, -1),
-        **{name: getattr(block, name)[elements] for name in ("kind", "beam", "history")},
+        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
         **{name: getattr(block, name)[nodes] for name in ("node_kind", "frame", "home")},
     )

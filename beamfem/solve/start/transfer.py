@@ -8,9 +8,8 @@ from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.kernels.block import TURNED_GRADIENTS
-from beamfem.model.classes import by_value
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model
+from beamfem.model.model import Model, block_key
 from beamfem.model.reference import reference_angle
 from beamfem.model.turns import uncounted
 from beamfem.results import postprocess
@@ -25,7 +24,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are identified by identity, in a copy of their model by position, in any order. Nodes are the same; whether
     their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models keep
-    their history, and so do beams with the same section law.
+    their history, and so do beams with the same element and section law.
     Raises InputError if the beams do not match.
     """
     source, target = state.model, system.model
@@ -38,7 +37,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
             # a turned vector is that of the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
-        if _same_law(old, new):
+        if old.history.shape == new.history.shape and new.history.size and block_key(old.beam) == block_key(new.beam):
             p[new.history] = state.p[old.history]
     known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
@@ -119,14 +118,6 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
     apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
     turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
     return bool(apart <= near and turned <= _SAME * new.speed.max())
-
-
-def _same_law(old: BeamMesh, new: BeamMesh) -> bool:
-    """Return whether the history variables of two beams mean the same at the same points."""
-    laws = [
-        () if law is None else (by_value(law.section), by_value(law.material)) for law in (old.beam.law, new.beam.law)
-    ]
-    return laws[0] == laws[1] and old.beam.element == new.beam.element and old.history.shape == new.history.shape
 
 
 def _described(model: Model, mesh: BeamMesh) -> str:

@@ -19,7 +19,7 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     Either linearised stability expects a critical point before its end. Or the tangent at its start goes far beyond its
     end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
     looked at where the iteration was slow, the state half-way has another count of negative pivots, or the step goes
-    another way than the tangents at its ends.
+    another way than the tangents at its ends, if nothing remembers: there the path has kinks.
     """
     if result.linear is not None:
         done.iterations += 1

@@ -67,13 +67,26 @@ def test_the_area_of_the_loop_is_what_is_dissipated():
     assert energy.dissipated[-1] - energy.dissipated[2] == pytest.approx(loop, rel=1e-7)
 
 
-@pytest.mark.parametrize("order", [1, 2, 3, 5])
-def test_what_grows_alone_depends_on_no_steps(order):
-    tips = []
-    for steps in (1, 2, 3, 20):
-        beam, model = arm(YIELDING, lambda beam: [bf.PointForce(beam.end, (0.0, 80.0))], order)
-        tips.append(bf.solve_static(model, steps=steps).displacement(beam.end)[-1])
+ELEMENTS = [
+    *(bf.CRBF(order) for order in range(1, 9)),
+    bf.CRBF(3, integration="full"),
+    bf.BilinearCRBF(bf.Structural()),
+]
+
+
+@pytest.mark.parametrize("element", ELEMENTS, ids=lambda element: f"{element.name}-{element.integration}")
+def test_what_grows_alone_depends_on_no_steps(element):
+    """On every element that takes a law, from one step to twenty; below the limit it is the linear section."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 3, element, YIELDING)
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, 80.0))])
+    tips = [bf.solve_static(model, steps=steps).displacement(beam.end)[-1] for steps in (1, 2, 3, 20)]
     assert np.ptp(tips, axis=0).max() < 1e-10
+    beams = [replace(beam, section=section) for section in (NEVER, LinearLaw(**SECTION))]
+    linear = [
+        bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, (0.0, 80.0))])) for own in beams
+    ]
+    ends = [found.displacement(own.end)[-1] for found, own in zip(linear, beams, strict=True)]
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
 
 
 def test_steps_that_are_cut_leave_nothing_behind():

@@ -58,8 +58,11 @@ def build_actions(model: Model, block: int) -> Actions:
             part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
             part["spring"] = np.outer(weight, foundation.stiffness)
             parts.append(part)
-    size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
-    joined = {name: np.concatenate([empty, *(part[name] for part in parts)]) for name, empty in _empty(size).items()}
+    if len(parts) == 1:
+        joined = dict(parts[0])
+    else:
+        size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
+        joined = {name: np.concatenate([own, *(part[name] for part in parts)]) for name, own in _empty(size).items()}
     own = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
     return Actions(PointLoads(**joined), **own, loads=(*points, *lines))
 
@@ -128,17 +131,19 @@ def _part(
     # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
     reference = reference_axis(mesh, element, xi)
     along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    follows, spring = np.zeros((2, count, 2))
+    if follower:
+        follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)
     return {
         "element": mesh.first_element + element,
         "position": position * scale,
         "direction": direction * scale,
-        "follows": along if follower else np.zeros((count, 2)),
+        "follows": follows,
         "stretches": np.zeros(count, dtype=bool),
-        "spring": np.zeros((count, 2)),
+        "spring": spring,
         "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
         "unit": unit,
-        "source": np.full(count, source),
+        "source": np.repeat(source, count),
         "xi": xi,
-        "rule": np.full(count, rule),
+        "rule": np.repeat(rule, count),
     }

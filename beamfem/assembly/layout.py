@@ -66,7 +66,7 @@ def order_unknowns(
     half_width = _half_width(blocks, free)
     if not joined:
         # short beams have the band of long ones, for which there is compiled code
-        half_width = max(half_width, *(int((block.dof >= 0)[block.node[:1]].sum()) - 1 for block in blocks))
+        half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
@@ -98,9 +98,10 @@ def _half_width(blocks: Sequence[Block], free: np.ndarray) -> int:
     """Largest distance between two unknowns of an element."""
     widest = 0
     for block in blocks:
-        number = _numbers_of(block, free)
-        low = np.where(number >= 0, number, len(free)).min(axis=1)
-        widest = max(widest, int((number.max(axis=1) - low).max(initial=0)))
+        numbers, known = np.where(block.dof >= 0, free[block.dof], -1), len(free)
+        high, low = numbers.max(axis=1), np.where(numbers >= 0, numbers, known).min(axis=1)
+        ends = high[block.node].max(axis=1) - low[block.node].min(axis=1)
+        widest = max(widest, int(ends.max(initial=0)))
     return widest
 
 

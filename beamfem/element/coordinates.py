@@ -1,6 +1,7 @@
 """Nodal coordinates: which numbers p carry the nodal vectors e of a field."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -55,6 +56,7 @@ KINEMATICS = {ROTATION: kinematics.ROTATION, STRETCH: kinematics.STRETCH, SHEAR_
 _STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
 
 
+@lru_cache(maxsize=64)
 def labels(node_kind: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
     """Names of a node's coordinates: components of nodal vectors, then what turns the others, the angle last."""
     kind = KINEMATICS.get(node_kind)

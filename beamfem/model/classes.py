@@ -3,13 +3,26 @@
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
+from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
-from beamfem.model.reference import energy_points, energy_stiffness_at, inertia_points, jacobians, length_points, scales
+from beamfem.model.reference import (
+    energy_points,
+    energy_stiffness_at,
+    inertia_points,
+    jacobians,
+    length_points,
+    length_rule,
+    scales,
+)
+
+_ALIKE = 1e-9  # of the longest element: lengths that differ by less are those of one class
 
 
 @dataclass(frozen=True)
@@ -31,24 +44,21 @@ class Classes:
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
-    if grid.straight and grid.beam.prismatic:
-        _, first, kind = np.unique(
-            np.round(grid.lengths / grid.lengths.max(), 9), return_index=True, return_inverse=True
-        )
-    else:
-        first = kind = np.arange(grid.elements)
+    first, kind = _likes(grid)
     element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
     jacobian, jacobian_xi = jacobians(grid, element, xi)
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
+    damping = np.empty(count)
+    damping[:] = retardation_time(grid.beam.section_at(0.0), grid.beam.material)
 
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
 
     return Classes(
-        kind.astype(np.int64),
+        kind,
         scale,
         by_class(jacobian),
         by_class(jacobian_xi),
@@ -58,8 +68,21 @@ def element_classes(grid: Grid) -> Classes:
         mass,
         gravity,
         length,
-        np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material)),
+        damping,
     )
+
+
+def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first element (nc,) of each class and the class (ne,) of each element."""
+    if not (grid.straight and grid.beam.prismatic):
+        every = np.arange(grid.elements)
+        return every, every
+    longest = grid.lengths.max()
+    if grid.lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
+        return np.zeros(1, dtype=np.int64), np.zeros(grid.elements, dtype=np.int64)
+    lengths = np.round(grid.lengths / (_ALIKE * longest))
+    _, first, kind = np.unique(lengths, return_index=True, return_inverse=True)
+    return first, kind.astype(np.int64)
 
 
 def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
@@ -96,19 +119,37 @@ def by_value(item: object) -> Hashable:
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mass (nc, nv, nv), its sum against a uniform acceleration (nc, nv) and the loaded length (nc, nv)."""
-    field = grid.beam.element.field
-    where, xi, inertia = inertia_points(grid, chosen)
-    count = len(chosen)
-    r = np.zeros((count, len(where) // count, scale.shape[1]))
-    d = np.zeros_like(r)
-    r[:, :, r_slots(field)] = field.centreline(xi).reshape(count, r.shape[1], -1)
-    d[:, :, d_slots(field)] = field.director(xi).reshape(count, r.shape[1], -1)
-    r *= scale[:, None, :]
-    mass, first, rotary = np.moveaxis(inertia.reshape(count, r.shape[1], 3), -1, 0)
-    mixed = np.einsum("cq,cqi,cqj->cij", first, r, d)
-    matrix = np.einsum("cq,cqi,cqj->cij", mass, r, r) + np.einsum("cq,cqi,cqj->cij", rotary, d, d)
-    matrix += mixed + np.swapaxes(mixed, 1, 2)
-    gravity = np.einsum("cq,cqi->ci", mass, r) + np.einsum("cq,cqi->ci", first, d)
+    tables = _tables(grid.beam.element)
+    _, _, inertia = inertia_points(grid, chosen)
     _, _, weight = length_points(grid, chosen)
-    length = np.einsum("cq,cqi->ci", weight.reshape(count, -1), r)
-    return matrix, gravity, length
+    count, points = len(chosen), len(tables.r)
+    mass, first, rotary = inertia.reshape(count, points, 3).transpose(2, 0, 1)
+    matrix, gravity = mass @ tables.rr + rotary @ tables.dd, mass @ tables.r
+    if first.any():
+        matrix += first @ tables.rd
+        gravity += first @ tables.d
+    matrix = matrix.reshape(count, *scale.shape[1:], -1) * (scale[:, :, None] * scale[:, None, :])
+    return matrix, gravity * scale, weight.reshape(count, points) @ tables.r * scale
+
+
+class _Tables(NamedTuple):
+    """Shape functions of r0 and d at the points that integrate mass (points, nv), and their products (points, nv nv).
+
+    rd: of one with the other, and the transpose.
+    """
+
+    r: np.ndarray
+    d: np.ndarray
+    rr: np.ndarray
+    dd: np.ndarray
+    rd: np.ndarray
+
+
+@lru_cache(maxsize=32)
+def _tables(element: Element) -> _Tables:
+    field = element.field
+    xi, _ = length_rule(field)
+    r, d = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
+    r[:, r_slots(field)], d[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    rr, dd, rd = (one[:, :, None] * other[:, None, :] for one, other in ((r, r), (d, d), (r, d)))
+    return _Tables(r, d, *(product.reshape(len(xi), -1) for product in (rr, dd, rd + np.swapaxes(rd, 1, 2))))

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -35,15 +36,25 @@ def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[
     curves = [beam.curve for beam in beams]
     length = np.array([curve.length for curve in curves])[:, None]
     start, end = (np.array([getattr(curve, name) for curve in curves])[:, None] for name in ("start", "end"))
-    vertices = np.linspace(0.0, 1.0, elements + 1) * length
     last = len(field.nodes) - 1
-    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
-    arc = np.empty((len(beams), node[-1, -1] + 1))
-    arc[:, node] = vertices[:, :-1, None] + np.diff(vertices)[:, :, None] * field.nodes
+    fractions, node = _divided(elements, last)
+    vertices = fractions * length
+    arc = np.empty((len(beams), elements * last + 1))
+    sizes = vertices[:, 1:] - vertices[:, :-1]
+    arc[:, :-1] = (vertices[:, :-1, None] + sizes[:, :, None] * field.nodes[:-1]).reshape(len(beams), -1)
     arc[:, -1] = vertices[:, -1]
     fraction = (arc / length)[:, :, None]
-    position = (1.0 - fraction) * start + fraction * end
-    tangent = np.repeat((end - start) / length[:, :, None], arc.shape[1], axis=1)
+    position, tangent = (1.0 - fraction) * start + fraction * end, np.empty((*arc.shape, 2))
+    tangent[:] = (end - start) / length[:, :, None]
     speed = np.ones(arc.shape[1])
     parts = zip(beams, vertices, arc, position, tangent, strict=True)
     return [Grid(beam, ends, ends, 1.0, node, own, at, along, speed) for beam, ends, own, at, along in parts]
+
+
+@lru_cache(maxsize=16)
+def _divided(elements: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends of equal elements as fractions (elements + 1,), and their nodes (elements, last + 1)."""
+    found = np.linspace(0.0, 1.0, elements + 1), last * np.arange(elements)[:, None] + np.arange(last + 1)
+    for values in found:
+        values.setflags(write=False)
+    return found

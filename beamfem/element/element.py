@@ -10,8 +10,8 @@ from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
-from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
+from beamfem.quadrature import gauss
 from beamfem.validation import flag, fulfils, one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]

@@ -8,8 +8,8 @@ from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
-from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
+from beamfem.quadrature import gauss
 from beamfem.validation import count
 
 HIGHEST_ORDER = 8

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from skfem import MeshLine
@@ -35,10 +36,16 @@ class Grid:
     speed: np.ndarray
     moved: bool = field(default=False, kw_only=True)
 
+    def skfem(self, elements: slice = slice(None)) -> MeshLine:
+        """Return the mesh of all elements or some neighbours for scikit-fem."""
+        chosen = range(self.elements)[elements]
+        return MeshLine(self.vertices[chosen.start : chosen.stop + 1])
+
     @property
-    def skfem(self) -> MeshLine:
-        """The same mesh for scikit-fem."""
-        return MeshLine(self.vertices)
+    def pieces(self) -> list[slice]:
+        """The elements of each smooth piece: between corners of the curve."""
+        ends = 1 + np.flatnonzero(self.node[:-1, -1] != self.node[1:, 0])
+        return [slice(a, b) for a, b in pairwise([0, *ends.tolist(), self.elements])]
 
     @property
     def elements(self) -> int:

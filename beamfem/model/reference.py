@@ -9,9 +9,9 @@ from beamfem.element.coordinates import across
 from beamfem.element.element import Element
 from beamfem.element.fields import Field, d_slots, r_slots, slots
 from beamfem.element.forces import Forces
-from beamfem.element.gauss import gauss
 from beamfem.element.structural import section_frame
 from beamfem.model.grid import Grid
+from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
 
 _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and how far from its ends

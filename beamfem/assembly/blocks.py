@@ -8,8 +8,7 @@ import numpy as np
 from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import ELASTIC_LINE, Block
+from beamfem.kernels.block import Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
@@ -25,7 +24,6 @@ def build_block(
 
     imposing: loads that impose strains, each with the number of its beam.
     """
-    field = element.field
     xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
@@ -41,31 +39,14 @@ def build_block(
         kinds.append(known[like])
     joined = {name: _joined(values) for name, values in parts.items()}
     joined.update(_numbers(meshes), kind=_joined(kinds))
-    table, curved = _derivatives(element)
-    # from derivatives by xi to those by arc length
-    scale, inverse, law = joined["scale"][:, None, :], 1.0 / joined["jacobian"][:, :, None], own[0].beam.law
-    jacobian_xi, second = joined.pop("jacobian_xi"), np.empty((0, 0, 0))
-    if element.forces.code == ELASTIC_LINE:
-        second = (curved - jacobian_xi[:, :, None] * inverse * table) * scale * inverse**2
+    law = own[0].beam.law
     return Block(
         measures=element.forces.code,
-        slope=np.ascontiguousarray(table * scale * inverse),
-        second=np.ascontiguousarray(second),
-        director=np.ascontiguousarray(field.director(xi)),
+        director=np.ascontiguousarray(element.field.director(xi)),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
         **joined,
     )
-
-
-@lru_cache(maxsize=64)
-def _derivatives(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return derivatives by xi (nq, nv) of what carries r0 and d at the points of the energy, and second of r0."""
-    field, (xi, _) = element.field, element.energy_points()
-    table, curved = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
-    table[:, r_slots(field)], table[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
-    curved[:, r_slots(field)] = field.centreline(xi, 2)
-    return table, curved
 
 
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:

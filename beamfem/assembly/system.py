@@ -114,9 +114,9 @@ class System:
         sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(sheets, self.springs, self.model.size)
 
-    def assembler(self) -> Assembler:
-        """Return the equations with new work space."""
-        return Assembler(self.equations)
+    def assembler(self, lent: bool = False) -> Assembler:
+        """Return the equations with new work space; lent: see `Assembler`."""
+        return Assembler(self.equations, lent=lent)
 
     @cached_property
     def solver_table(self) -> SolverTable:

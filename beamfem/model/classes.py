@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -10,6 +10,8 @@ import numpy as np
 
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.material import Material
 from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
 from beamfem.model.reference import (
@@ -22,6 +24,7 @@ from beamfem.model.reference import (
     scales,
 )
 
+_FEW = 2000  # elements; the classes of more are not kept
 _ALIKE = 1e-9  # of the longest element: lengths that differ by less are those of one class
 
 
@@ -30,9 +33,10 @@ class Classes:
     """nc classes; kind (ne,) is the class of an element, the rest as in `kernels.block.Block`."""
 
     kind: np.ndarray
+    slope: np.ndarray
+    second: np.ndarray
     scale: np.ndarray
     jacobian: np.ndarray
-    jacobian_xi: np.ndarray
     weight: np.ndarray
     stiffness: np.ndarray
     reference: np.ndarray
@@ -44,10 +48,40 @@ class Classes:
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
+    beam, few = grid.beam, grid.elements <= _FEW
+    # studies make like beams time and again; what a user's own section is may change from one to the next
+    if few and grid.straight and type(beam.section).__module__.startswith("beamfem."):
+        x, y = grid.tangent[0].tolist()
+        like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
+        return _classes_of_like(like)
+    return _classes(grid)
+
+
+@dataclass(frozen=True)
+class _Like:
+    """What tells the classes of a straight prismatic beam; grid: one of those that are alike."""
+
+    element: Element
+    section: Hashable
+    material: Material | None
+    lengths: bytes
+    x: float
+    y: float
+    grid: Grid = field(compare=False)
+
+
+@lru_cache(maxsize=64)
+def _classes_of_like(like: _Like) -> Classes:
+    found = _classes(like.grid)
+    for name in Classes.__dataclass_fields__:
+        getattr(found, name).setflags(write=False)
+    return found
+
+
+def _classes(grid: Grid) -> Classes:
     first, kind = _likes(grid)
     element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
-    jacobian, jacobian_xi = jacobians(grid, element, xi)
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
@@ -57,19 +91,36 @@ def element_classes(grid: Grid) -> Classes:
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
 
-    return Classes(
-        kind,
-        scale,
-        by_class(jacobian),
-        by_class(jacobian_xi),
-        by_class(weight),
-        by_class(stiffness),
-        by_class(reference),
-        mass,
-        gravity,
-        length,
-        damping,
-    )
+    jacobian, jacobian_xi = map(by_class, jacobians(grid, element, xi))
+    slope, second = _derivatives(grid.beam.element, scale, jacobian, jacobian_xi)
+    weight, stiffness, reference = map(by_class, (weight, stiffness, reference))
+    shapes = kind, slope, second, scale, jacobian
+    return Classes(*shapes, weight, stiffness, reference, mass, gravity, length, damping)
+
+
+def _derivatives(
+    element: Element, scale: np.ndarray, jacobian: np.ndarray, jacobian_xi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty but for the elastic line.
+
+    Of nodal vectors times their scale (nc, nv); jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its derivative.
+    """
+    table, curved = _slopes(element)
+    scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
+    second = np.empty((len(scale), 0, 0))
+    if element.forces.code == ELASTIC_LINE:
+        second = np.ascontiguousarray((curved - jacobian_xi[:, :, None] * inverse * table) * scaled * inverse**2)
+    return np.ascontiguousarray(table * scaled * inverse), second
+
+
+@lru_cache(maxsize=64)
+def _slopes(element: Element) -> tuple[np.ndarray, np.ndarray]:
+    """Return derivatives by xi (nq, nv) of what carries r0 and d at the points of the energy, and second of r0."""
+    basis, (xi, _) = element.field, element.energy_points()
+    table, curved = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
+    table[:, r_slots(basis)], table[:, d_slots(basis)] = basis.centreline(xi, 1), basis.director(xi, 1)
+    curved[:, r_slots(basis)] = basis.centreline(xi, 2)
+    return table, curved
 
 
 def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
@@ -147,9 +198,9 @@ class _Tables(NamedTuple):
 
 @lru_cache(maxsize=32)
 def _tables(element: Element) -> _Tables:
-    field = element.field
-    xi, _ = length_rule(field)
-    r, d = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
-    r[:, r_slots(field)], d[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    basis = element.field
+    xi, _ = length_rule(basis)
+    r, d = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
+    r[:, r_slots(basis)], d[:, d_slots(basis)] = basis.centreline(xi), basis.director(xi)
     rr, dd, rd = (one[:, :, None] * other[:, None, :] for one, other in ((r, r), (d, d), (r, d)))
     return _Tables(r, d, *(product.reshape(len(xi), -1) for product in (rr, dd, rd + np.swapaxes(rd, 1, 2))))

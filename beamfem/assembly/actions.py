@@ -1,9 +1,11 @@
 """Forces, moments and springs at points of elements, as the kernels take them."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
@@ -12,6 +14,8 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
+
+_FEW = 8  # points at once whose tables are kept
 
 
 @dataclass(frozen=True)
@@ -118,20 +122,15 @@ def _part(
     mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
 ) -> dict[str, np.ndarray]:
     """Rows of the point loads for points (element, xi) of a beam."""
-    own = mesh.beam.element
-    field, count = own.field, len(element)
+    own, count = mesh.beam.element, len(element)
     scale = scales(own, mesh.lengths[element])
-    position = np.zeros_like(scale)
-    position[:, r_slots(field)] = field.centreline(xi)
+    position, direction = _tables(own, xi) if count > _FEW else _tables_few(own, xi.tobytes())
     if own.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
-    else:
-        direction = np.zeros_like(scale)
-        direction[:, d_slots(field)] = field.director(xi)
     # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
     reference = reference_axis(mesh, element, xi)
     along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
-    follows, spring = np.zeros((2, count, 2))
+    (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
     if follower:
         follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)
     return {
@@ -139,7 +138,7 @@ def _part(
         "position": position * scale,
         "direction": direction * scale,
         "follows": follows,
-        "stretches": np.zeros(count, dtype=bool),
+        "stretches": none,
         "spring": spring,
         "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
         "unit": unit,
@@ -147,3 +146,16 @@ def _part(
         "xi": xi,
         "rule": np.repeat(rule, count),
     }
+
+
+def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tables (n, nv) of r0 and d at points, of nodal vectors times their scale."""
+    field = element.field
+    position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
+    position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    return position, direction
+
+
+@lru_cache(maxsize=64)  # loads at the ends of beams ask for the same ones time and again
+def _tables_few(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
+    return _tables(element, np.frombuffer(xi))

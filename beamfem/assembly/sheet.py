@@ -22,7 +22,7 @@ from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
-_UPPER = {measures: np.triu_indices(measures) for measures in (4, 6)}
+_UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     parts = [
         block.slope.reshape(classes, -1),
         block.second.reshape(classes, -1) if block.second.size else np.empty((classes, 0)),
-        block.stiffness[:, :, upper[0], upper[1]].reshape(classes, -1),
+        block.stiffness.reshape(*block.stiffness.shape[:2], -1).take(upper, axis=2).reshape(classes, -1),
         block.reference.reshape(classes, -1),
         block.weight,
         block.mass.reshape(classes, -1),

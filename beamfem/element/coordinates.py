@@ -100,7 +100,9 @@ def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.nd
 
 def across(vector: np.ndarray) -> np.ndarray:
     """Return vectors (..., 2) turned by a right angle, counter-clockwise."""
-    return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
+    result = np.empty_like(vector)
+    result[..., 0], result[..., 1] = -vector[..., 1], vector[..., 0]
+    return result
 
 
 def _turned(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -106,6 +106,8 @@ class Model:
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
+        if not self.joints:
+            return
         a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
         gaps = np.linalg.norm(a - b, axis=1).tolist()
         for joint, gap in zip(self.joints, gaps, strict=True):

@@ -14,6 +14,7 @@ from beamfem.model.model import Model
 
 _ROUND_OFF = 1e-13  # of the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
+_NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,17 +28,17 @@ class Connectors:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the unknowns of their own."""
-        return np.concatenate([np.empty(0, dtype=np.int64), *(item.own for item in self.items)])
+        return np.concatenate([_NO_NUMBERS, *(item.own for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def memory(self) -> np.ndarray:
         """Numbers (h,) of what they remember."""
-        return np.concatenate([np.empty(0, dtype=np.int64), *(item.memory for item in self.items)])
+        return np.concatenate([_NO_NUMBERS, *(item.memory for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def start(self) -> np.ndarray:
         """What they remember at the start (h,)."""
-        return np.concatenate([np.empty(0), *(remembered(item.item) for item in self.items)])
+        return np.concatenate([_NOTHING, *(remembered(item.item) for item in self.items)]) if self.items else _NOTHING
 
     def remember(self, motion: Motion, time: float) -> np.ndarray:
         """Return what they remember (h,) once a step to this state is accepted."""

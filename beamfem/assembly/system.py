@@ -18,7 +18,8 @@ from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
-from beamfem.assembly.sheet import make_sheet, storage_order, stored
+from beamfem.assembly.sheet import make_sheet, stored
+from beamfem.assembly.sheet_structure import storage_order
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.assembly.stress_free import stress_free
@@ -101,9 +102,9 @@ class System:
         sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(sheets, self.springs, self.model.size)
 
-    def assembler(self) -> Assembler:
-        """Return the equations with new work space."""
-        return Assembler(self.equations)
+    def assembler(self, lent: bool = False) -> Assembler:
+        """Return the equations with new work space; lent: see `Assembler`."""
+        return Assembler(self.equations, lent=lent)
 
     @cached_property
     def solver_table(self) -> SolverTable:
@@ -278,7 +279,7 @@ class System:
         """
         free, found, first = self.unknowns.free, [], 0
         for numbered in self.blocks:
-            block = stored(numbered, storage_order(numbered))
+            block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
             vectors = block.scale.shape[1] // block.node.shape[1]
             for slot in range(vectors):
                 turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
@@ -308,7 +309,8 @@ class System:
     def extent(self) -> float:
         """Size of the model [m]: its longest beam, or twice the largest distance of a node from their mean."""
         position = np.concatenate([mesh.position for mesh in self.model.meshes])
-        reach = float(np.linalg.norm(position - position.mean(axis=0), axis=1).max())
+        x, y = (position - position.sum(axis=0) / len(position)).T
+        reach = float(np.hypot(x, y).max())
         return max(2.0 * reach, *(beam.curve.length for beam in self.model.beams))
 
     @cached_property

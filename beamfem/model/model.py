@@ -39,6 +39,8 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "joints": (Joint,),
     "connectors": (Contribution,),
 }
+_GRID = tuple(each.name for each in fields(Grid))
+_NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +108,8 @@ class Model:
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
+        if not self.joints:
+            return
         a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
         gaps = np.linalg.norm(a - b, axis=1).tolist()
         for joint, gap in zip(self.joints, gaps, strict=True):
@@ -153,26 +157,32 @@ class Model:
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
-        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
-        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
-        moving = np.concatenate([turning, hinged])
+        turning, moving = self._joined(grids)
         grids = close_gaps(grids, moving)
         for grid in grids:
             require_body(grid)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {kind: number for number, kind in enumerate(self._kinds)}
-        meshes, names = [], [each.name for each in fields(Grid)]
+        meshes = []
         behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
         for grid, carried in zip(grids, nodes, strict=True):
             block = block_of[block_key(grid.beam)]
-            parts = {name: getattr(grid, name) for name in names}
+            parts = {name: getattr(grid, name) for name in _GRID}
             history = _history(grid, behind)
             meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
             filled[block] += grid.elements
             behind += history.size
         return tuple(meshes), size, behind
+
+    def _joined(self, grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
+        """Return pairs (grid, node, grid, node) of nodes (n, 4) that turn together, and of those that move together."""
+        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
+        if not corners and not self.joints:
+            return _NO_PAIRS, _NO_PAIRS
+        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
+        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
+        return turning, np.concatenate([turning, hinged])
 
     def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
         """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
@@ -184,13 +194,9 @@ class Model:
         """Return grid and node (n, 2) of points at which there is a node."""
         if not points:
             return np.empty((0, 2), dtype=np.int64)
-        number = np.array([self._numbers[id(point.beam)] for point in points], dtype=np.int64)
-        fraction = np.array([point.fraction for point in points])
-        last = np.array([grid.nodes - 1 for grid in grids])
-        node = np.where(fraction == 0.0, 0, last[number])
-        for i in np.flatnonzero((fraction > 0.0) & (fraction < 1.0)).tolist():
-            node[i] = grids[number[i]].node_at(points[i].fraction)
-        return np.column_stack([number, node])
+        numbers = [self._numbers[id(point.beam)] for point in points]
+        pairs = [(i, grids[i].node_at(point.fraction)) for i, point in zip(numbers, points, strict=True)]
+        return np.array(pairs, dtype=np.int64)
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
@@ -232,12 +238,12 @@ class Model:
             raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
         return self.meshes[self._numbers[id(point.beam)]]
 
-    @property
+    @cached_property
     def gravity(self) -> tuple[BodyLoad, ...]:
         """Accelerations that act on all mass."""
         return tuple(load for load in self.loads if isinstance(load, BodyLoad))
 
-    @property
+    @cached_property
     def line_loads(self) -> tuple[LineLoad, ...]:
         """Forces along beams."""
         return tuple(load for load in self.loads if isinstance(load, LineLoad))
@@ -247,17 +253,17 @@ class Model:
         """Loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
-    @property
+    @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:
         """Forces and moments at points."""
         return tuple(load for load in self.loads if isinstance(load, PointLoad))
 
-    @property
+    @cached_property
     def point_supports(self) -> tuple[PointSupport, ...]:
         """Supports at points."""
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
 
-    @property
+    @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:
         """Supports along beams."""
         return tuple(support for support in self.supports if isinstance(support, LineSupport))
@@ -303,8 +309,8 @@ def _turns(support: PointSupport) -> bool:
     return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 
-def _corners(grid: Grid) -> np.ndarray:
+def _corners(grid: Grid) -> Sequence[int]:
     """Return the first of the two nodes at each corner."""
     if not grid.beam.curve.corners:
-        return np.empty(0, dtype=np.int64)
-    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]
+        return ()
+    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]].tolist()

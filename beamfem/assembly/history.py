@@ -29,13 +29,14 @@ class History:
     @cached_property
     def numbers(self) -> np.ndarray:
         """Numbers (h,) of all history variables among the coordinates."""
-        return np.concatenate([self.connectors.memory, *(block.history.ravel() for _, block in self.laws)])
+        own = [block.history.ravel() for _, block in self.laws]
+        return np.concatenate([self.connectors.memory, *own]) if own else self.connectors.memory
 
     @cached_property
     def start(self) -> np.ndarray:
         """Their initial values (h,)."""
-        own = (np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws)
-        return np.concatenate([self.connectors.start, *own])
+        own = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
+        return np.concatenate([self.connectors.start, *own]) if own else self.connectors.start
 
     @property
     def holders(self) -> tuple[tuple[str, str], ...]:

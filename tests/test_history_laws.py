@@ -198,6 +198,33 @@ def test_a_section_that_never_yields_is_the_linear_one():
     assert found[1] == pytest.approx(found[0], rel=1e-7, abs=1e-10)
 
 
+def test_the_work_on_a_frame_that_yields_is_stored_or_dissipated():
+    """The trapezoidal rule over the rows is of second order; where it ends depends on no steps."""
+    left, ends = [], []
+    for steps in (20, 100):
+        point, model = frame(replace(YIELDING, limit=15.0))
+        load = bf.PointForce(point, (20.0, -80.0), amplitude=there_and_back, scale=False)
+        model = replace(model, loads=[load])
+        solution = bf.solve_static(model, steps=steps)
+        force = np.array([[20.0, -80.0]]) * np.array([[there_and_back(at)] for at in solution.at])
+        work = 0.5 * np.sum((force[1:] + force[:-1]) * np.diff(solution.displacement(point), axis=0))
+        energy = solution.energy()
+        left.append(abs(work - energy.strain[-1] - energy.dissipated[-1]) / energy.dissipated[-1])
+        ends.append(solution.displacement(point)[-1])
+    assert left[1] < 0.08 * left[0] < 3e-3
+    assert ends[1] == pytest.approx(ends[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("slenderness", [1e4, 1e6])
+def test_slender_arms_yield_as_others_do(slenderness):
+    """Their tangents may have stress resultants as unknowns, and their load steps are not taken for jumps."""
+    stiff = {"axial": 100.0 * slenderness**2, "shear": 40.0 * slenderness**2}
+    beam, model = arm(replace(YIELDING, **stiff), lambda beam: [bf.PointForce(beam.end, (0.0, 80.0))])
+    solution = bf.solve_static(model, steps=4)
+    assert solution.statistics.cuts == 0
+    assert solution.displacement(beam.end)[-1] == pytest.approx([-0.11023408, 0.4279426], rel=1e-6)
+
+
 def test_imposed_strains_do_not_yield():
     """Only what the section is held by does: the plastic curvature is that of the strain from the one imposed."""
     _, model = arm(YIELDING, lambda beam: [bf.Actuation(beam, curvature=5.0)], length=0.1)

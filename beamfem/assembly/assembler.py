@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 
@@ -60,46 +61,53 @@ class Equations:
 class Assembler:
     """Equations with space of their own: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; numbers: in its work space.
+    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; spaces: numbers of the work
+    space of each group, so that groups of one chain that are worked on in turn may have one in common; numbers: in its
+    work space.
     """
 
-    def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
+    def __init__(
+        self, equations: Equations, stresses: Stresses | None = None, spaces: Sequence[int] | None = None
+    ) -> None:
         self.equations, self.size, sheets = equations, equations.size, equations.sheets
         self._imposes = any(sheet.imposed is not None for sheet in sheets)
         self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
         count = len(sheets)
+        which = range(count) if spaces is None else spaces
         whole = Arena(
             {
                 "table": (record.SYSTEM_FIELDS,),
                 "groups": (count,),
                 "values": (count,),
+                "filled": (count, 2),
                 **dict.fromkeys(range(count), (record.BLOCK_FIELDS,)),
             },
             np.int64,
         )
         shapes: dict[object, Sequence[int]] = {"factors": (3,)}
-        for number, sheet in enumerate(sheets):
-            shapes |= {("chunks", number): sheet.chunks, ("space", number): (sheet.space,)}
+        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
+            chunks, space = _memory(sheet, number, own)
+            shapes[chunks] = (max(prod(sheet.chunks), *shapes.get(chunks, (0,))),)
+            shapes[space] = (max(sheet.space, *shapes.get(space, (0,))),)
             if stresses is None:
-                shapes[("stress", number)] = sheet.points
+                shapes["stress", number] = sheet.points
         room = Arena(shapes)
         self.works: list[Work] = []
-        for number, sheet in enumerate(sheets):
-            table, chunks = whole.arrays[number], room.arrays["chunks", number]
+        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
+            table, (chunks, space) = whole.arrays[number], _memory(sheet, number, own)
             table[:] = sheet.table
             if stresses is None:
                 stress, place = room.arrays["stress", number], room.addresses["stress", number]
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
                 place = address_of(stress)
+            rows = room.arrays[chunks][: prod(sheet.chunks)].reshape(sheet.chunks)
             if sheet.constant is not None:
-                chunks[:] = sheet.constant
-            table[record.CHUNKS], table[record.SPACE] = (
-                room.addresses["chunks", number],
-                room.addresses["space", number],
-            )
-            table[record.STRESS] = place
-            self.works.append(Work(sheet, table, whole.addresses[number], chunks, stress))
+                rows[:] = sheet.constant
+            table[record.CHUNKS], table[record.SPACE] = room.addresses[chunks], room.addresses[space]
+            table[record.STRESS], table[record.SHARED] = place, int(spaces is not None)
+            table[record.FILLED] = whole.addresses["filled"] + 16 * own
+            self.works.append(Work(sheet, table, whole.addresses[number], rows, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]
         self.numbers = sum(array.size for array in room.arrays.values())
@@ -251,6 +259,11 @@ class Assembler:
             node_passes.place_nodes(work.address, self.address, 0)
             smallest = min(smallest, model_passes.smallest_jacobian(work.address))
         return smallest
+
+
+def _memory(sheet: Sheet, number: int, space: int) -> tuple[object, object]:
+    """Return the names of the chunks and of the work space of a group; what is constant in chunks is of one group."""
+    return ("chunks", space) if sheet.constant is None else ("constant", number), ("space", space)
 
 
 def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.system import System
+from beamfem.assembly.tiles import tiles_of
 from beamfem.kernels import record
 from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
@@ -16,13 +17,16 @@ _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 class MotionSpace:
     """Space for one motion of a model whose tangent is a band, and the tables that tell compiled code of it.
 
-    arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix.
+    arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
+    loads: those of each group of the assembler among the loads of each block, None where groups are blocks.
     """
 
     def __init__(self, system: System) -> None:
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        nodes = sum(len(block.dof) for block in system.blocks)
-        self.assembler = system.assembler()
+        tiles = tiles_of(system)
+        self.assembler = system.assembler() if tiles is None else tiles.assembler
+        self.loads, self._turning = (None, system.turning) if tiles is None else (tiles.loads, tiles.turning)
+        nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
         room = Arena(
             {
                 "residual": (size,),
@@ -43,7 +47,7 @@ class MotionSpace:
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self.residual, self.rows = places.pop("residual"), places[record.ROWS]
         self.solver = system.solver_table.filled(places)
-        self._turning, self._prescribed = system.turning, system.prescribed_dofs
+        self._prescribed = system.prescribed_dofs
         for field, values in ((record.PAIR_TABLE, self._turning), (record.PRESCRIBED_DOFS, self._prescribed)):
             self.solver[field] = address_of(values)
         self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(self._turning), len(self._prescribed)

@@ -14,9 +14,17 @@ _balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iirr", 
 _hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
 _predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", "d")
 _count, _all = caller("inrrr"), caller("iiii")
-_keep = caller("iir")
+_keep, _place = caller("iir"), caller("iii")
 _two, _jacobian = caller("ii"), caller("i", "d")
 _correct, _judge = inlined(motion_steps.correct), inlined(motion_steps.judge)
+
+
+@inlined
+def _place_again(group, system):
+    """Fill the chunks of a group with nodal vectors, if others have used them since."""
+    b = wholes(group)
+    if b[r.SHARED] != 0:
+        _place(wholes(b[r.ROUTINES])[r.PLACE_NODES], group, system, 0)
 
 
 @routine("iiii")
@@ -26,6 +34,7 @@ def turn_all(system, solver, calls, keep):
     groups, kept, turns = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS])
     first = 0
     for group in range(s[r.GROUPS]):
+        _place_again(groups[group], system)
         if keep != 0:
             _keep(call[r.KEEP_DIRECTIONS], groups[group], first, kept)
         _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
@@ -83,10 +92,11 @@ def _predict_resultants(s, b, call, system):
 
 
 @inlined
-def _is_inside_out(s, call):
+def _is_inside_out(s, call, system):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
+        _place_again(groups[group], system)
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return not smallest > 0.0
 
@@ -184,7 +194,7 @@ def march(system, solver, calls):
                 far = 1 if size > motion_steps.FAR else 0
             own = 1 if renew else 0
             done = _judge(iteration, full, own, far, size, last, first_size, limits[0], rate, at(statistics, 9))
-            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call):
+            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call, system):
                 done = -1
             fresh = done == 2
             if done == 1:

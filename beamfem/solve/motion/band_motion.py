@@ -36,8 +36,11 @@ class BandMotion:
         turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
         """
         saved, first, every, counted, turned_by, saved_turns = saving
+        space = self._space
         body, values, imposing = _sample_loads(self._system, times)
-        space, varying = self._space, len(body) > 1
+        if space.loads is not None:
+            values = tuple(values[0][:, own] for own in space.loads)
+        varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
         places = assembler.load(body, values)
         natural = np.array(assembler.impose(imposing), dtype=np.int64)

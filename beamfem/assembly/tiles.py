@@ -1,0 +1,82 @@
+"""A long chain in tiles: groups of so few elements that what is worked out of their nodes stays in the cache.
+
+Two halves of the chain have no coordinate in common, so that two threads can work on them; one element lies between.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamfem.assembly.assembler import Assembler, Equations
+from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
+from beamfem.assembly.sheet import make_sheet, storage_order
+from beamfem.assembly.system import System
+from beamfem.kernels.block import Block
+from beamfem.kernels.lanes import WIDTH
+
+LONG = 20_000  # elements, from which on what a chain works on does not stay in the cache
+_NODES = 1024  # of a tile: some 200 kB
+_NEAR = 64  # elements about the middle, of which one ends where a line of the cache begins
+
+
+@dataclass(frozen=True, eq=False)
+class Tiles:
+    """The groups of a long chain.
+
+    assembler: its equations, with work space for each half; loads: those of each group among the loads of the chain;
+    turning (np, 3): see `System.turning`, with nodes as they are stored in the groups; halves: how many groups each
+    half has, and the first coordinate of the second one.
+    """
+
+    assembler: Assembler
+    loads: tuple[np.ndarray, ...]
+    turning: np.ndarray
+    halves: tuple[int, int, int]
+
+
+def tiles_of(system: System) -> Tiles | None:
+    """Return the tiles of a model, None if it is no long chain."""
+    if not is_chain(system) or len(system.blocks[0].node) < LONG:
+        return None
+    (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
+    middle = _middle(block)
+    if middle is None:
+        return None
+    size = max(_NODES // (block.node.shape[1] - 1), 1)
+    halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
+    slices = [*halves[0], *halves[1], slice(middle - 1, middle)]
+    sheets, loaded, place, stored = [], [], np.empty(len(block.dof), dtype=np.int64), 0
+    for own in slices:
+        part, (points, which) = block_of(block, own), loads_of(loads, own)
+        sheets.append(make_sheet(part, layout, points))
+        loaded.append(which)
+        order, nodes = sheets[-1].order, len(part.dof)
+        first = int(block.node[own.start, 0])
+        place[first + (np.arange(nodes) if order is None else order)] = stored + np.arange(nodes)
+        stored += nodes
+    spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
+    assembler = Assembler(Equations(sheets, system.springs, system.model.size), spaces=spaces)
+    turning, order = system.turning.copy(), storage_order(block)
+    turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
+    first_dof = block.dof[block.node[middle, 0]]
+    return Tiles(
+        assembler, tuple(loaded), turning, (len(halves[0]), len(halves[1]), int(first_dof[first_dof >= 0].min()))
+    )
+
+
+def _cut(first: int, end: int, size: int) -> list[slice]:
+    return [slice(begin, min(begin + size, end)) for begin in range(first, end, size)]
+
+
+def _middle(block: Block) -> int | None:
+    """Return the element that begins the second half, whose first coordinate begins a line of the cache."""
+    dof = np.where(block.dof < 0, block.dof.max(), block.dof)
+    half = len(block.node) // 2
+    for element in range(half, half + _NEAR):
+        node = block.node[element, 0]
+        first = dof[node].min()
+        # at a corner of the curve two nodes stand at the same place
+        joined = node == block.node[element - 1, -1]
+        if joined and first % WIDTH == 0 and block.dof[:node].max() < first <= dof[node:].min():
+            return element
+    return None

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from beamfem.kernels import march, model_passes, motion_steps, newton, record, rollers
+from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers, two_threads
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
@@ -43,13 +43,13 @@ class SolverTable:
             table[field] = address
         return table
 
-    def routines(self, moving: bool) -> np.ndarray:
-        """Return the addresses of what the driver of statics, or of motions, calls."""
-        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT)
+    def routines(self, moving: bool, in_two: bool = False) -> np.ndarray:
+        """Return the addresses of what the driver of statics, or of motions, calls; in_two: stages are done in parts."""
+        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT, in_two)
 
 
 @cache
-def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
+def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -> np.ndarray:
     """Return the addresses of what the driver of statics, or of motions, calls for a band of this half width."""
     found = {
         record.BALANCE: model_passes.balance,
@@ -59,7 +59,11 @@ def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
         record.ROTATE_IN: rollers.rotate_in,
         record.ROTATE_BACK: rollers.rotate_back,
     }
-    found |= _of_motions(two_sided(half_width, short)) if moving else _of_statics(band(half_width))
+    if moving:
+        found |= _of_motions(two_sided(half_width, short, in_two))
+        found |= _of_halves(two_sided(half_width, short, in_two)) if in_two else {}
+    else:
+        found |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
     for number, routine in found.items():
         table[number] = routine.address
@@ -78,11 +82,30 @@ def _of_motions(own: TwoSided) -> dict[int, Routine]:
     return {
         record.FACTOR_BOTH: own.factor,
         record.SOLVE_BOTH: own.solve,
-        record.PREDICT: motion_steps.predict,
-        record.COMPLETE: motion_steps.complete,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
         record.TURNS_SINCE: motion_steps.turns_since,
         record.TURN_PAIRS: motion_steps.turn_pairs,
         record.COUNT_TURNS: motion_steps.count_turns,
-        record.TURN_ALL: march.turn_all,
+        record.PREDICT: motion_stages.predict,
+        record.ASSEMBLE: motion_stages.assemble,
+        record.FACTORISE: motion_stages.factorise,
+        record.TURN_ALL: motion_stages.turn_all,
+        record.SOLVE: motion_stages.solve,
+        record.CORRECT: motion_stages.correct,
+        record.COMPLETE: motion_stages.complete,
+    }
+
+
+def _of_halves(own: TwoSided) -> dict[int, Routine]:
+    factor, lower, upper = own.parts
+    return {
+        record.SOLVE: motion_stages.solve_in_two,
+        record.IN_TWO: two_threads.in_two,
+        record.FILL_RIGHT: motion_stages.fill_right,
+        record.SOLVE_DOWN: motion_stages.solve_down,
+        record.SOLVE_UP: motion_stages.solve_up,
+        record.TURN_BACK: motion_stages.turn_back,
+        record.FACTOR_PART: factor,
+        record.LOWER_PART: lower,
+        record.UPPER_PART: upper,
     }

@@ -11,6 +11,8 @@ from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
 from beamfem.assembly.sheet import make_sheet, storage_order
 from beamfem.assembly.system import System
+from beamfem.kernels import record
+from beamfem.kernels.band import KNOWN
 from beamfem.kernels.block import Block
 from beamfem.kernels.lanes import WIDTH
 
@@ -24,14 +26,14 @@ class Tiles:
     """The groups of a long chain.
 
     assembler: its equations, with work space for each half; loads: those of each group among the loads of the chain;
-    turning (np, 3): see `System.turning`, with nodes as they are stored in the groups; halves: how many groups each
-    half has, and the first coordinate of the second one.
+    turning (np, 3): see `System.turning`, with nodes as they are stored in the groups; bounds (3, fields): see
+    `kernels.record`, of both halves and of what is between them.
     """
 
     assembler: Assembler
     loads: tuple[np.ndarray, ...]
     turning: np.ndarray
-    halves: tuple[int, int, int]
+    bounds: np.ndarray
 
 
 def tiles_of(system: System) -> Tiles | None:
@@ -40,7 +42,7 @@ def tiles_of(system: System) -> Tiles | None:
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
     middle = _middle(block)
-    if middle is None:
+    if middle is None or layout.half_width not in KNOWN:
         return None
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
@@ -58,10 +60,20 @@ def tiles_of(system: System) -> Tiles | None:
     assembler = Assembler(Equations(sheets, system.springs, system.model.size), spaces=spaces)
     turning, order = system.turning.copy(), storage_order(block)
     turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
-    first_dof = block.dof[block.node[middle, 0]]
-    return Tiles(
-        assembler, tuple(loaded), turning, (len(halves[0]), len(halves[1]), int(first_dof[first_dof >= 0].min()))
-    )
+    return Tiles(assembler, tuple(loaded), turning, _bounds(system, turning, block.dof[block.node[middle, 0]], spaces))
+
+
+def _bounds(system: System, turning: np.ndarray, dof: np.ndarray, spaces: list[int]) -> np.ndarray:
+    """Return the bounds of both halves, the second of which begins with these coordinates, and of what is between."""
+    size, unknown, groups = system.model.size, len(system.free_dofs), len(spaces)
+    coordinate = int(dof[dof >= 0].min())
+    number = int(np.searchsorted(system.free_dofs, coordinate))
+    pair = int(np.searchsorted(turning[:, 0], number))
+    ends = np.array([[0, 0, 0, 0], [spaces.index(1), coordinate, number, pair], [groups - 1, size, unknown, len(turning)]])
+    bounds = np.empty((3, record.BOUND_FIELDS), dtype=np.int64)
+    bounds[:, ::2] = ends
+    bounds[:2, 1::2], bounds[2, 1::2] = ends[1:], (groups, size, unknown, len(turning))
+    return bounds
 
 
 def _cut(first: int, end: int, size: int) -> list[slice]:

@@ -7,6 +7,7 @@ from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march
 from beamfem.kernels.pointers import address_of
+from beamfem.solve.motion.second_thread import routines
 
 Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 
@@ -23,7 +24,7 @@ class BandMotion:
     ) -> None:
         self._system, self._space, self._statistics = system, space, statistics
         h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][:], space.arrays[record.LIMITS][:] = rule, limits
+        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, limits
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
@@ -72,7 +73,8 @@ class BandMotion:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
-        done = int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
+        with routines(self._system, space.in_two) as calls:
+            done = int(march(assembler.address, solver, calls))
         assembler.raise_errors()
         return done
 

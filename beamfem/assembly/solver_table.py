@@ -7,6 +7,7 @@ import numpy as np
 
 from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers, two_threads
 from beamfem.kernels.band import Band, band
+from beamfem.kernels.band_halves import BandHalves, band_halves
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
@@ -60,8 +61,7 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.ROTATE_BACK: rollers.rotate_back,
     }
     if moving:
-        found |= _of_motions(two_sided(half_width, short, in_two))
-        found |= _of_halves(two_sided(half_width, short, in_two)) if in_two else {}
+        found |= _of_motions() | (_of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short)))
     else:
         found |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
@@ -78,10 +78,8 @@ def _of_statics(own: Band) -> dict[int, Routine]:
     }
 
 
-def _of_motions(own: TwoSided) -> dict[int, Routine]:
+def _of_motions() -> dict[int, Routine]:
     return {
-        record.FACTOR_BOTH: own.factor,
-        record.SOLVE_BOTH: own.solve,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
         record.TURNS_SINCE: motion_steps.turns_since,
         record.TURN_PAIRS: motion_steps.turn_pairs,
@@ -90,22 +88,29 @@ def _of_motions(own: TwoSided) -> dict[int, Routine]:
         record.ASSEMBLE: motion_stages.assemble,
         record.FACTORISE: motion_stages.factorise,
         record.TURN_ALL: motion_stages.turn_all,
-        record.SOLVE: motion_stages.solve,
         record.CORRECT: motion_stages.correct,
         record.COMPLETE: motion_stages.complete,
     }
 
 
-def _of_halves(own: TwoSided) -> dict[int, Routine]:
-    factor, lower, upper = own.parts
+def _of_all(own: TwoSided) -> dict[int, Routine]:
     return {
+        record.FACTOR_BOTH: own.factor,
+        record.SOLVE_BOTH: own.solve,
+        record.SOLVE: motion_stages.solve,
+    }
+
+
+def _of_halves(own: BandHalves) -> dict[int, Routine]:
+    return {
+        record.FACTOR_PART: own.factor,
+        record.LOWER_PART: own.lower,
+        record.UPPER_PART: own.upper,
+        record.SOLVE_BOTH: own.solve,
         record.SOLVE: motion_stages.solve_in_two,
         record.IN_TWO: two_threads.in_two,
         record.FILL_RIGHT: motion_stages.fill_right,
         record.SOLVE_DOWN: motion_stages.solve_down,
         record.SOLVE_UP: motion_stages.solve_up,
         record.TURN_BACK: motion_stages.turn_back,
-        record.FACTOR_PART: factor,
-        record.LOWER_PART: lower,
-        record.UPPER_PART: upper,
     }

@@ -17,7 +17,7 @@ from beamfem.kernels.block import Block
 from beamfem.kernels.lanes import WIDTH
 
 LONG = 20_000  # elements, from which on what a chain works on does not stay in the cache
-_NODES = 1024  # of a tile: some 200 kB
+_NODES = 2048  # of a tile: some 400 kB, and half as much again of tables
 _NEAR = 64  # elements about the middle, of which one ends where a line of the cache begins
 
 

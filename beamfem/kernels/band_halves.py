@@ -37,13 +37,14 @@ def _end_rows(n, w):
 @cache
 def band_halves(w: int) -> BandHalves:
     """Return the compiled functions for a half width."""
-    case, width = f"half_width_{w}", 2 * w + 1
+    case, width, entries = f"half_width_{w}", 2 * w + 1, _BLOCK * (2 * w + 1)
     _down = inlined(elimination(w, f"{case}_down", backwards=False))
     _up = inlined(elimination(w, f"{case}_up", backwards=True))
 
     @inlined
-    def _store(way, rows, first, space):
+    def _store(way, rows, first):
         """Store rows in blocks; way -1: first is the last entry of the matrix, and all is counted backwards."""
+        space = room(entries)
         for block in range(rows // _BLOCK):
             own = at(first, way * block * _BLOCK * width)
             for i in range(_BLOCK * width):
@@ -123,12 +124,12 @@ def band_halves(w: int) -> BandHalves:
             for i in range(m, m + w):
                 space[i] = abs(ab[i * width + w])
             worst = _down(end, m, w, 0, ab, ab, space)
-            _store(1, m, ab, space)
+            _store(1, m, ab)
         elif part == 1:
             for i in range(m + w, end):
                 space[i] = abs(ab[i * width + w])
             worst = _up(end, m, w, 0, at(ab, n * width - 1), ab, at(space, end))
-            _store(-1, m, at(ab, n * width - 1), at(space, end))
+            _store(-1, m, at(ab, n * width - 1))
         else:
             for k in range(m, end):
                 pivot, reached = at(ab, k * width + w - k), min(end, k + w + 1)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def is_chain(system: "System") -> bool:
-    """Return whether a model is one beam, whose coordinates follow one another along it and are solved for as a band."""
+    """Return whether a model is one beam, whose coordinates follow one another and are solved for as a band."""
     model = system.model
     single = len(model.beams) == 1 and not model.joints and not system.inclined
     return single and system.unknowns.pattern is None

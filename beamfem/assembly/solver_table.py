@@ -61,7 +61,9 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.ROTATE_BACK: rollers.rotate_back,
     }
     if moving:
-        found |= _of_motions() | (_of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short)))
+        found |= _of_motions() | (
+            _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
+        )
     else:
         found |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)

@@ -7,6 +7,8 @@ from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.motion_steps import FAST
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
+_STRIP = 256  # vectors that are turned while they are in the cache near the core
+
 _factor, _solve, _roll, _in_two = caller("iirr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
 _turn_pairs, _keep, _turns, _place = caller("idnrr"), caller("iir"), caller("iirr"), caller("iii")
 _factor_part, _solve_part = caller("iiirr", "d"), caller("iiirr")
@@ -137,11 +139,17 @@ def solve(part, system, solver, calls):
 
 @routine("iiii", "d")
 def fill_right(part, system, solver, calls):
-    """Fill the right-hand side, turned back with the sections."""
-    s, b = wholes(system), wholes(solver)
-    own = bounds_of(b, part)
-    _fill(s, b, own[r.FIRST_UNKNOWN], own[r.END_UNKNOWN])
-    _turn_vectors(b, wholes(calls), own, -1.0)
+    """Fill the right-hand side, turned back with the sections; x and y of vectors follow one another along a chain."""
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    own, pairs, turns, right = bounds_of(b, part), wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), reals(b[r.RIGHT])
+    filled = own[r.FIRST_UNKNOWN]
+    for pair in range(own[r.FIRST_PAIR], own[r.END_PAIR], _STRIP):
+        count = min(_STRIP, own[r.END_PAIR] - pair)
+        end = pairs[3 * (pair + count - 1) + 1] + 1
+        _fill(s, b, filled, end)
+        _turn_pairs(call[r.TURN_PAIRS], count, -1.0, at(pairs, 3 * pair), turns, right)
+        filled = end
+    _fill(s, b, filled, own[r.END_UNKNOWN])
     return 0.0
 
 

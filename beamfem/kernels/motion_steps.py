@@ -135,9 +135,7 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
     first_free: of the unknown coordinates `free`, where they follow one another, else -1;
     change (padded(n),): takes the corrections there, zero elsewhere.
     """
-    return correct_part(
-        0, n, 0, unknown, n, first_free, state, right, free, inverse_scale, coefficients, change
-    )
+    return correct_part(0, n, 0, unknown, n, first_free, state, right, free, inverse_scale, coefficients, change)
 
 
 @routine("iiiiddddrr", "i")
@@ -243,9 +241,7 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
     inverse_scale (padded(n),): zero beyond n; extrapolation (2,): the order that would have been best, one more than
     the last one at most (see `predict`), and how many differences are known.
     """
-    change = complete_part(
-        0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation
-    )
+    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation)
     best_order(1, n, state, before, differences, inverse_scale, rule, extrapolation)
     return change
 

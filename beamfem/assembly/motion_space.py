@@ -21,14 +21,16 @@ class MotionSpace:
     """Space for one motion of a model whose tangent is a band, and the tables that tell compiled code of it.
 
     arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
-    in_two: whether stages of a step are done for two halves; loads: those of each group of the assembler among the loads of each block, None where groups are blocks.
+    in_two: whether stages of a step are done for two halves; loads: those of each group of the assembler among the
+    loads of the model's block, None where groups are blocks.
     """
 
     def __init__(self, system: System) -> None:
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
         tiles = tiles_of(system)
         self.assembler = system.assembler() if tiles is None else tiles.assembler
-        self.loads, self._turning = (None, system.turning) if tiles is None else (tiles.loads, tiles.turning)
+        self.loads = None if tiles is None else tiles.loads
+        self._turning = system.turning if tiles is None else tiles.turning
         self.in_two = tiles is not None
         self._bounds = _whole(system, self.assembler) if tiles is None else tiles.bounds
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)

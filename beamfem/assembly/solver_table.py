@@ -45,7 +45,7 @@ class SolverTable:
         return table
 
     def routines(self, moving: bool, in_two: bool = False) -> np.ndarray:
-        """Return the addresses of what the driver of statics, or of motions, calls; in_two: stages are done in parts."""
+        """Return the addresses of what the driver of statics, or of motions, calls; in_two: in parts of a chain."""
         return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT, in_two)
 
 
@@ -61,9 +61,8 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.ROTATE_BACK: rollers.rotate_back,
     }
     if moving:
-        found |= _of_motions() | (
-            _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
-        )
+        found |= _of_motions()
+        found |= _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
     else:
         found |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)

@@ -69,9 +69,8 @@ def _bounds(system: System, turning: np.ndarray, dof: np.ndarray, spaces: list[i
     coordinate = int(dof[dof >= 0].min())
     number = int(np.searchsorted(system.free_dofs, coordinate))
     pair = int(np.searchsorted(turning[:, 0], number))
-    ends = np.array(
-        [[0, 0, 0, 0], [spaces.index(1), coordinate, number, pair], [groups - 1, size, unknown, len(turning)]]
-    )
+    ends = np.zeros((3, 4), dtype=np.int64)
+    ends[1:] = (spaces.index(1), coordinate, number, pair), (groups - 1, size, unknown, len(turning))
     bounds = np.empty((3, record.BOUND_FIELDS), dtype=np.int64)
     bounds[:, ::2] = ends
     bounds[:2, 1::2], bounds[2, 1::2] = ends[1:], (groups, size, unknown, len(turning))

@@ -1,6 +1,6 @@
 """One evaluation of all equations of a model: a state and weights in, residual and tangent out."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from math import prod
 
@@ -73,7 +73,8 @@ class Assembler:
         self._imposes = any(sheet.imposed is not None for sheet in sheets)
         self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
         count = len(sheets)
-        which = range(count) if spaces is None else spaces
+        which = [_space(sheet, number, spaces) for number, sheet in enumerate(sheets)]
+        first = {own: number for number, own in reversed(list(enumerate(which)))}
         whole = Arena(
             {
                 "table": (record.SYSTEM_FIELDS,),
@@ -86,27 +87,27 @@ class Assembler:
         )
         shapes: dict[object, Sequence[int]] = {"factors": (3,)}
         for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
-            chunks, space = _memory(sheet, number, own)
-            shapes[chunks] = (max(prod(sheet.chunks), *shapes.get(chunks, (0,))),)
-            shapes[space] = (max(sheet.space, *shapes.get(space, (0,))),)
+            shapes["chunks", own] = (max(prod(sheet.chunks), *shapes.get(("chunks", own), (0,))),)
+            shapes["space", own] = (max(sheet.space, *shapes.get(("space", own), (0,))),)
             if stresses is None:
                 shapes["stress", number] = sheet.points
         room = Arena(shapes)
         self.works: list[Work] = []
         for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
-            table, (chunks, space) = whole.arrays[number], _memory(sheet, number, own)
+            table = whole.arrays[number]
             table[:] = sheet.table
             if stresses is None:
                 stress, place = room.arrays["stress", number], room.addresses["stress", number]
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
                 place = address_of(stress)
-            rows = room.arrays[chunks][: prod(sheet.chunks)].reshape(sheet.chunks)
+            rows = room.arrays["chunks", own][: prod(sheet.chunks)].reshape(sheet.chunks)
             if sheet.constant is not None:
                 rows[:] = sheet.constant
-            table[record.CHUNKS], table[record.SPACE] = room.addresses[chunks], room.addresses[space]
+            table[record.CHUNKS] = room.addresses["chunks", own]
+            table[record.SPACE] = room.addresses["space", own]
             table[record.STRESS], table[record.SHARED] = place, int(spaces is not None)
-            table[record.FILLED] = whole.addresses["filled"] + 16 * own
+            table[record.FILLED] = whole.addresses["filled"] + 16 * first[own]
             self.works.append(Work(sheet, table, whole.addresses[number], rows, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]
@@ -261,9 +262,11 @@ class Assembler:
         return smallest
 
 
-def _memory(sheet: Sheet, number: int, space: int) -> tuple[object, object]:
-    """Return the names of the chunks and of the work space of a group; what is constant in chunks is of one group."""
-    return ("chunks", space) if sheet.constant is None else ("constant", number), ("space", space)
+def _space(sheet: Sheet, number: int, spaces: Sequence[int] | None) -> Hashable:
+    """Return the name of the work space of a group: shared if nothing in it is constant and its rows are alike."""
+    if spaces is None or sheet.constant is not None:
+        return number
+    return spaces[number], int(sheet.table[record.CURVATURE]), int(sheet.table[record.TABLE_ROWS])
 
 
 def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:

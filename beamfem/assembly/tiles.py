@@ -14,11 +14,9 @@ from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
 from beamfem.kernels.block import Block
-from beamfem.kernels.lanes import WIDTH
 
 LONG = 20_000  # elements, from which on what a chain works on does not stay in the cache
 _NODES = 2048  # of a tile: some 400 kB, and half as much again of tables
-_NEAR = 64  # elements about the middle, of which one ends where a line of the cache begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,14 +80,14 @@ def _cut(first: int, end: int, size: int) -> list[slice]:
 
 
 def _middle(block: Block) -> int | None:
-    """Return the element that begins the second half, whose first coordinate begins a line of the cache."""
+    """Return the element that begins the second half, None if halves have coordinates in common."""
     dof = np.where(block.dof < 0, block.dof.max(), block.dof)
     half = len(block.node) // 2
-    for element in range(half, half + _NEAR):
+    for element in range(half, len(block.node)):
         node = block.node[element, 0]
         first = dof[node].min()
         # at a corner of the curve two nodes stand at the same place
         joined = node == block.node[element - 1, -1]
-        if joined and first % WIDTH == 0 and block.dof[:node].max() < first <= dof[node:].min():
-            return element
+        if joined:
+            return element if block.dof[:node].max() < first <= dof[node:].min() else None
     return None

@@ -41,11 +41,12 @@ def _larger_of(a, b):
 
 @inlined
 def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Do what `predict` does for coordinates from the first to the end, one of which is n or begins lanes."""
+    """Do what `predict` does for coordinates from the first to the end."""
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
-    length, lanes, now, then, whole = padded(n), as_rows(differences), as_rows(state), as_rows(before), end // WIDTH
-    for i in range(first, whole * WIDTH, WIDTH):
+    length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
+    whole = first + (end - first) // WIDTH * WIDTH
+    for i in range(first, whole, WIDTH):
         p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
         then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
         ahead = zeros()
@@ -57,7 +58,7 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         now[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
         now[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
         now[2 * n + i] = a + ahead
-    for i in range(max(first, whole * WIDTH), end):
+    for i in range(whole, end):
         last_p, last_v, last_a, last_mean = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
         for k in range(4):
             before[k * n + i] = state[k * n + i]
@@ -179,7 +180,8 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
     top, length, rest = min(int(known[1]), int(known[0]) + 1), padded(n), 0.0
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
-    errors, largest_change, whole = MOST * length + part * (MOST + 1) * WIDTH, zeros(), end // WIDTH * WIDTH
+    errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
+    whole = first + (end - first) // WIDTH * WIDTH
     for k in range(MOST + 1):
         lanes[errors + k * WIDTH] = 0.0
     for i in range(first, whole, WIDTH):
@@ -194,7 +196,7 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
                 kept = lanes[k * length + i]
                 lanes[k * length + i] = change
                 change -= kept
-    for i in range(max(first, whole), end):
+    for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
         rest = _larger_of(rest, abs(difference * inverse_scale[i]))

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from ctypes import CDLL, c_void_p, cast
 from functools import cache
 from threading import Thread
@@ -34,8 +34,9 @@ def routines(system: System, in_two: bool) -> Iterator[np.ndarray]:
     thread = Thread(target=serve, args=(job,), name="second half", daemon=True)
     try:
         if cut_chain.usable_cores() > 1 and all(block.law is None for block in system.blocks):
-            thread.start()
-            job[record.JOB_SERVED] = 1
+            with suppress(RuntimeError):  # the system may have no thread left
+                thread.start()
+                job[record.JOB_SERVED] = 1
         yield calls
     finally:
         job[record.JOB_STATE] = CLOSED

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from beamfem.kernels.band import KNOWN, band
+from beamfem.kernels.band_halves import band_halves
 from beamfem.kernels.two_sided import two_sided
 
 
@@ -59,3 +60,30 @@ def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
         assert two_sided(w, False).factor(n, w, rows, np.empty(n)) > 0.1
         two_sided(w, False).solve(n, w, rows, x)
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)
+
+
+@pytest.mark.parametrize("w", KNOWN)
+def test_halves_of_a_long_band_are_solved_in_parts_or_at_once(w, rng):
+    """With a few rows, and with so many that factors are stored in blocks."""
+    own = band_halves(w)
+    for n in (2 * w, 2 * w + 1, 4 * w + 3, 1100, 1301):
+        whole, rows = matrix(n, w, rng)
+        space, right = np.empty(n), rng.standard_normal(n)
+        assert min(own.factor(part, n, w, rows, space) for part in range(3)) > 0.2
+        parts, once = right.copy(), right.copy()
+        for part in range(3):
+            own.lower(part, n, w, rows, parts)
+        for part in range(3):
+            own.upper(part, n, w, rows, parts)
+        own.solve(n, w, rows, once)
+        np.testing.assert_allclose(parts, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-14)
+        np.testing.assert_allclose(once, parts, rtol=1e-13, atol=1e-15)
+
+
+@pytest.mark.parametrize("w", KNOWN)
+def test_a_pivot_of_halves_that_is_zero_is_seen_wherever_it_is(w, rng):
+    n = 5 * w + 4
+    for where in (2, n // 2, n - 3):
+        _, rows = matrix(n, w, rng)
+        rows[where] = 0.0
+        assert min(band_halves(w).factor(part, n, w, rows, np.empty(n)) for part in range(3)) == 0.0

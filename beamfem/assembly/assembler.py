@@ -1,7 +1,8 @@
 """One evaluation of all equations of a model: a state and weights in, residual and tangent out."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 
@@ -62,45 +63,61 @@ class Assembler:
     """Equations with space of their own: one for each solve and thread.
 
     stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in` gives
-    it memory to work in before each solve; numbers: in its work space; scratch: of them in that memory.
+    it memory to work in before each solve; spaces: numbers of the work space of each group, so that groups of one chain
+    that are worked on in turn may have one in common; numbers: in its work space; scratch: of them in that memory.
     """
 
-    def __init__(self, equations: Equations, stresses: Stresses | None = None, lent: bool = False) -> None:
+    def __init__(
+        self,
+        equations: Equations,
+        stresses: Stresses | None = None,
+        lent: bool = False,
+        spaces: Sequence[int] | None = None,
+    ) -> None:
         self.equations, self.size, sheets = equations, equations.size, equations.sheets
         self._imposes = any(sheet.imposed is not None for sheet in sheets)
         self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
         count = len(sheets)
+        which = [_space(sheet, number, spaces) for number, sheet in enumerate(sheets)]
+        first = {own: number for number, own in reversed(list(enumerate(which)))}
         whole = Arena(
             {
                 "table": (record.SYSTEM_FIELDS,),
                 "groups": (count,),
                 "values": (count,),
+                "filled": (count, 2),
                 **dict.fromkeys(range(count), (record.BLOCK_FIELDS,)),
             },
             np.int64,
         )
         shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
-        for number, sheet in enumerate(sheets):
-            shapes["chunks", number] = sheet.chunks
+        self._spaces: dict[object, int] = {}
+        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
+            shapes["chunks", own] = (max(prod(sheet.chunks), *shapes.get(("chunks", own), (0,))),)
+            self._spaces[own] = max(sheet.space, self._spaces.get(own, 0))
             if stresses is None:
-                shapes[("stress", number)] = sheet.points
+                shapes["stress", number] = sheet.points
         room = Arena(shapes)
         self.works: list[Work] = []
-        for number, sheet in enumerate(sheets):
-            table, chunks = whole.arrays[number], room.arrays["chunks", number]
+        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
+            table = whole.arrays[number]
             table[:] = sheet.table
             if stresses is None:
                 stress, place = room.arrays["stress", number], room.addresses["stress", number]
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
                 place = address_of(stress)
+            rows = room.arrays["chunks", own][: prod(sheet.chunks)].reshape(sheet.chunks)
             if sheet.constant is not None:
-                chunks[:] = sheet.constant
-            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", number], place
-            self.works.append(Work(sheet, table, whole.addresses[number], chunks, stress))
+                rows[:] = sheet.constant
+            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", own], place
+            table[record.SHARED] = int(spaces is not None)
+            table[record.FILLED] = whole.addresses["filled"] + 16 * first[own]
+            self.works.append(Work(sheet, table, whole.addresses[number], rows, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]
-        self.scratch = WIDTH * count + sum(sheet.space for sheet in sheets)
+        self._which, self._filled = which, whole.arrays["filled"]
+        self.scratch = sum(WIDTH + size for size in self._spaces.values())
         self.numbers = self.scratch + sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self._natural: tuple[np.ndarray, ...] = ()
@@ -117,11 +134,14 @@ class Assembler:
 
     def work_in(self, memory: np.ndarray) -> None:
         """Take memory (scratch,) or more for what passes work on; what it holds means nothing from call to call."""
-        self._scratch, place = memory, address_of(memory)
-        for work in self.works:
+        self._scratch, place, places = memory, address_of(memory), {}
+        for own, size in self._spaces.items():
             place += -place % (8 * WIDTH)  # lanes do not lie across two lines of the cache
-            work.table[record.SPACE], work.table[record.FILLED] = place, 0
-            place += 8 * work.sheet.space
+            places[own] = place
+            place += 8 * size
+        for work, own in zip(self.works, self._which, strict=True):
+            work.table[record.SPACE] = places[own]
+        self._filled[:] = 0
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:
@@ -260,6 +280,13 @@ class Assembler:
             node_passes.place_nodes(work.address, self.address, 0)
             smallest = min(smallest, model_passes.smallest_jacobian(work.address))
         return smallest
+
+
+def _space(sheet: Sheet, number: int, spaces: Sequence[int] | None) -> Hashable:
+    """Return the name of the work space of a group: shared if nothing in it is constant and its rows are alike."""
+    if spaces is None or sheet.constant is not None:
+        return number
+    return spaces[number], int(sheet.table[record.CURVATURE]), int(sheet.table[record.TABLE_ROWS])
 
 
 def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:

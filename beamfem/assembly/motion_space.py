@@ -3,8 +3,12 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import numpy as np
+
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.system import System
+from beamfem.assembly.tiles import tiles_of
 from beamfem.kernels import record
 from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
@@ -16,13 +20,20 @@ _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 class MotionSpace:
     """Space for one motion of a model whose tangent is a band, and the tables that tell compiled code of it.
 
-    arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix.
+    arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
+    in_two: whether stages of a step are done for two halves; loads: those of each group of the assembler among the
+    loads of the model's block, None where groups are blocks.
     """
 
     def __init__(self, system: System) -> None:
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        nodes = sum(len(block.dof) for block in system.blocks)
-        self.assembler = system.assembler()
+        tiles = tiles_of(system)
+        self.assembler = system.assembler() if tiles is None else tiles.assembler
+        self.loads = None if tiles is None else tiles.loads
+        self._turning = system.turning if tiles is None else tiles.turning
+        self.in_two = tiles is not None
+        self._bounds = _whole(system, self.assembler) if tiles is None else tiles.bounds
+        nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
         room = Arena(
             {
                 "residual": (size,),
@@ -31,11 +42,11 @@ class MotionSpace:
                 record.STEP: (max(size, unknown) + 1,),
                 record.CHANGE: (padded(size),),
                 record.BEFORE: (4, size),
-                record.DIFFERENCES: (difference_rows(size),),
+                record.DIFFERENCES: (difference_rows(size, len(self._bounds)),),
                 record.INVERSE_SCALE: (padded(size),),
                 record.KEPT: (nodes, 2),
                 record.TURNS: (nodes, 2),
-                record.RULE: (5,),
+                record.RULE: (6,),
                 record.LIMITS: (2,),
             }
         )
@@ -43,10 +54,23 @@ class MotionSpace:
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self.residual, self.rows = places.pop("residual"), places[record.ROWS]
         self.solver = system.solver_table.filled(places)
-        self._turning, self._prescribed = system.turning, system.prescribed_dofs
-        for field, values in ((record.PAIR_TABLE, self._turning), (record.PRESCRIBED_DOFS, self._prescribed)):
+        self._prescribed = system.prescribed_dofs
+        for field, values in (
+            (record.PAIR_TABLE, self._turning),
+            (record.PRESCRIBED_DOFS, self._prescribed),
+            (record.BOUNDS, self._bounds),
+        ):
             self.solver[field] = address_of(values)
+        self.solver[record.PARTS] = len(self._bounds)
         self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(self._turning), len(self._prescribed)
+
+
+def _whole(system: System, assembler: Assembler) -> np.ndarray:
+    """Return the bounds (1, fields) of all there is."""
+    counts = len(assembler.works), system.model.size, len(system.free_dofs), len(system.turning)
+    bounds = np.zeros((1, record.BOUND_FIELDS), dtype=np.int64)
+    bounds[0, 1::2] = counts
+    return bounds
 
 
 @contextmanager
@@ -54,10 +78,10 @@ def motion_space(system: System) -> Iterator[MotionSpace]:
     """Lend space that no other motion works in, with factors, differences and turns that are zero."""
     try:
         space = system.spare_motions.pop()
+        for field in _FROM_ZERO:
+            space.arrays[field][:] = 0.0
     except IndexError:
         space = MotionSpace(system)
-    for field in _FROM_ZERO:
-        space.arrays[field][:] = 0.0
     yield space
     if space.arrays[record.ROWS].size <= _KEPT:
         system.spare_motions.append(space)

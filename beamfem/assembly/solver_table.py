@@ -5,8 +5,9 @@ from functools import cache
 
 import numpy as np
 
-from beamfem.kernels import march, model_passes, motion_steps, newton, record, rollers
+from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers, two_threads
 from beamfem.kernels.band import Band, band
+from beamfem.kernels.band_halves import BandHalves, band_halves
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
@@ -43,13 +44,13 @@ class SolverTable:
             table[field] = address
         return table
 
-    def routines(self, moving: bool) -> np.ndarray:
-        """Return the addresses of what the driver of statics, or of motions, calls."""
-        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT)
+    def routines(self, moving: bool, in_two: bool = False) -> np.ndarray:
+        """Return the addresses of what the driver of statics, or of motions, calls; in_two: in parts of a chain."""
+        return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT, in_two)
 
 
 @cache
-def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
+def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -> np.ndarray:
     """Return the addresses of what the driver of statics, or of motions, calls for a band of this half width."""
     found = {
         record.BALANCE: model_passes.balance,
@@ -59,7 +60,11 @@ def _driver_routines(half_width: int, moving: bool, short: bool) -> np.ndarray:
         record.ROTATE_IN: rollers.rotate_in,
         record.ROTATE_BACK: rollers.rotate_back,
     }
-    found |= _of_motions(two_sided(half_width, short)) if moving else _of_statics(band(half_width))
+    if moving:
+        found |= _of_motions()
+        found |= _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
+    else:
+        found |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
     for number, routine in found.items():
         table[number] = routine.address
@@ -74,15 +79,39 @@ def _of_statics(own: Band) -> dict[int, Routine]:
     }
 
 
-def _of_motions(own: TwoSided) -> dict[int, Routine]:
+def _of_motions() -> dict[int, Routine]:
     return {
-        record.FACTOR_BOTH: own.factor,
-        record.SOLVE_BOTH: own.solve,
-        record.PREDICT: motion_steps.predict,
-        record.COMPLETE: motion_steps.complete,
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
         record.TURNS_SINCE: motion_steps.turns_since,
         record.TURN_PAIRS: motion_steps.turn_pairs,
         record.COUNT_TURNS: motion_steps.count_turns,
-        record.TURN_ALL: march.turn_all,
+        record.PREDICT: motion_stages.predict,
+        record.ASSEMBLE: motion_stages.assemble,
+        record.FACTORISE: motion_stages.factorise,
+        record.TURN_ALL: motion_stages.turn_all,
+        record.CORRECT: motion_stages.correct,
+        record.COMPLETE: motion_stages.complete,
+    }
+
+
+def _of_all(own: TwoSided) -> dict[int, Routine]:
+    return {
+        record.FACTOR_BOTH: own.factor,
+        record.SOLVE_BOTH: own.solve,
+        record.SOLVE: motion_stages.solve,
+    }
+
+
+def _of_halves(own: BandHalves) -> dict[int, Routine]:
+    return {
+        record.FACTOR_PART: own.factor,
+        record.LOWER_PART: own.lower,
+        record.UPPER_PART: own.upper,
+        record.SOLVE_BOTH: own.solve,
+        record.SOLVE: motion_stages.solve_in_two,
+        record.IN_TWO: two_threads.in_two,
+        record.FILL_RIGHT: motion_stages.fill_right,
+        record.SOLVE_DOWN: motion_stages.solve_down,
+        record.SOLVE_UP: motion_stages.solve_up,
+        record.TURN_BACK: motion_stages.turn_back,
     }

@@ -61,10 +61,11 @@ def _fill_tables(b, first, count, part):
     for i in range(1, count):
         if own[i] != own[0]:
             uniform = False
-    filled = own[0] if uniform else -1 - first
-    if b[r.FILLED_WITH] == filled and b[r.FILLED] >= count:
+    # a class, or elements: groups with one work space have their classes in common
+    filled, known = own[0] if uniform else -1 - b[r.CLASS] - 8 * first, wholes(b[r.FILLED])
+    if known[0] == filled and known[1] >= count:
         return
-    b[r.FILLED_WITH], b[r.FILLED] = filled, count
+    known[0], known[1] = filled, count
     if uniform:
         table = at(reals(b[r.TABLES]), own[0] * rows)
         lanes = as_rows(t)

@@ -3,68 +3,24 @@
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows
+from beamfem.kernels.motion_stages import place_again
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
-_balance, _turns, _factor, _solve = caller("i"), caller("iirr"), caller("iirr", "d"), caller("iirr")
-_hold, _roll, _turn_pairs = caller("iiirnr"), caller("inrr"), caller("idnrr")
-_predict, _complete = caller("iidrrrnrr"), caller("iirrrrnrr", "d")
-_count, _all = caller("inrrr"), caller("iiii")
-_keep = caller("iir")
-_two, _jacobian = caller("ii"), caller("i", "d")
-_correct, _judge = inlined(motion_steps.correct), inlined(motion_steps.judge)
-
-
-@routine("iiii")
-def turn_all(system, solver, calls, keep):
-    """Keep the directions of all sections with a new tangent, and fill how far they have turned since the last one."""
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    groups, kept, turns = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS])
-    first = 0
-    for group in range(s[r.GROUPS]):
-        if keep != 0:
-            _keep(call[r.KEEP_DIRECTIONS], groups[group], first, kept)
-        _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
-        first += wholes(groups[group])[r.NODES]
+_hold, _two, _jacobian, _count = caller("iiirnr"), caller("ii"), caller("i", "d"), caller("inrrr")
+_stage, _in_two = caller("iiii", "d"), caller("iiii", "d")
+_judge = inlined(motion_steps.judge)
 
 
 @inlined
-def _solve_turned(s, b, call):
-    """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
-    unknown, half, rollers, residual, right = (
-        b[r.UNKNOWN],
-        b[r.HALF],
-        b[r.ROLLERS],
-        reals(s[r.RESIDUAL]),
-        reals(b[r.RIGHT]),
-    )
-    free, first_of, normal, rows = (
-        wholes(b[r.FREE_DOFS]),
-        wholes(b[r.ROLLER_FIRST]),
-        reals(b[r.ROLLER_NORMAL]),
-        reals(b[r.ROWS]),
-    )
-    if b[r.FIRST_FREE] >= 0:
-        lanes, given = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
-        whole = unknown // WIDTH * WIDTH
-        for i in range(0, whole, WIDTH):
-            lanes[i] = -given[i]
-        for i in range(whole, unknown):
-            right[i] = -residual[b[r.FIRST_FREE] + i]
-    else:
-        for i in range(unknown):
-            right[i] = -residual[free[i]]
-    if rollers > 0:
-        _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], -1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
-    _solve(call[r.SOLVE_BOTH], unknown, half, rows, right)
-    _turn_pairs(call[r.TURN_PAIRS], b[r.PAIRS], 1.0, wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), right)
-    if rollers > 0:
-        _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
+def _run(stage, system, solver, calls, b, call):
+    """Do a stage for the whole model; return the largest of its results."""
+    if b[r.PARTS] == 1:
+        return _stage(stage, 0, system, solver, calls)
+    return _in_two(call[r.IN_TWO], stage, system, solver, calls)
 
 
 @inlined
@@ -83,10 +39,11 @@ def _predict_resultants(s, b, call, system):
 
 
 @inlined
-def _is_inside_out(s, call):
+def _is_inside_out(s, call, system):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
+        place_again(groups[group], system)
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return not smallest > 0.0
 
@@ -95,7 +52,8 @@ def _is_inside_out(s, call):
 def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.
 
-    `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta.
+    `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta,
+    and the order of this step's extrapolation.
     `LIMITS`: tolerance of the correction relative to the scale, largest number of iterations. `ROWS`: factors of the
     last tangent. `STATISTICS` (10,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
     convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation,
@@ -110,18 +68,7 @@ def march(system, solver, calls):
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, fixed = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.PRESCRIBED]
-    free, prescribed_dofs, rows, right = (
-        wholes(b[r.FREE_DOFS]),
-        wholes(b[r.PRESCRIBED_DOFS]),
-        reals(b[r.ROWS]),
-        reals(b[r.RIGHT]),
-    )
-    state, before, differences, scale = (
-        reals(b[r.STATE]),
-        reals(b[r.BEFORE]),
-        reals(b[r.DIFFERENCES]),
-        reals(b[r.INVERSE_SCALE]),
-    )
+    rows, state, before = reals(b[r.ROWS]), reals(b[r.STATE]), reals(b[r.BEFORE])
     rule, limits, statistics, factors, space = (
         reals(b[r.RULE]),
         reals(b[r.LIMITS]),
@@ -136,8 +83,7 @@ def march(system, solver, calls):
         wholes(b[r.LOAD_VALUES]),
         wholes(b[r.NATURALS]),
     )
-    corrections, saved, every, turned_by, saved_turns = (
-        reals(b[r.CHANGE]),
+    saved, every, turned_by, saved_turns = (
         reals(b[r.SAVED]),
         b[r.EVERY],
         reals(b[r.TURNED_BY]),
@@ -152,10 +98,9 @@ def march(system, solver, calls):
                 record = wholes(groups[group])
                 strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
                 record[r.NATURAL] = naturals[group] + 8 * step * strains
-        prescribed = at(reals(b[r.PRESCRIBED_VALUES]), 3 * fixed * step)
-        _predict(
-            call[r.PREDICT], n, fixed, statistics[6], state, before, differences, prescribed_dofs, prescribed, rule
-        )
+        b[r.PRESCRIBED_NOW] = b[r.PRESCRIBED_VALUES] + 24 * fixed * step
+        rule[5] = statistics[6]
+        _run(call[r.PREDICT], system, solver, calls, b, call)
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(space, n)
@@ -163,19 +108,19 @@ def march(system, solver, calls):
         while iteration < limits[1]:
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
-            _balance(call[r.BALANCE], system)
+            _run(call[r.ASSEMBLE], system, solver, calls, b, call)
             if renew:
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
-                statistics[3] = min(statistics[3], _factor(call[r.FACTOR_BOTH], unknown, half, rows, space))
+                statistics[3] = min(statistics[3], -_run(call[r.FACTORISE], system, solver, calls, b, call))
                 statistics[5] += 1.0
             if iteration == 0 or renew:
-                _all(call[r.TURN_ALL], system, solver, calls, 1 if renew else 0)
-            _solve_turned(s, b, call)
+                _run(call[r.TURN_ALL], system, solver, calls, b, call)
+            _stage(call[r.SOLVE], 0, system, solver, calls)
             if full != 0:
                 _predict_resultants(s, b, call, system)
-            last, size = size, _correct(n, unknown, b[r.FIRST_FREE], state, right, free, scale, factors, corrections)
+            last, size = size, _run(call[r.CORRECT], system, solver, calls, b, call)
             iteration += 1
             statistics[0] += 1.0
             statistics[2] = size
@@ -184,7 +129,7 @@ def march(system, solver, calls):
                 far = 1 if size > motion_steps.FAR else 0
             own = 1 if renew else 0
             done = _judge(iteration, full, own, far, size, last, first_size, limits[0], rate, at(statistics, 9))
-            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call):
+            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call, system):
                 done = -1
             fresh = done == 2
             if done == 1:
@@ -202,8 +147,8 @@ def march(system, solver, calls):
                 for i in range(4 * n):
                     state[i] = before[i]
                 stays = statistics[6] < 0.0 or statistics[7] == 0.0  # of the first step nothing is known
-                low = -1.0 if stays == (full == 0) else 0.0
-                _predict(call[r.PREDICT], n, fixed, low, state, before, differences, prescribed_dofs, prescribed, rule)
+                rule[5] = -1.0 if stays == (full == 0) else 0.0
+                _run(call[r.PREDICT], system, solver, calls, b, call)
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
@@ -211,9 +156,7 @@ def march(system, solver, calls):
             for i in range(4 * n):
                 state[i] = before[i]
             return step
-        order = at(statistics, 6)
-        change = _complete(call[r.COMPLETE], n, fixed, state, before, differences, scale, prescribed_dofs, rule, order)
-        statistics[8] = change / factors[2]
+        statistics[8] = _run(call[r.COMPLETE], system, solver, calls, b, call) / factors[2]
         _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
         if (b[r.FIRST_STEP] + step) % every == 0:
             row = (b[r.FIRST_STEP] + step) // every

@@ -2,7 +2,7 @@
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.point import RATE, RESULTANT, STRAIN
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
@@ -12,23 +12,22 @@ _interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iiiii
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
-@routine("i")
-def balance(system):
-    """Fill the residual (n,) and, where wanted, the matrix of a model."""
-    small_code()
-    s = wholes(system)
-    residual, matrix, groups, values = (
-        reals(s[r.RESIDUAL]),
-        reals(s[r.MATRIX]),
-        wholes(s[r.GROUP_RECORDS]),
-        wholes(s[r.VALUES]),
-    )
-    for i in range(s[r.SIZE]):
+@inlined
+def clear(s, first, end, first_entry, end_entry):
+    """Set the residual of coordinates to zero and, where a matrix is wanted, entries of it."""
+    residual, matrix = reals(s[r.RESIDUAL]), reals(s[r.MATRIX])
+    for i in range(first, end):
         residual[i] = 0.0
     if s[r.TANGENT] != 0:
-        for i in range(s[r.ENTRIES]):
+        for i in range(first_entry, end_entry):
             matrix[i] = 0.0
-    for group in range(s[r.GROUPS]):
+
+
+@inlined
+def add_groups(s, system, first, end):
+    """Add the forces of groups to the residual, their tangents to the matrix."""
+    groups, values = wholes(s[r.GROUP_RECORDS]), wholes(s[r.VALUES])
+    for group in range(first, end):
         b = wholes(groups[group])
         call = wholes(b[r.ROUTINES])
         _three(call[r.PLACE_NODES], groups[group], system, s[r.MOVING])
@@ -36,8 +35,15 @@ def balance(system):
         if b[r.LOADS] > 0:
             _three(call[r.ADD_LOADS], groups[group], system, values[group])
         _two(call[r.FINISH_NODES], groups[group], system)
+
+
+@inlined
+def add_springs(s):
+    """Add the forces of springs to the ground, and their stiffness."""
     p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[0]
-    stiffness, rest, place = (
+    residual, matrix, stiffness, rest, place = (
+        reals(s[r.RESIDUAL]),
+        reals(s[r.MATRIX]),
         reals(s[r.SPRING_STIFFNESS]),
         reals(s[r.SPRING_REST]),
         wholes(s[r.SPRING_PLACE]),
@@ -46,6 +52,16 @@ def balance(system):
         residual[dof[i]] += stiffness[i] * (p[dof[i]] - rest[i])
         if s[r.TANGENT] != 0 and place[i] >= 0:
             matrix[place[i]] += factor * stiffness[i]
+
+
+@routine("i")
+def balance(system):
+    """Fill the residual (n,) and, where wanted, the matrix of a model."""
+    small_code()
+    s = wholes(system)
+    clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
+    add_groups(s, system, 0, s[r.GROUPS])
+    add_springs(s)
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})

@@ -25,12 +25,56 @@ def padded(n):
     return (n + WIDTH - 1) // WIDTH * WIDTH
 
 
-def difference_rows(n: int) -> int:
+def difference_rows(n: int, parts: int = 1) -> int:
     """Return how many numbers the backward differences of n accelerations take.
 
-    Rows (MOST, padded(n)) of them, one for the change that they expect, and their sizes (MOST + 1, WIDTH).
+    Rows (MOST, padded(n)) of them, and their sizes (parts, MOST + 1, WIDTH), one for the change that they expect.
     """
-    return (MOST + 1) * (-(-n // WIDTH) + 1) * WIDTH
+    return MOST * -(-n // WIDTH) * WIDTH + parts * (MOST + 1) * WIDTH
+
+
+@inlined
+def _larger_of(a, b):
+    """Return the larger of two sizes; what is no number is larger than all."""
+    return b if not b <= a and a == a else a
+
+
+@inlined
+def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
+    """Do what `predict` does for coordinates from the first to the end."""
+    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
+    kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
+    length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
+    whole = first + (end - first) // WIDTH * WIDTH
+    for i in range(first, whole, WIDTH):
+        p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
+        then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
+        ahead = zeros()
+        for k in range(int(order)):
+            ahead += lanes[k * length + i]
+        if order < 0.0:
+            ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
+        new = kept * a - mean * mean_a + fraction * ahead
+        now[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
+        now[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
+        now[2 * n + i] = a + ahead
+    for i in range(whole, end):
+        last_p, last_v, last_a, last_mean = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
+        for k in range(4):
+            before[k * n + i] = state[k * n + i]
+        change = 0.0
+        for k in range(int(order)):
+            change += differences[k * length + i]
+        if order < 0.0:
+            change = (-(last_v / h + (0.5 - beta) * last_mean) / beta - kept * last_a + mean * last_mean) / fraction
+        next_a = kept * last_a - mean * last_mean + fraction * change
+        state[i] = last_p + h * last_v + h * h * ((0.5 - beta) * last_mean + beta * next_a)
+        state[n + i] = last_v + h * ((1.0 - gamma) * last_mean + gamma * next_a)
+        state[2 * n + i] = last_a + change
+    for i in range(prescribed):
+        if first <= dofs[i] and dofs[i] < end:
+            for k in range(3):
+                state[k * n + dofs[i]] = values[k * prescribed + i]
 
 
 @routine("iidrrrnrr")
@@ -41,30 +85,48 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
     order -1 keeps p instead, which strains nothing where stiff parts ring within a step. differences: see
     `difference_rows`, of which so many are known as the order. rule: step, alpha_m, alpha_f, gamma, beta.
     """
-    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
-    kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
-    length, lanes = padded(n), as_rows(differences)
-    change = at(differences, MOST * length)
-    for i in range(0, n, WIDTH):
-        ahead_of = zeros()
-        for k in range(int(order)):
-            ahead_of += lanes[k * length + i]
-        lanes[MOST * length + i] = ahead_of
-    for i in range(4 * n):
-        before[i] = state[i]
-    for i in range(n):
-        p, v, a, mean_a = before[i], before[n + i], before[2 * n + i], before[3 * n + i]
-        ahead = change[i]
-        if order < 0.0:
-            stays = -(v / h + (0.5 - beta) * mean_a) / beta
-            ahead = (stays - kept * a + mean * mean_a) / fraction
-        new = kept * a - mean * mean_a + fraction * ahead
-        state[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
-        state[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
-        state[2 * n + i] = a + ahead
-    for i in range(prescribed):
-        for k in range(3):
-            state[k * n + dofs[i]] = values[k * prescribed + i]
+    predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
+
+
+@inlined
+def correct_part(
+    first,
+    end,
+    first_unknown,
+    end_unknown,
+    n,
+    first_free,
+    state,
+    right,
+    free,
+    inverse_scale,
+    coefficients,
+    change,
+):
+    """Do what `correct` does for coordinates from the first to the end, and the unknown that are among them."""
+    to_velocity, to_acceleration, size, rest = coefficients[1], coefficients[2], zeros(), 0.0
+    begin, source, offset = first, change, 0
+    if first_free >= 0:
+        begin, end = first_unknown + first_free, end_unknown + first_free
+        source, offset = right, first_free
+    else:
+        for i in range(first_unknown, end_unknown):
+            change[free[i]] = right[i]
+    lanes, weight, rows = as_rows(source), as_rows(inverse_scale), as_rows(state)
+    whole = begin + (end - begin) // WIDTH * WIDTH
+    for i in range(begin, whole, WIDTH):
+        by = lanes[i - offset]
+        size = larger(size, by * weight[i])
+        rows[i] += by
+        rows[n + i] += to_velocity * by
+        rows[2 * n + i] += to_acceleration * by
+    for i in range(whole, end):
+        last = source[i - offset]
+        rest = _larger_of(rest, abs(last * inverse_scale[i]))
+        state[i] += last
+        state[n + i] += to_velocity * last
+        state[2 * n + i] += to_acceleration * last
+    return _larger_of(largest(size), rest)
 
 
 @routine("iiirrnrrr", "d", fastmath=FAST)
@@ -72,32 +134,9 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
     """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale.
 
     first_free: of the unknown coordinates `free`, where they follow one another, else -1;
-    change (padded(n),): takes the corrections, zero elsewhere.
+    change (padded(n),): takes the corrections there, zero elsewhere.
     """
-    to_velocity, to_acceleration = coefficients[1], coefficients[2]
-    if first_free >= 0:
-        source, to, filled = as_rows(right), as_rows(at(change, first_free)), unknown // WIDTH * WIDTH
-        for i in range(0, filled, WIDTH):
-            to[i] = source[i]
-        for i in range(filled, unknown):
-            change[first_free + i] = right[i]
-    else:
-        for i in range(unknown):
-            change[free[i]] = right[i]
-    lanes, weight, rows, size = as_rows(change), as_rows(inverse_scale), as_rows(state), zeros()
-    for i in range(0, n, WIDTH):
-        size = larger(size, lanes[i] * weight[i])
-    whole = n // WIDTH * WIDTH
-    for i in range(0, whole, WIDTH):
-        by = lanes[i]
-        rows[i] += by
-        rows[n + i] += to_velocity * by
-        rows[2 * n + i] += to_acceleration * by
-    for i in range(whole, n):
-        state[i] += change[i]
-        state[n + i] += to_velocity * change[i]
-        state[2 * n + i] += to_acceleration * change[i]
-    return largest(size)
+    return correct_part(0, n, 0, unknown, n, first_free, state, right, free, inverse_scale, coefficients, change)
 
 
 @routine("iiiiddddrr", "i")
@@ -131,6 +170,72 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
     return 0
 
 
+@inlined
+def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, known):
+    """Do what `complete` does for coordinates from the first to the end, but for the order; return the same.
+
+    Sizes of differences are left for `best_order`.
+    """
+    alpha_m, alpha_f = rule[1], rule[2]
+    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
+    top, length, rest = min(int(known[1]), int(known[0]) + 1), padded(n), 0.0
+    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
+    errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
+    whole = first + (end - first) // WIDTH * WIDTH
+    for k in range(MOST + 1):
+        lanes[errors + k * WIDTH] = 0.0
+    for i in range(first, whole, WIDTH):
+        a, last_a, own = now[2 * n + i], then[2 * n + i], weight[i]
+        now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
+        change = a - last_a
+        largest_change = larger(largest_change, change * own)
+        for k in range(top + 1):
+            size = change * own
+            lanes[errors + k * WIDTH] += size * size
+            if k < MOST:
+                kept = lanes[k * length + i]
+                lanes[k * length + i] = change
+                change -= kept
+    for i in range(whole, end):
+        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
+        difference = state[2 * n + i] - before[2 * n + i]
+        rest = _larger_of(rest, abs(difference * inverse_scale[i]))
+        for k in range(top + 1):
+            error = difference * inverse_scale[i]
+            differences[errors + k * WIDTH + i - whole] += error * error
+            if k < MOST:
+                previous = differences[k * length + i]
+                differences[k * length + i] = difference
+                difference -= previous
+    for i in range(prescribed):
+        if first <= dofs[i] and dofs[i] < end:
+            state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
+    return _larger_of(largest(largest_change), rest)
+
+
+@inlined
+def best_order(parts, n, state, before, differences, inverse_scale, rule, extrapolation):
+    """Set the order that would have been best and how many differences are known, of the sizes of all parts."""
+    top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
+    order, least, errors = 0, math.inf, MOST * padded(n)
+    for k in range(top + 1):
+        error = 0.0
+        for part in range(parts):
+            for i in range(WIDTH):
+                error += differences[errors + (part * (MOST + 1) + k) * WIDTH + i]
+        if error < least:
+            order, least = k, error
+    if order == 0:  # unless positions have changed by half or less of what the acceleration would have moved them
+        h, beta, changed = rule[0], rule[4], 0.0
+        for i in range(n):
+            moved = (state[i] - before[i]) * inverse_scale[i]
+            changed += moved * moved
+        to_acceleration = (1.0 - rule[1]) / (h * h * beta * (1.0 - rule[2]))
+        if 4.0 * to_acceleration * to_acceleration * changed < least:
+            order = -1
+    extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
+
+
 @routine("iirrrrnrr", "d", fastmath=FAST)
 def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
     """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
@@ -138,44 +243,9 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
     inverse_scale (padded(n),): zero beyond n; extrapolation (2,): the order that would have been best, one more than
     the last one at most (see `predict`), and how many differences are known.
     """
-    alpha_m, alpha_f = rule[1], rule[2]
-    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    for i in range(n):
-        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
-    for i in range(prescribed):
-        state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
-    top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
-    length = padded(n)
-    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
-    errors, first = (MOST + 1) * length, zeros()
-    for k in range(top + 1):
-        lanes[errors + k * WIDTH] = 0.0
-    for i in range(0, n, WIDTH):
-        change, own = now[2 * n + i] - then[2 * n + i], weight[i]
-        first = larger(first, change * own)
-        for k in range(top + 1):
-            size, kept = change * own, lanes[k * length + i]
-            lanes[errors + k * WIDTH] += size * size
-            lanes[k * length + i] = change
-            change -= kept
-    order, least = 0, math.inf
-    for k in range(top + 1):
-        error = 0.0
-        for i in range(WIDTH):
-            error += differences[errors + k * WIDTH + i]
-        if error < least:
-            order, least = k, error
-    if order == 0:  # unless positions have changed by half or less of what the acceleration would have moved them
-        h, beta = rule[0], rule[4]
-        changed = 0.0
-        for i in range(n):
-            moved = (state[i] - before[i]) * inverse_scale[i]
-            changed += moved * moved
-        to_acceleration = 1.0 / (h * h * beta * new)
-        if 4.0 * to_acceleration * to_acceleration * changed < least:
-            order = -1
-    extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
-    return largest(first)
+    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation)
+    best_order(1, n, state, before, differences, inverse_scale, rule, extrapolation)
+    return change
 
 
 @routine("inrrr")

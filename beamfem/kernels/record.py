@@ -68,10 +68,10 @@ SPRING = 50  # (2, loads)
 ANCHOR = 51  # (2, loads)
 LOAD_PLACE = 52  # (nodes of an element, loads)
 LOAD_NUMBER = 53  # (nodes * coordinates, loads)
-FILLED = 54  # elements of the batch whose tables are in the work space
+FILLED = 54  # address (2,): whose tables are in the work space, and of how many elements
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
-FILLED_WITH = 57  # their class, or -1 - the first element where they are of several
+SHARED = 57  # whether other groups use the chunks and the work space as well
 DAMPED = 58  # whether resultants depend on rates of strains
 DAMPING = 59  # rows of a class: (1,) retardation time
 VELOCITY = 60  # rows of a node: e', where resultants depend on it
@@ -198,7 +198,26 @@ NATURALS = 40  # address of addresses, of each group (steps or 1, elements, poin
 NATURALS_VARY = 41
 CHANGE = 42  # address (padded(n),): corrections, zero where there are none
 FIRST_FREE = 43  # the first of the unknown where they follow one another, else -1
-SOLVER_FIELDS = 44
+
+# ------------------------------------------------------------------ parts of a chain that stages of a step work on
+PARTS = 44  # 1, or 3: two halves and what is between them
+BOUNDS = 45  # address (1 or 3, bounds): of each part
+PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
+SOLVER_FIELDS = 47
+
+FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)
+BOUND_FIELDS = 8
+
+# ------------------------------------------------------------------ what the second of two threads is asked to do
+JOB_STATE = 0  # alone in a line of the cache
+JOB_STAGE = 8
+JOB_SYSTEM = 9
+JOB_SOLVER = 10
+JOB_CALLS = 11
+JOB_RESULT = 12
+JOB_SERVED = 13  # whether there is a second thread
+JOB_YIELD = 14  # address of the system's function that lets other threads have the core, 0 where there is none
+JOB_FIELDS = 16
 
 (
     BALANCE,
@@ -212,12 +231,27 @@ SOLVER_FIELDS = 44
     ROTATE_IN,
     ROTATE_BACK,
     TAKE_STEP,
-    PREDICT,
-    COMPLETE,
     KEEP_DIRECTIONS,
     TURNS_SINCE,
     TURN_PAIRS,
     COUNT_TURNS,
+    # stages of a time step, see `motion_stages`
+    PREDICT,
+    ASSEMBLE,
+    FACTORISE,
     TURN_ALL,
-) = range(18)
-SOLVER_ROUTINES = 18
+    SOLVE,
+    CORRECT,
+    COMPLETE,
+    # of long chains
+    IN_TWO,
+    JOB,  # address of the job of the second thread
+    FILL_RIGHT,
+    SOLVE_DOWN,
+    SOLVE_UP,
+    TURN_BACK,
+    FACTOR_PART,
+    LOWER_PART,
+    UPPER_PART,
+) = range(31)
+SOLVER_ROUTINES = 31

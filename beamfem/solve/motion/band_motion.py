@@ -7,6 +7,7 @@ from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march
 from beamfem.kernels.pointers import address_of
+from beamfem.solve.motion.second_thread import routines
 
 Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 
@@ -23,7 +24,7 @@ class BandMotion:
     ) -> None:
         self._system, self._space, self._statistics = system, space, statistics
         h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][:], space.arrays[record.LIMITS][:] = rule, limits
+        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, limits
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
@@ -36,8 +37,11 @@ class BandMotion:
         turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
         """
         saved, first, every, counted, turned_by, saved_turns = saving
+        space = self._space
         body, values, imposing = _sample_loads(self._system, times)
-        space, varying = self._space, len(body) > 1
+        if space.loads is not None:
+            values = tuple(values[0][:, own] for own in space.loads)
+        varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
         places = assembler.load(body, values)
         natural = np.array(assembler.impose(imposing), dtype=np.int64)
@@ -69,7 +73,8 @@ class BandMotion:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
-        done = int(march(assembler.address, solver, self._system.solver_table.routines(moving=True)))
+        with routines(self._system, space.in_two) as calls:
+            done = int(march(assembler.address, solver, calls))
         assembler.raise_errors()
         return done
 

@@ -46,12 +46,17 @@ def new_statistics() -> np.ndarray:
 
 @dataclass
 class Last:
-    """The last whole step that was completed, whenever the work ends: its number, state (3, n) and turns (m,) [rad].
-
-    One assignment sets it, so that an interruption finds it whole.
-    """
+    """The last whole step that was completed, whenever the work ends: its number, state (3, n) and turns (m,) [rad]."""
 
     step: tuple[int, np.ndarray, np.ndarray]
+    _spare: np.ndarray | None = None
+
+    def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
+        """Take another step. One assignment sets it, so that an interruption finds it whole."""
+        before, room = self.step[1], np.empty_like(state) if self._spare is None else self._spare
+        room[:] = state
+        self.step = done, room, turned.copy()
+        self._spare = before
 
 
 @dataclass(frozen=True)
@@ -113,7 +118,7 @@ def march(
                         why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
                         failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
                     if part.whole and completed:
-                        last.step = done, state[:3].copy(), turned.copy()
+                        last.reach(done, state[:3], turned)
                         report(float(part.times[begun]))
                     if part.whole and spent < _CHUNK_SECONDS and not own:
                         size *= 4
@@ -121,7 +126,7 @@ def march(
                 break
             if part.ends_whole and not part.whole:
                 done += 1
-                last.step = done, state[:3].copy(), turned.copy()
+                last.reach(done, state[:3], turned)
                 if done % record.every == 0:
                     record.states[done // record.every], record.turned[done // record.every] = last.step[1:]
     return failed

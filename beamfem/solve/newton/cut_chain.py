@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
+from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.system import System
-from beamfem.kernels.block import Block, PointLoads, Springs
+from beamfem.kernels.block import Springs
 
 _LONG = 20_000  # elements; below, two threads gain little
 
@@ -42,9 +43,7 @@ class Substructure:
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
     """Return whether a model is one chain of so many elements, with two cores to work on it."""
-    model = system.model
-    single = len(model.beams) == 1 and not model.joints and not system.inclined and not len(system.history.numbers)
-    return single and system.unknowns.pattern is None and len(system.blocks[0].node) >= elements and usable_cores() > 1
+    return is_chain(system) and len(system.blocks[0].node) >= elements and usable_cores() > 1
 
 
 def usable_cores() -> int:
@@ -87,15 +86,13 @@ def _half(
         system.layouts,
         system.point_values(load_factor),
     )
-    block, size, half_width = _part(whole, elements, place.start), place.stop - place.start, layout.half_width
+    block, size, half_width = block_of(whole, elements, place.start), place.stop - place.start, layout.half_width
     order = np.flatnonzero(layout.free[place] >= 0)
     if place.start > 0:
         order = order[::-1].copy()
     free = np.full(size, -1, dtype=np.int64)
     free[order] = np.arange(len(order))
-    loaded = (loads.element >= elements.start) & (loads.element < elements.stop)
-    points = PointLoads(*(column[loaded] for column in loads))
-    points = points._replace(element=points.element - elements.start)
+    points, loaded = loads_of(loads, elements)
     dof, stiffness, zeros, _ = (column[sprung] for column in system.springs)
     number = free[dof - place.start]
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
@@ -115,19 +112,4 @@ def _half(
         residual=np.empty(size),
         right=np.empty(len(order)),
         rows=np.empty((len(order), 2 * half_width + 1)),
-    )
-
-
-def _part(block: Block, elements: slice, first_dof: int) -> Block:
-    """Return elements of a chain as a block, its coordinates counted from the first."""
-    node = block.node[elements]
-    nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
-    dof = block.dof[nodes]
-    return block._replace(
-        imposed=None if block.imposed is None else block.imposed.of(elements),
-        history=block.history_of(elements),
-        node=node - nodes.start,
-        dof=np.where(dof >= 0, dof - first_dof, -1),
-        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
-        **{name: getattr(block, name)[nodes] for name in ("node_kind", "frame", "home")},
     )

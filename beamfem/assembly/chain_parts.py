@@ -1,0 +1,39 @@
+"""A single chain of elements, and parts of it as blocks of their own."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamfem.kernels.block import Block, PointLoads
+
+if TYPE_CHECKING:
+    from beamfem.assembly.system import System
+
+
+def is_chain(system: "System") -> bool:
+    """Return whether a model is one beam, whose coordinates follow one another and are solved for as a band."""
+    model = system.model
+    single = len(model.beams) == 1 and not model.joints and not system.inclined and not len(system.history.numbers)
+    return single and system.unknowns.pattern is None
+
+
+def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:
+    """Return elements of a chain as a block, its coordinates counted from the first."""
+    node = whole.node[elements]
+    nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
+    dof = whole.dof[nodes]
+    return whole._replace(
+        imposed=None if whole.imposed is None else whole.imposed.of(elements),
+        history=whole.history_of(elements),
+        node=node - nodes.start,
+        dof=np.where(dof >= 0, dof - first_dof, -1),
+        **{name: getattr(whole, name)[elements] for name in ("kind", "beam")},
+        **{name: getattr(whole, name)[nodes] for name in ("node_kind", "frame", "home")},
+    )
+
+
+def loads_of(whole: PointLoads, elements: slice) -> tuple[PointLoads, np.ndarray]:
+    """Return loads on elements of a chain, which are counted from the first, and which of all they are."""
+    loaded = np.flatnonzero((whole.element >= elements.start) & (whole.element < elements.stop))
+    points = PointLoads(*(column[loaded] for column in whole))
+    return points._replace(element=points.element - elements.start), loaded

@@ -1,0 +1,244 @@
+"""Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
+
+from beamfem.kernels import model_passes, motion_steps
+from beamfem.kernels import record as r
+from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.lanes import WIDTH, as_rows
+from beamfem.kernels.motion_steps import FAST
+from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
+
+_STRIP = 256  # vectors that are turned while they are in the cache near the core
+
+_factor, _solve, _roll, _in_two = caller("iirr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
+_turn_pairs, _keep, _turns, _place = caller("idnrr"), caller("iir"), caller("iirr"), caller("iii")
+_factor_part, _solve_part = caller("iiirr", "d"), caller("iiirr")
+
+
+@inlined
+def bounds_of(b, part):
+    """Return the bounds of a part."""
+    return at(wholes(b[r.BOUNDS]), part * r.BOUND_FIELDS)
+
+
+@inlined
+def place_again(group, system):
+    """Fill the chunks of a group with nodal vectors, if others have used them since."""
+    b = wholes(group)
+    if b[r.SHARED] != 0:
+        _place(wholes(b[r.ROUTINES])[r.PLACE_NODES], group, system, 0)
+
+
+@routine("iiii", "d")
+def predict(part, system, solver, calls):
+    """Start a step; the order of the extrapolation stands behind the rule."""
+    small_code()
+    s, b = wholes(system), wholes(solver)
+    own, rule = bounds_of(b, part), reals(b[r.RULE])
+    motion_steps.predict_part(
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        s[r.SIZE],
+        b[r.PRESCRIBED],
+        rule[5],
+        reals(b[r.STATE]),
+        reals(b[r.BEFORE]),
+        reals(b[r.DIFFERENCES]),
+        wholes(b[r.PRESCRIBED_DOFS]),
+        reals(b[r.PRESCRIBED_NOW]),
+        rule,
+    )
+    return 0.0
+
+
+@routine("iiii", "d")
+def assemble(part, system, solver, calls):
+    """Fill the residual and, where wanted, the matrix; springs to the ground come with the last part."""
+    small_code()
+    s, b = wholes(system), wholes(solver)
+    own, width = bounds_of(b, part), 2 * b[r.HALF] + 1
+    model_passes.clear(
+        s,
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        own[r.FIRST_UNKNOWN] * width,
+        own[r.END_UNKNOWN] * width,
+    )
+    model_passes.add_groups(s, system, own[r.FIRST_GROUP], own[r.END_GROUP])
+    if own[r.END_GROUP] == s[r.GROUPS]:
+        model_passes.add_springs(s)
+    return 0.0
+
+
+@routine("iiii", "d")
+def factorise(part, system, solver, calls):
+    """Factor the tangent; return the smallest ratio of a pivot to the row's original diagonal entry, negative."""
+    b, call = wholes(solver), wholes(calls)
+    if b[r.PARTS] == 1:
+        return -_factor(call[r.FACTOR_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
+    return -_factor_part(call[r.FACTOR_PART], part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
+
+
+@routine("iiii", "d")
+def turn_all(part, system, solver, calls):
+    """Keep the directions of sections with a new tangent, and fill how far they have turned since the last one."""
+    small_code()
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    groups, kept, turns, own = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS]), bounds_of(b, part)
+    first = 0
+    for group in range(own[r.END_GROUP]):
+        if group >= own[r.FIRST_GROUP]:
+            place_again(groups[group], system)
+            if s[r.TANGENT] != 0:
+                _keep(call[r.KEEP_DIRECTIONS], groups[group], first, kept)
+            _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
+        first += wholes(groups[group])[r.NODES]
+    return 0.0
+
+
+@inlined
+def _turn_vectors(b, call, own, sense):
+    first = own[r.FIRST_PAIR]
+    table = at(wholes(b[r.PAIR_TABLE]), 3 * first)
+    _turn_pairs(call[r.TURN_PAIRS], own[r.END_PAIR] - first, sense, table, reals(b[r.TURNS]), reals(b[r.RIGHT]))
+
+
+@inlined
+def _fill(s, b, first, end):
+    """Fill the right-hand side with the residual of unknown coordinates, negative."""
+    residual, right = reals(s[r.RESIDUAL]), reals(b[r.RIGHT])
+    if b[r.FIRST_FREE] >= 0:
+        lanes, given = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
+        whole = first + (end - first) // WIDTH * WIDTH
+        for i in range(first, whole, WIDTH):
+            lanes[i] = -given[i]
+        for i in range(whole, end):
+            right[i] = -residual[b[r.FIRST_FREE] + i]
+    else:
+        free = wholes(b[r.FREE_DOFS])
+        for i in range(first, end):
+            right[i] = -residual[free[i]]
+
+
+@routine("iiii", "d")
+def solve(part, system, solver, calls):
+    """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
+    small_code()
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    own, unknown, rollers, right = bounds_of(b, part), b[r.UNKNOWN], b[r.ROLLERS], reals(b[r.RIGHT])
+    first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
+    _fill(s, b, 0, unknown)
+    if rollers > 0:
+        _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
+    _turn_vectors(b, call, own, -1.0)
+    _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
+    _turn_vectors(b, call, own, 1.0)
+    if rollers > 0:
+        _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
+    return 0.0
+
+
+@routine("iiii", "d")
+def fill_right(part, system, solver, calls):
+    """Fill the right-hand side, turned back with the sections; x and y of vectors follow one another along a chain."""
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    own, pairs, turns, right = bounds_of(b, part), wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), reals(b[r.RIGHT])
+    filled = own[r.FIRST_UNKNOWN]
+    for pair in range(own[r.FIRST_PAIR], own[r.END_PAIR], _STRIP):
+        count = min(_STRIP, own[r.END_PAIR] - pair)
+        end = pairs[3 * (pair + count - 1) + 1] + 1
+        _fill(s, b, filled, end)
+        _turn_pairs(call[r.TURN_PAIRS], count, -1.0, at(pairs, 3 * pair), turns, right)
+        filled = end
+    _fill(s, b, filled, own[r.END_UNKNOWN])
+    return 0.0
+
+
+@routine("iiii", "d")
+def solve_down(part, system, solver, calls):
+    """Eliminate with the lower triangle from both ends, and solve for what is between."""
+    b = wholes(solver)
+    address = wholes(calls)[r.LOWER_PART]
+    _solve_part(address, part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
+    return 0.0
+
+
+@routine("iiii", "d")
+def solve_up(part, system, solver, calls):
+    """Solve for the rest with the upper triangle, from what is between to both ends."""
+    b = wholes(solver)
+    address = wholes(calls)[r.UPPER_PART]
+    _solve_part(address, part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
+    return 0.0
+
+
+@routine("iiii", "d")
+def turn_back(part, system, solver, calls):
+    """Turn the solution with the sections."""
+    b = wholes(solver)
+    _turn_vectors(b, wholes(calls), bounds_of(b, part), 1.0)
+    return 0.0
+
+
+@routine("iiii", "d")
+def solve_in_two(part, system, solver, calls):
+    """Do what `solve` does in stages of two parts."""
+    b, call = wholes(solver), wholes(calls)
+    _in_two(call[r.IN_TWO], call[r.FILL_RIGHT], system, solver, calls)
+    if wholes(call[r.JOB])[r.JOB_SERVED] != 0:
+        _in_two(call[r.IN_TWO], call[r.SOLVE_DOWN], system, solver, calls)
+        _in_two(call[r.IN_TWO], call[r.SOLVE_UP], system, solver, calls)
+    else:  # both ends by turns wait half as long
+        _solve(call[r.SOLVE_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
+    _in_two(call[r.IN_TWO], call[r.TURN_BACK], system, solver, calls)
+    return 0.0
+
+
+@routine("iiii", "d", fastmath=FAST)
+def correct(part, system, solver, calls):
+    """Add corrections to the state; return the largest, relative to its scale."""
+    s, b = wholes(system), wholes(solver)
+    own = bounds_of(b, part)
+    return motion_steps.correct_part(
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        own[r.FIRST_UNKNOWN],
+        own[r.END_UNKNOWN],
+        s[r.SIZE],
+        b[r.FIRST_FREE],
+        reals(b[r.STATE]),
+        reals(b[r.RIGHT]),
+        wholes(b[r.FREE_DOFS]),
+        reals(b[r.INVERSE_SCALE]),
+        reals(s[r.FACTORS]),
+        reals(b[r.CHANGE]),
+    )
+
+
+@routine("iiii", "d", fastmath=FAST)
+def complete(part, system, solver, calls):
+    """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
+    s, b = wholes(system), wholes(solver)
+    own, n, rule, known = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
+    state, before, differences, scale = (
+        reals(b[r.STATE]),
+        reals(b[r.BEFORE]),
+        reals(b[r.DIFFERENCES]),
+        reals(b[r.INVERSE_SCALE]),
+    )
+    change = motion_steps.complete_part(
+        part,
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        n,
+        b[r.PRESCRIBED],
+        state,
+        before,
+        differences,
+        scale,
+        wholes(b[r.PRESCRIBED_DOFS]),
+        rule,
+        known,
+    )
+    if own[r.END_GROUP] == s[r.GROUPS]:
+        motion_steps.best_order(b[r.PARTS], n, state, before, differences, scale, rule, known)
+    return change

@@ -48,7 +48,12 @@ def d_slots(field: Field) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Cubic:
-    """Hermite cubics in r and r_x, linear in r_y; paper, eqs. (2) to (4); Omar and Shabana 2001."""
+    """Hermite cubics in r and r_x, linear in r_y.
+
+    References
+    ----------
+    Paper, eqs. (2) to (4); Omar and Shabana 2001.
+    """
 
     name: ClassVar[str] = "cubic"
     vectors: ClassVar[tuple[str, ...]] = ("r", "r_x", "r_y")
@@ -104,7 +109,17 @@ def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -
 
 @dataclass(frozen=True)
 class Lagrange:
-    """Polynomials of one order in r and in r_y through Gauss-Lobatto nodes; order 1: paper, eqs. (8) to (10)."""
+    """Polynomials of one order in r and in r_y through Gauss-Lobatto nodes.
+
+    Parameters
+    ----------
+    order : int, default 1
+        Polynomial order, 1 to 8.
+
+    References
+    ----------
+    Paper, eqs. (8) to (10), for order 1.
+    """
 
     order: int = 1
     vectors: ClassVar[tuple[str, ...]] = ("r", "r_y")

@@ -15,10 +15,22 @@ from beamfem.validation import count, finite, flag, items
 class At:
     """The state at which a contribution is evaluated.
 
-    q (m, 3): x, y [m] and rotation from the reference [rad] of its points; v, a (m, 3): their velocities and
-    accelerations, zero in statics; own (k,): its own unknowns; memory (h,): its history variables of the last step;
-    reference (m, 3): q in the stress-free model; time: [s], in statics the load factor; gravity (2,): acceleration
-    [m/s^2] of the model's Gravity at that time.
+    Parameters
+    ----------
+    q : array, (m, 3)
+        x, y [m] and rotation from the reference [rad] of its points.
+    v, a : array, (m, 3)
+        Velocities and accelerations of its points, zero in statics.
+    own : array, (k,)
+        Its own unknowns.
+    memory : array, (h,)
+        Its history variables of the last step.
+    reference : array, (m, 3)
+        q in the stress-free model.
+    time : float, [s]
+        Time, in statics the load factor.
+    gravity : array, [m/s^2], (2,)
+        Acceleration of the model's Gravity at that time.
     """
 
     q: np.ndarray

@@ -47,12 +47,33 @@ class NewtonResult:
 
 @dataclass(frozen=True)
 class Newton:
-    """How to iterate.
+    """Tolerances and options of the Newton iteration.
 
-    tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
-    relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
-    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
-    Raises InputError.
+    Parameters
+    ----------
+    tolerance : float, [-], default 1e-10
+        Largest correction relative to the model's length or one radian.
+    residual_tolerance : float, [-], default 1e-9
+        Largest residual relative to the reactions and loads.
+    iterations : int, default 15
+        Largest number of iterations.
+    independent_stresses : bool, default True
+        Whether the geometric tangent takes the section forces that the last correction predicted.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    References
+    ----------
+    Magisano, Leonetti and Garcea 2017 (independent stresses).
+
+    Examples
+    --------
+    >>> solution = bf.solve_static(model, newton=bf.Newton(tolerance=1e-8, iterations=30))
+    >>> solution.status.name
+    'COMPLETED'
     """
 
     tolerance: float = 1e-10

@@ -33,17 +33,55 @@ def solve_static(
     at: Sequence[float] | None = None,
     snap: Snap = "error",
 ) -> Solution:
-    """Return the equilibria from load factor 0 to 1 along the path that starts at 0.
+    """Find the static equilibria from load factor 0 to 1, along the path that starts at 0.
 
-    A load step is accepted if the iterates keep the number of negative pivots; otherwise the path is followed by arc
-    length. At a bifurcation the primary path is continued, and a warning reports unstable rows.
-    steps: initial number of load steps, which are grown and cut as needed. Rows of the result: load factor 0 (loads
-    with scale=False), ..., 1. at: ascending load factors from 0 to 1 for the rows instead, reached exactly, except
-    those skipped by a jump; the last of them ends the solve. snap: at a limit point raise an "error", or "jump" to the
-    state in which a slow, damped structure comes to rest under the same load, and continue from there.
-    Raises InputError and FreeMotionError before the solve; LimitPointError with the load factor, and ConvergenceError
-    if no step converges, both with the states found. Any other exception during the solve, such as KeyboardInterrupt,
-    carries them as its `solution` too.
+    A load step is accepted if the number of negative pivots of the tangent stays the same over its iterations;
+    otherwise the path is followed by arc length. At a bifurcation the primary path is continued, and a warning reports
+    unstable rows.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads.
+    steps : int, default 1
+        Initial number of load steps, which are enlarged and cut as needed.
+    newton : Newton, optional
+        Tolerances of the iteration.
+    at : sequence of float, optional
+        Ascending load factors from 0 to 1 for the rows of the result, reached exactly, except those skipped by a jump;
+        the last of them ends the solve. By default the rows are the accepted load steps: load factor 0 (only the loads
+        with scale=False), ..., 1.
+    snap : {"error", "jump"}, default "error"
+        What to do at a limit point: raise an error, or jump to the state in which a slow, damped structure comes to
+        rest under the same load, and continue from there.
+
+    Returns
+    -------
+    Solution
+        One row for each load step.
+
+    Raises
+    ------
+    InputError
+        Before the solve, for invalid arguments.
+    FreeMotionError
+        Before the solve, if the model can move without resistance.
+    LimitPointError
+        At a limit point; it has the load factor and the states found.
+    ConvergenceError
+        If no step converges; its `solution` has the states found. Any other exception during the solve, such as
+        KeyboardInterrupt, carries them as its `solution` too.
+
+    Warns
+    -----
+    UnstableWarning
+        If some rows are unstable equilibria.
+
+    Examples
+    --------
+    >>> halves = bf.solve_static(model, at=[0.0, 0.5, 1.0])
+    >>> halves.displacement(beam.end)[:, 1].round(4)
+    array([ 0.    , -0.0153, -0.0305])
     """
     if at is None:
         return solve_through(model, (), steps, newton, snap=snap)

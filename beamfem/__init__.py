@@ -9,6 +9,7 @@ Examples
 The examples of all docstrings continue this one, a steel cantilever with a force across its end:
 
 >>> import beamfem as bf
+>>> import numpy as np
 >>> steel = bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
 >>> beam = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
 >>> model = bf.Model([beam], supports=[bf.Clamp(beam.start)], loads=[bf.PointForce(beam.end, (0.0, -1e4))])

@@ -24,6 +24,7 @@ html_css_files = ["wide.css"]
 html_show_copyright = False
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
+napoleon_use_ivar = True
 napoleon_use_rtype = False
 autodoc_typehints_format = "short"
 autodoc_use_type_comments = False

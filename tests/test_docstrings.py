@@ -7,12 +7,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import matplotlib
-import numpy as np
 import pytest
 
 import beamfem as bf
-
-CONTINUED = {"numpy": np, "np": np}  # besides the examples of the package, which those of all docstrings continue
 
 
 def public() -> dict[str, Any]:
@@ -107,9 +104,8 @@ def test_summaries_are_one_sentence_in_the_first_line(name):
 @pytest.fixture(scope="session")
 def names() -> dict[str, Any]:
     """Return what the examples of the package leave: a cantilever and its solution."""
-    left = dict(CONTINUED)
     runner = doctest.DocTestRunner()
-    example = doctest.DocTestParser().get_doctest(bf.__doc__, left, "beamfem", None, 0)
+    example = doctest.DocTestParser().get_doctest(bf.__doc__, {}, "beamfem", None, 0)
     assert runner.run(example, clear_globs=False).failed == 0
     return example.globs
 

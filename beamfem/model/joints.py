@@ -8,7 +8,15 @@ from beamfem.model.shapes import Ring
 
 
 class Joint:
-    """Two coincident points `a` and `b` of beams with a common position; keeps_angle: their rotations are equal too."""
+    """Two coincident points of beams with a common position.
+
+    Attributes
+    ----------
+    a, b : Point
+        The points.
+    keeps_angle : bool
+        Whether their rotations are equal too.
+    """
 
     __slots__ = ()
     keeps_angle: ClassVar[bool] = False

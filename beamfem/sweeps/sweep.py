@@ -28,10 +28,29 @@ _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 class Sweep:
     """Results of a sweep, one row per point, the last parameter varying fastest; `sweep[name]` is an array.
 
-    parameters: those of each point. values: what the function returned, None if it failed. seconds: duration of each
-    call.
-    shape: number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
-    computed: number of points called in this run; the others were read from the store.
+    Parameters
+    ----------
+    parameters : tuple of mapping
+        Parameters of each point.
+    values : tuple
+        What the function returned, None if it failed.
+    failures : tuple of Failure
+        The calls that failed.
+    seconds : array, [s], (points,)
+        Duration of each call.
+    shape : tuple of int
+        Number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
+    computed : int
+        Number of points called in this run; the others were read from the store.
+    labels : tuple of mapping
+        Text of each varied parameter.
+
+    Examples
+    --------
+    >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
+    >>> results["moment"].reshape(results.shape)
+    array([[ 3.,  5.],
+           [ 6., 10.]])
     """
 
     parameters: tuple[Mapping[str, Any], ...]

@@ -25,7 +25,7 @@ from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
-_ITERATIONS = 15  # a shorter step is cheaper than more
+_ITERATIONS = 15  # a shorter step is cheaper than more iterations
 
 Until = float | Callable[[PathState], bool] | None
 
@@ -138,7 +138,7 @@ def trace_equilibrium(
             record.add_critical(line, taken, point)
             report(len(record.rows))
         else:
-            record.end("the path has come to where it shall end")
+            record.end("the path has reached the end that was asked for")
     return record.path()
 
 
@@ -191,7 +191,7 @@ def _step(
 ) -> tuple[Step, PathPoint | None]:
     """Return the longest accepted step from a point up to `size`, and the point on it with the load factor `end`.
 
-    Raises ConvergenceError, which names the most frequent reason for rejections: round-off decides for the shortest.
+    Raises ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
     """
     size = min(size, longest_step(line, point))
     reasons: list[str] = []

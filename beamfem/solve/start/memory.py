@@ -4,7 +4,7 @@ from beamfem.errors import InputError
 from beamfem.memory import SHARE, in_gib, installed_memory
 
 _STATE = 3 * 8  # bytes of a coordinate: p, p', p''
-_STEP = 8 * 8  # bytes of a step whether it is kept or not: its time, what is prescribed and the loads
+_STEP = 8 * 8  # bytes of a step, stored or not: its time, prescribed values and loads
 
 
 def require_memory(coordinates: int, duration: float, step: float, save_every: int) -> None:

@@ -8,7 +8,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import qr
 
-_DEPENDENT = 1e-10  # of a condition of unit size: what is left of it across all others
+_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
 
 
 def refuse_multipliers(system: System, analysis: str) -> None:
@@ -22,7 +22,7 @@ def refuse_multipliers(system: System, analysis: str) -> None:
 
 
 def refuse_memory(system: System, analysis: str) -> None:
-    """Raise InputError if a connector has history, so that states depend on more than the load."""
+    """Raise InputError if a connector has history, so that states do not depend on the load alone."""
     for item in system.connectors.items:
         if len(item.memory):
             raise InputError(

@@ -17,9 +17,7 @@ from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
 
-_SLOPE_WIDTH = (
-    1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
-)
+_SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
 _STEEPER = 2.0  # ratio of the effect of loads per load factor further on to that at the start of a path

@@ -84,12 +84,12 @@ class Modes:
 
     @property
     def status(self) -> Status:
-        """UNSTABLE where a mode grows, else COMPLETED: a solve that misses modes raises."""
+        """UNSTABLE if a mode grows, else COMPLETED; a solve that misses modes raises an error."""
         return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the elements say against the digits of these frequencies, in sentences; empty if nothing."""
+        """Warnings on the accuracy of these frequencies due to the elements, in sentences; empty if there are none."""
         return frequency_warnings(self.state, self.modes[len(self.rigid) :])
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
@@ -263,7 +263,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
 
 
 def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
-    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric; see `lowest_pairs`."""
+    """Return complex omega^2 (m,) and vectors (unknown, m) for an unsymmetric tangent; see `lowest_pairs`."""
     if count == 0:
         return nothing_known(pencil.size)
     shift = pencil.shift(rigid.shape[1])
@@ -286,7 +286,7 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
 def _rates(squares: np.ndarray) -> np.ndarray:
     """Return s = growth + i omega (m,) with s^2 = -omega^2 and omega >= 0.
 
-    Of a conjugate pair of omega^2, one is the motion that grows and the other the one that decays.
+    Of a conjugate pair of omega^2, one gives the growing motion and the other the decaying one.
     """
     squares = np.asarray(squares, dtype=complex)
     real = np.abs(squares.imag) <= _REAL * np.abs(squares)

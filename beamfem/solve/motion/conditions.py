@@ -1,4 +1,4 @@
-"""Motions under conditions: what a start must satisfy, and accelerations and multipliers that keep it so."""
+"""Motions with constraint conditions: consistency of the start, and initial accelerations and multipliers."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -14,11 +14,11 @@ from beamfem.linalg.tangent import UNROTATED, SparseTangent
 from beamfem.solve.start.multipliers import dependent
 
 _MET = 1e-8  # of the model, or of the largest velocity
-_SHORT = 1e-4  # of the model: how far a difference along the motion reaches
+_SHORT = 1e-4  # of the model: step of a difference along the motion
 
 
 def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
-    """Raise InputError if the start p, p' (n,) of a motion does not meet the conditions of connectors."""
+    """Raise InputError if the start p, p' (n,) of a motion does not satisfy the conditions of connectors."""
     gaps, rates = system.connectors.conditions(p, v)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
     fastest += system.extent / duration

@@ -1,4 +1,4 @@
-"""Time integrators of one's own: the equations that they step through, and their way into a motion."""
+"""User-defined time integrators: the equations that they solve, and marching with them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -174,7 +174,7 @@ class Integrator(Protocol):
 
 
 class OwnSteps:
-    """Marches with an integrator of one's own; why: it could not go on."""
+    """Marches with a user-defined integrator; why: the reason of a failure."""
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
         self.system, self.integrator, self.time = system, integrator, begin
@@ -216,7 +216,7 @@ class OwnSteps:
 
 
 def refuse_what_own_steps_lack(system: System) -> None:
-    """Raise InputError for models whose motions integrators of one's own do not take."""
+    """Raise InputError for models that user-defined integrators do not support."""
     moved = [item for item in system.prescribed if callable(item.value)]
     if moved:
         raise InputError(

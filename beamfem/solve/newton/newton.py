@@ -36,7 +36,7 @@ def solve_equilibrium(
 
 
 def _with_digits(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
-    """Return a result with the number of reliable digits of its forces and the last correction of its state."""
+    """Return a result with the number of reliable digits of its forces and, if these are few, a corrected state."""
     if result.ended is Termination.CONVERGED and math.isnan(result.digits):
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Termination.ROUND_OFF:

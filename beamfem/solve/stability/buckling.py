@@ -31,11 +31,11 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
+_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further are meaningless
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
 _LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
-_UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
+_UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Load steps that stay on the path: by load if that is safe, otherwise by arc length."""
+"""Load steps that stay on the path: by load factor if that is safe, otherwise by arc length."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -17,12 +17,12 @@ from beamfem.solve.statics.static_record import StaticRecord
 
 Snap = Literal["error", "jump"]
 
-_CUTS = 4  # in succession, before the path is followed by its length
+_CUTS = 4  # in succession, before the path is followed by arc length
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
-SAME = 1e-12  # of the load factor: no nearer than this are two of them
+SAME = 1e-12  # of the load factor: smaller differences count as zero
 _BESIDE = 1e-4  # of the load factor of a limit point, which is located to about 1e-8
-_SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
+_SHORTEST_TURN = 1e-9  # of the load factor: a larger rotation within this is a jump
 
 
 def reach(
@@ -42,7 +42,7 @@ def reach(
     ahead = sorted({stop for stop in stops if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
-    # what remembers goes through the steps that are asked for
+    # connectors with history go through the requested steps
     longest = step if len(system.connectors.memory) else 1.0
     with progress("load factor", end) as report:
         while done.reached < end:
@@ -59,7 +59,7 @@ def reach(
                 if result.iterations <= _EASY_ITERATIONS:
                     step = min(2.0 * step, longest)
             elif result.ended is Termination.NO_DIGITS:
-                # what round-off takes of a load it takes of a smaller one as well
+                # round-off that hides a load hides a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
             elif cuts < _CUTS:
                 cuts += 1
@@ -74,7 +74,7 @@ def reach(
                     done.solution(),
                 )
             else:
-                # behind what the load step could not pass, a longer one is tried once
+                # beyond the point that the load step could not pass, a longer one is tried once
                 _follow(done, follower, (target, stop), snap)
                 refused = 1.0
                 step *= 2.0
@@ -123,10 +123,10 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
 
 
 def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyond: np.ndarray, end: float) -> bool:
-    """Add a row beyond a critical point (n + 1,) where a branch merges into a stable path; tell whether it does.
+    """Add a row beyond a critical point (n + 1,) at which a branch merges into a stable path; return whether it does.
 
-    There it comes to rest no further away than it moved on as small a part of the load before; beyond a limit point it
-    goes far.
+    In this case the structure comes to rest as close as it moved over an equally small part of the load before; beyond
+    a limit point it moves far.
     """
     load_factor = float(point[-1])
     target = min((1.0 + _BESIDE) * load_factor, end)

@@ -90,7 +90,7 @@ def solve_static(
 
 
 def _ascending(at: Sequence[float]) -> list[float]:
-    """Check the load factors requested by a user."""
+    """Return the load factors requested by a user. Raises InputError."""
     wanted = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
     rising = all(after - before > SAME for before, after in pairwise(wanted))
     if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
@@ -104,7 +104,7 @@ def _ascending(at: Sequence[float]) -> list[float]:
 def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
     """Return the rows at some load factors, with the rotations counted over all rows."""
     near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
-    # behind a jump the last of several states at a load factor
+    # after a jump, the last of several states at a load factor
     rows = np.array([np.flatnonzero(own)[-1] for own in near if own.any()], dtype=int)
     stability = None if solution.stability is None else solution.stability[rows]
     states = {name: getattr(solution, name)[rows] for name in ("at", "p", "v", "a")}
@@ -120,7 +120,7 @@ def solve_through(
     snap: Snap = "error",
     end: float = 1.0,
 ) -> Solution:
-    """Return the same with rows at load factors `stops` in between, up to the load factor `end`."""
+    """Return the static solution up to the load factor `end`, with rows at the load factors `stops`."""
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
     system = system_of(model, static=True)

@@ -36,7 +36,7 @@ def test_a_new_model_file_runs_as_it_stands(tmp_path, monkeypatch):
     assert -0.3 < end["uy"] < 0.0
 
 
-@pytest.mark.parametrize(("name", "words"), [("a.txt", "a.toml would be right"), ("there.toml", "is there already")])
+@pytest.mark.parametrize(("name", "words"), [("a.txt", "a.toml would be right"), ("there.toml", "already exists")])
 def test_a_new_model_file_takes_no_place_of_another(tmp_path, name, words):
     (tmp_path / "there.toml").write_text("mine")
     done = invoke("new", tmp_path / name)

@@ -66,7 +66,7 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
     if not isinstance(found, float):
         yield from found
     elif end - start < _SHARPNESS:
-        raise SegmentLostError("the tangent is singular at several points that cannot be told apart")
+        raise SegmentLostError("the tangent is singular at several points that cannot be distinguished")
     else:
         yield from _search(segment, start, found)
         yield from _search(segment, found, end)

@@ -108,7 +108,7 @@ def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correctio
             values, mixed = eigh(stiffness[part, part], mass[part, part])
         except LinAlgError:
             raise ConvergenceError(
-                "the tangent of so slender a model has no digits left, and modes cannot be told from one another"
+                "the tangent of such a slender model has no reliable digits, so that modes cannot be distinguished"
             ) from None
         parts.append((values, vectors[:, part] @ mixed))
     return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([found for _, found in parts]))

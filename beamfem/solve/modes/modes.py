@@ -243,7 +243,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if left > 0.0:
         raise InputError(
             f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
-            "is left over. Give about= a state of solve_static with the same loads"
+            "is unbalanced. Give about= a state of solve_static with the same loads"
         )
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")

@@ -25,15 +25,18 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
     for item in system.connectors.items:
         if follows_time(item)[1]:
             raise InputError(
-                f"conditions of {item.name} depend on time, which simulate does not take; let a Prescribed support move"
+                f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
+                "move"
             )
         own = item.own - system.model.coordinates
         if np.any(np.abs(gaps[own]) > _MET * system.extent):
-            raise InputError(f"the start of the motion does not meet what {item.name} asks for: {gaps[own]} is left")
+            raise InputError(
+                f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[own]}"
+            )
         if np.any(np.abs(rates[own]) > _MET * fastest):
             raise InputError(
-                f"the initial velocity does not meet what {item.name} asks for: its conditions change by {rates[own]} "
-                "per second. Give all that it connects velocities that go together, such as one RigidVelocity"
+                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[own]} "
+                "per second. Give all that it connects compatible velocities, such as one RigidVelocity"
             )
 
 

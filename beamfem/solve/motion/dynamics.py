@@ -138,7 +138,7 @@ def _solution(
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
-        ended += f"; the {name} varies within steps, which is lost"
+        ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
     p, v, a = states.swapaxes(0, 1)

@@ -220,11 +220,11 @@ def refuse_what_own_steps_lack(system: System) -> None:
     moved = [item for item in system.prescribed if callable(item.value)]
     if moved:
         raise InputError(
-            f"{moved[0].point} is moved, which an integrator of one's own does not take: use GeneralizedAlpha, or let "
+            f"{moved[0].point} is moved, which user-defined integrators do not support: use GeneralizedAlpha, or let "
             "supports rest"
         )
     if len(system.connectors.multipliers):
         raise InputError(
-            "connectors with unknowns of their own are there, which an integrator of one's own does not take: use "
+            "the model has connectors with unknowns of their own, which user-defined integrators do not support: use "
             "GeneralizedAlpha"
         )

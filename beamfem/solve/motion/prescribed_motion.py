@@ -28,7 +28,7 @@ def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
     if any(isinstance(item.value, Sampled) for item in system.prescribed):
         raise InputError(
             "a prescribed motion of this model was saved as values, which have no accelerations between them; "
-            "give the function again to run it on"
+            "give the function again to continue it"
         )
     values = np.zeros((len(ends), 3, len(system.prescribed)))
     if not any(callable(item.value) for item in system.prescribed):

@@ -94,7 +94,7 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
             warnings.warn(
                 f"the {course.name} varies more within the step from {ends[first]:.6g} s to {ends[first + 1]:.6g} s "
                 f"than between its ends, where steps take it ({int(bulging.sum())} such steps): what happens in "
-                "between is lost. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
+                "between is not resolved. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
                 stacklevel=3,
             )
     return found

@@ -239,5 +239,5 @@ def _met(until: Until, state: PathState) -> bool:
         error.add_note(f"raised by `until`, for the state at load factor {state.load_factor:.6g}")
         raise
     if not isinstance(answer, bool | np.bool_):
-        raise InputError(f"until must give True or False for a state of the path, got {answer!r}")
+        raise InputError(f"until must return True or False for a state of the path, got {answer!r}")
     return bool(answer)

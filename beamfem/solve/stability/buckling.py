@@ -69,7 +69,7 @@ class Buckling:
     --------
     >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
     >>> bf.solve_buckling(column)
-    Buckling(bifurcation at load factor 539.15711; ended because 1 are asked for)
+    Buckling(bifurcation at load factor 539.15711; ended because the requested number, 1, was found)
     """
 
     model: Model
@@ -310,7 +310,7 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
             if point.kind == LIMIT_POINT:
                 return found[:count], "the path has its largest load factor there", Status.COMPLETED
         if len(found) >= count:
-            return found[:count], f"{count} are asked for", Status.COMPLETED
+            return found[:count], f"the requested number, {count}, was found", Status.COMPLETED
         if path.moved(here) > _LARGEST_MOVEMENT:
             return found, "the model has moved by more than its own length", Status.COMPLETED
         if here.load_factor > farthest:

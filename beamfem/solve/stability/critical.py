@@ -139,7 +139,7 @@ class Search:
                     break
             before = found
         if best is None:
-            raise PathLostError("critical points lie too close together to be told apart")
+            raise PathLostError("critical points are too close together to be distinguished")
         return best
 
     def _centred(self, place: float, radius: float) -> tuple[Window, list[Zero]]:

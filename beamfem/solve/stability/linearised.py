@@ -35,7 +35,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
         rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNROTATED)
     if not is_symmetric(csr_array(stiffness + width * rate)):
         raise InputError(
-            "some load turns with the beam and its work depends on the way: such loads can make a structure "
+            "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
         )
     factors = tangent.factorised(system.rotated)

@@ -127,7 +127,7 @@ class LoadingPath:
             shift *= 4.0
         found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
         if not len(found[0]):
-            raise ConvergenceError("round-off leaves the softest modes of the tangent no digits")
+            raise ConvergenceError("round-off leaves no digits of the softest modes of the tangent")
         # of the size of the lowest eigenvalues, which change little from one state to the next
         self._shift = 2.0 * min(float(found[0][0]), 0.0) - float(np.abs(found[0][:2]).max())
         return Softest(found[0][:count], found[1][:, :count])

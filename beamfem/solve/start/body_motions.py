@@ -128,7 +128,7 @@ def mechanisms(conditions: Conditions) -> np.ndarray:
             values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
         except ArpackError as error:
             raise ConvergenceError(
-                f"whether {conditions.bodies} bodies can move freely could not be found out: {error}"
+                f"whether {conditions.bodies} bodies can move freely could not be determined: {error}"
             ) from error
         if values.max() >= NEGLIGIBLE:
             return np.asarray(vectors.T[values < NEGLIGIBLE])

@@ -22,7 +22,7 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     if room > 0.0:
         enough = int(-(-(steps * _STATE * coordinates) // room))
         raise InputError(f"{message}; save_every={enough} would fit")
-    raise InputError(f"{message}; take a larger step, or a shorter duration and go on from the last state")
+    raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
 
 
 def require_room(states: int, coordinates: int) -> None:

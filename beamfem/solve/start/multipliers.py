@@ -16,7 +16,7 @@ def refuse_multipliers(system: System, analysis: str) -> None:
     for item in system.connectors.items:
         if len(item.own):
             raise InputError(
-                f"{analysis} takes no connectors with unknowns of their own, which {item.name} has; solve_static "
+                f"{analysis} does not support connectors with unknowns of their own, such as {item.name}; solve_static "
                 "and simulate do. A stiff spring in its place has none"
             )
 
@@ -26,7 +26,8 @@ def refuse_memory(system: System, analysis: str) -> None:
     for item in system.connectors.items:
         if len(item.memory):
             raise InputError(
-                f"{analysis} takes no connectors that remember, as {item.name} does; solve_static and simulate do"
+                f"{analysis} does not support connectors with history, such as {item.name}; solve_static and "
+                "simulate do"
             )
 
 
@@ -59,6 +60,6 @@ def dependent(system: System) -> str:
     """Return the message that conditions of connectors are linearly dependent."""
     names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
     return (
-        f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "
-        "multipliers cannot be told apart; leave out those that are not needed"
+        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
+        "multipliers are not unique; leave out those that are not needed"
     )

@@ -69,8 +69,8 @@ def reach(
             elif len(system.connectors.memory):
                 raise ConvergenceError(
                     f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
-                    f"{result.ended.value}; models with connectors that remember are not followed along a path, but "
-                    "simulate shows where they go",
+                    f"{result.ended.value}; models with connectors that have history are not followed along a "
+                    "path, but simulate shows how they move",
                     done.solution(),
                 )
             else:
@@ -144,11 +144,11 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
     """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
-    where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
+    where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
         raise LimitPointError(
-            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to where the structure comes to '
-            "rest; or let a Prescribed displacement lead instead of the load",
+            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
+            "structure comes to rest; or prescribe a displacement (Prescribed) instead of the load",
             load_factor,
             done.solution(),
         )
@@ -160,5 +160,5 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += found.iterations
     if not found.ended.good:
-        raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())
+        raise LimitPointError(f"{where}, and no state of rest was found beyond it", load_factor, done.solution())
     done.add(load_factor, found.state, found.negative_pivots, found.ended, found.digits)

@@ -17,9 +17,9 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     """Return whether a load step to `target` may have passed limit points.
 
     This is so if linearised stability predicts a critical point before its end, or if the tangent at its start leads
-    far beyond its end, as near a limit point; this is not tested from the reference, where it also happens to a straight
-    beam that is stiffened by its own tension. If the iteration was slow, it is also so if the state half-way has another
-    count of negative pivots, or if the step has another direction than the tangents at its ends.
+    far beyond its end, as near a limit point; this is not tested from the reference, where it also happens to a
+    straight beam that is stiffened by its own tension. If the iteration was slow, it is also so if the state half-way
+    has another count of negative pivots, or if the step has another direction than the tangents at its ends.
     """
     if result.linear is not None:
         done.iterations += 1

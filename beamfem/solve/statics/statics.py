@@ -95,7 +95,7 @@ def _ascending(at: Sequence[float]) -> list[float]:
     rising = all(after - before > SAME for before, after in pairwise(wanted))
     if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
         raise InputError(
-            "at of solve_static must be load factors that rise within 0 and 1, such as [0.25, 0.5, 1.0], got "
+            "at of solve_static must be ascending load factors between 0 and 1, such as [0.25, 0.5, 1.0], got "
             f"{shown(at)}"
         )
     return wanted

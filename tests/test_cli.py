@@ -255,7 +255,7 @@ def test_mistakes_with_studies(studies, tmp_path):
         (("nothing",), "--elements"),
         (("nothing", "--elements", "x"), "--elements"),
         (("nothing", "--elements", 1, "--lenght", 2), "--length"),
-        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is no int"),
+        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is not a valid int"),
         (("nothing", "--elements", 1, "--element", "CRFB(2)"), "did you mean CRBF"),
         (("nothing", "--elements", 1, "--element", "CRBF"), "needs its order"),
         (("nothing", "--elements", 1, "--length", "-1"), "length must be positive"),

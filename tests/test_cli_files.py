@@ -83,7 +83,7 @@ def test_a_colour_that_nobody_knows_is_named(saved, tmp_path):
     done = invoke("plot", saved, tmp_path / "a.png", "--colour", "momnet")
     assert done.exit_code == 2
     assert "did you mean moment" in done.stderr
-    assert "has colours to choose from" in invoke("plot", saved, tmp_path / "a.html", "--colour", "moment").stderr
+    assert "has its own choice of colours" in invoke("plot", saved, tmp_path / "a.html", "--colour", "moment").stderr
 
 
 def test_export_takes_what_one_chooses(saved, tmp_path):

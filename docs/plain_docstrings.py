@@ -9,8 +9,6 @@ _CONSTANTS = ("name", "code", "turns_with", "fills_body", "shear_measures", "vec
 
 def as_markup(app, kind, name, thing, options, lines):
     """Escape what would be markup and show `code` as code; examples and underlines of sections stay as they are."""
-    if kind in ("attribute", "data", "property"):
-        lines.insert(0, "")  # napoleon takes what comes before a colon in the first line for a type
     shown = False  # an example, which ends with an empty line
     for place, line in enumerate(lines):
         shown = bool(line.strip()) and (shown or line.lstrip().startswith(">>>"))

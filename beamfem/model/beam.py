@@ -168,7 +168,7 @@ class Beam:
 
     @property
     def shortest(self) -> float:
-        """Shortest element as a fraction of the length, before supports and loads divide it; knot spans: the mean."""
+        """Shortest element as a fraction of the length, before supports and loads divide it; the mean for knot spans."""
         whole = isinstance(self.elements, int | str)
         return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 

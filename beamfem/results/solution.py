@@ -160,7 +160,7 @@ class Solution(Quantities, Pictures, Exports):
 
     @cached_property
     def stable(self) -> np.ndarray:
-        """Whether each row is a stable equilibrium (steps,): no small motion about it grows.
+        """Whether each row is a stable equilibrium (steps,), about which no small motion grows.
 
         Without follower loads: the tangent stiffness has no negative eigenvalue (Lagrange-Dirichlet theorem). With
         them: no mode of vibration diverges or flutters. Raises InputError for a motion.

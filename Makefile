@@ -15,6 +15,7 @@ verify: $(VENV)/.ready
 
 bench: $(VENV)/.bench
 	$(BIN)/python -m studies.benchmarks.peers
+	$(BIN)/python -m studies.benchmarks.fresh_models
 	$(BIN)/python -m studies.benchmarks.chain_growth
 	$(BIN)/python -m studies.benchmarks.roofline
 	$(BIN)/python -m studies.benchmarks.compile_budget

@@ -100,6 +100,7 @@ __all__ = [
     "Pressure",
     "Rectangle",
     "Remembering",
+    "RememberingLaw",
     "Rigid",
     "RigidVelocity",
     "Roller",

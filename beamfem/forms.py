@@ -10,31 +10,33 @@ import numpy as np
 from skfem import Basis, BilinearForm, Functional, LinearForm
 from skfem.helpers import ddot, dot, eye, grad, identity, mul, trace, transpose
 
-from beamfem.element.gauss import gauss
 from beamfem.element.skfem_element import BeamMapping, FieldElement
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import sections_at
+from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
 
+_ALL = slice(None)
 
-def beam_basis(mesh: BeamMesh, points: int | None = None) -> Basis:
+
+def beam_basis(mesh: BeamMesh, points: int | None = None, elements: slice = _ALL) -> Basis:
     """Return the basis of a beam, quadrature (s, y) over its length and the strips of its sections where they are.
 
-    points: Gauss points along an element; without it those of the beam's elastic forces.
+    points: Gauss points along an element; without it those of the beam's elastic forces; elements: a smooth piece.
     """
-    own = mesh.beam.element
+    own, chosen = mesh.beam.element, np.arange(mesh.elements)[elements]
     xi, along = own.quadrature() if points is None else gauss(points)
-    element, at = np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements)
+    element, at = np.repeat(chosen, len(xi)), np.tile(xi, len(chosen))
     material = mesh.beam.material
     if isinstance(mesh.beam.section, CrossSection):
         strips = [mesh.beam.section.strips(material)] * len(at)
     else:
         strips = [section.strips(material) for section in sections_at(mesh, element, at)]
     y, across = (np.array([np.concatenate([part[n] for part in parts]) for parts in strips]) for n in (1, 2))
-    shape = (mesh.elements, -1)
+    shape = (len(chosen), -1)
     X = np.stack([np.repeat(at[:, None], y.shape[1], axis=1).reshape(shape), y.reshape(shape)])
-    W = (np.tile(along, mesh.elements)[:, None] * across).reshape(shape)
-    line = mesh.skfem
+    W = (np.tile(along, len(chosen))[:, None] * across).reshape(shape)
+    line = mesh.skfem(elements)
     return Basis(line, FieldElement(own.field), mapping=BeamMapping(line), quadrature=(X, W))
 
 
@@ -44,11 +46,14 @@ def mass_basis(mesh: BeamMesh) -> Basis:
     return beam_basis(mesh, max(field.degree, field.director_degree) + 1)
 
 
-def axis_basis(mesh: BeamMesh) -> Basis:
-    """Return the basis of a beam with points on its axis alone, which integrates over the length."""
+def axis_basis(mesh: BeamMesh, elements: slice = _ALL) -> Basis:
+    """Return the basis of a beam with points on its axis alone, which integrates over the length.
+
+    elements: those of a smooth piece.
+    """
     field = mesh.beam.element.field
     xi, weights = gauss(max(field.degree, field.director_degree) + 1)
-    line = mesh.skfem
+    line = mesh.skfem(elements)
     points = np.stack([xi, np.zeros_like(xi)])
     return Basis(line, FieldElement(field), mapping=BeamMapping(line), quadrature=(points, weights))
 

@@ -58,7 +58,7 @@ from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.results.postprocess import Fields, SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Status
-from beamfem.section import Circle, Layer, Layered, Rectangle, Section, SectionLaw, Tube
+from beamfem.section import Circle, Layer, Layered, Rectangle, RememberingLaw, Section, SectionLaw, Tube
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha

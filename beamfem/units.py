@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from beamfem.errors import InputError
@@ -37,9 +38,14 @@ class Units:
 
 def units_of(given: Any) -> Units:
     """Return the units of a text such as "N, mm" or "kN, m, s", in any order. Raises InputError."""
+    return _units_of(text("units", given))
+
+
+@lru_cache(maxsize=16)
+def _units_of(given: str) -> Units:
     found: dict[str, str] = {}
     kinds = {"force": FORCES, "length": LENGTHS, "time": TIMES}
-    for name in (part.strip() for part in text("units", given).split(",")):
+    for name in (part.strip() for part in given.split(",")):
         kind = next((kind for kind, names in kinds.items() if name in names), None)
         if kind is None:
             known = [*FORCES, *LENGTHS, *TIMES]

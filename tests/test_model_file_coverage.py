@@ -113,6 +113,7 @@ NO_KEY = {
     "Curve": "what curves have in common",
     "Integrator": "what integrators have in common; [analysis] integrator takes any class",
     "EquationsOfMotion": "what an integrator is given",
+    "RememberingLaw": "as SectionLaw",
     "SectionLaw": "what sections with a law have in common; [sections.NAME] takes any class",
     "BeamStress": "a result, of which outputs ask",
     "Bifurcation": "a result; [analysis] start counts them",

@@ -66,7 +66,7 @@ def test_a_function_of_ones_own_is_projected():
 @pytest.mark.parametrize(
     ("curve", "elements", "said"),
     [
-        (bf.Polyline([(0, 0), (1, 0), (1, 1)]), 4, "has corners"),
+        (bf.Polyline([(0, 0), (1, 0), (1, 1)]), 4, "has corners.*one of its 2 smooth pieces, such as piece=0"),
         (SPLINE, "knots", "knot spans"),
     ],
 )
@@ -75,6 +75,20 @@ def test_beams_without_one_basis_are_refused(curve, elements, said):
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], []))
     with pytest.raises(bf.InputError, match=said):
         bf.field_on_basis(solution, beam)
+
+
+@pytest.mark.parametrize("element", [bf.ANCF(), bf.CRBF(2, bf.ContinuumMechanics())])
+def test_the_pieces_of_a_beam_with_corners_add_up_to_the_beam(element):
+    beam, solution = bent(element, bf.Polyline([(0, 0), (0.5, 0), (0.5, 0.3), (0.9, 0.3)]), elements=12)
+    lam, mu = STEEL.lame_lambda(), STEEL.shear_modulus
+    fields = [bf.field_on_basis(solution, beam, piece=piece) for piece in range(3)]
+    energies = [strain_energy.assemble(field.basis, u=field.interpolate(), lam=lam, mu=mu) for field in fields]
+    assert sum(energies) == pytest.approx(solution.energy().strain[-1], rel=1e-9)
+    axes = [bf.field_on_basis(solution, beam, body=False, piece=piece) for piece in range(3)]
+    lengths = [length.assemble(axis.basis, u=axis.interpolate(0)) for axis in axes]
+    assert lengths == pytest.approx([0.5, 0.3, 0.4], rel=1e-12)
+    with pytest.raises(bf.InputError, match="piece of field_on_basis must be between -3 and 2, got 3"):
+        bf.field_on_basis(solution, beam, piece=3)
 
 
 def test_what_is_no_solution_or_no_row_is_named():

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from studies.benchmarks import chain_growth, flop_counts, roofline, roofline_cases
+import beamfem as bf
+from studies.benchmarks import chain_growth, flop_counts, fresh_models, roofline, roofline_cases
 
 
 def test_operations_of_plain_numbers():
@@ -62,3 +63,14 @@ def test_growth_measures_a_chain(analysis):
     assert peak > 50.0
     assert np.isnan(error) if analysis == "motion" else error < 1e-6
     assert len(found) + 4 == len(chain_growth.HEADER)
+
+
+def test_fresh_models_are_those_of_the_table(tmp_path, capsys):
+    rows = fresh_models.main((2,), rounds=1, folder=tmp_path)
+    assert [row[:2] for row in rows] == [(name, 2) for name in fresh_models.ELEMENTS]
+    assert all(time > 0.0 for row in rows for time in row[2:])
+    assert "solved again" in capsys.readouterr().out
+    # P L^3 / 3 E I of a small load, whatever the measures
+    for size in (1.0, 1.5):
+        moved = fresh_models.tip(fresh_models.model(bf.CRBF(4), 2, 1e-3, size))
+        assert moved == pytest.approx(1e-3 * size**3 / (3.0 * 2e11 * size * (0.01 * size) ** 4 / 12.0), rel=1e-4)

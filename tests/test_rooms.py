@@ -47,6 +47,7 @@ ROOMS = (
     "files",
     "progress",
     "memory",
+    "quadrature",
     "registry",
     "units",
     "validation",

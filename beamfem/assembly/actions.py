@@ -1,9 +1,11 @@
 """Forces, moments and springs at points of elements, as the kernels take them."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
@@ -12,6 +14,8 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
+
+_FEW = 8  # points at once whose tables are kept
 
 
 @dataclass(frozen=True)
@@ -58,8 +62,11 @@ def build_actions(model: Model, block: int) -> Actions:
             part = _part(mesh, element, xi, np.zeros((len(xi), 3)), -1, False, len(xi) // mesh.elements)
             part["spring"] = np.outer(weight, foundation.stiffness)
             parts.append(part)
-    size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
-    joined = {name: np.concatenate([empty, *(part[name] for part in parts)]) for name, empty in _empty(size).items()}
+    if len(parts) == 1:
+        joined = dict(parts[0])
+    else:
+        size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
+        joined = {name: np.concatenate([own, *(part[name] for part in parts)]) for name, own in _empty(size).items()}
     own = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
     return Actions(PointLoads(**joined), **own, loads=(*points, *lines))
 
@@ -115,30 +122,40 @@ def _part(
     mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
 ) -> dict[str, np.ndarray]:
     """Rows of the point loads for points (element, xi) of a beam."""
-    own = mesh.beam.element
-    field, count = own.field, len(element)
+    own, count = mesh.beam.element, len(element)
     scale = scales(own, mesh.lengths[element])
-    position = np.zeros_like(scale)
-    position[:, r_slots(field)] = field.centreline(xi)
+    position, direction = _tables(own, xi) if count > _FEW else _tables_few(own, xi.tobytes())
     if own.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
-    else:
-        direction = np.zeros_like(scale)
-        direction[:, d_slots(field)] = field.director(xi)
     # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
     reference = reference_axis(mesh, element, xi)
     along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
+    if follower:
+        follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)
     return {
         "element": mesh.first_element + element,
         "position": position * scale,
         "direction": direction * scale,
-        "follows": along if follower else np.zeros((count, 2)),
-        "stretches": np.zeros(count, dtype=bool),
-        "spring": np.zeros((count, 2)),
+        "follows": follows,
+        "stretches": none,
+        "spring": spring,
         "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
         "unit": unit,
-        "source": np.full(count, source),
+        "source": np.repeat(source, count),
         "xi": xi,
-        "rule": np.full(count, rule),
+        "rule": np.repeat(rule, count),
     }
+
+
+def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tables (n, nv) of r0 and d at points, of nodal vectors times their scale."""
+    field = element.field
+    position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
+    position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
+    return position, direction
+
+
+@lru_cache(maxsize=64)  # loads at the ends of beams ask for the same ones time and again
+def _tables_few(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
+    return _tables(element, np.frombuffer(xi))

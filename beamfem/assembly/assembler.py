@@ -10,6 +10,7 @@ from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
+from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 
 Stresses = Sequence[np.ndarray]
@@ -60,10 +61,11 @@ class Equations:
 class Assembler:
     """Equations with space of their own: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; numbers: in its work space.
+    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in` gives
+    it memory to work in before each solve; numbers: in its work space; scratch: of them in that memory.
     """
 
-    def __init__(self, equations: Equations, stresses: Stresses | None = None) -> None:
+    def __init__(self, equations: Equations, stresses: Stresses | None = None, lent: bool = False) -> None:
         self.equations, self.size, sheets = equations, equations.size, equations.sheets
         self._imposes = any(sheet.imposed is not None for sheet in sheets)
         self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
@@ -77,9 +79,9 @@ class Assembler:
             },
             np.int64,
         )
-        shapes: dict[object, Sequence[int]] = {"factors": (3,)}
+        shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
         for number, sheet in enumerate(sheets):
-            shapes |= {("chunks", number): sheet.chunks, ("space", number): (sheet.space,)}
+            shapes["chunks", number] = sheet.chunks
             if stresses is None:
                 shapes[("stress", number)] = sheet.points
         room = Arena(shapes)
@@ -94,15 +96,12 @@ class Assembler:
                 place = address_of(stress)
             if sheet.constant is not None:
                 chunks[:] = sheet.constant
-            table[record.CHUNKS], table[record.SPACE] = (
-                room.addresses["chunks", number],
-                room.addresses["space", number],
-            )
-            table[record.STRESS] = place
+            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", number], place
             self.works.append(Work(sheet, table, whole.addresses[number], chunks, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]
-        self.numbers = sum(array.size for array in room.arrays.values())
+        self.scratch = WIDTH * count + sum(sheet.space for sheet in sheets)
+        self.numbers = self.scratch + sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self._natural: tuple[np.ndarray, ...] = ()
         self._taken: LoadsAt | None = None
@@ -113,6 +112,16 @@ class Assembler:
         )
         self.table[record.FACTORS] = room.addresses["factors"]
         self._tables = tuple(whole.arrays.values())
+        if not lent:
+            self.work_in(np.zeros(self.scratch))
+
+    def work_in(self, memory: np.ndarray) -> None:
+        """Take memory (scratch,) or more for what passes work on; what it holds means nothing from call to call."""
+        self._scratch, place = memory, address_of(memory)
+        for work in self.works:
+            place += -place % (8 * WIDTH)  # lanes do not lie across two lines of the cache
+            work.table[record.SPACE], work.table[record.FILLED] = place, 0
+            place += 8 * work.sheet.space
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:
@@ -123,7 +132,7 @@ class Assembler:
     def memory(self) -> tuple[np.ndarray, ...]:
         """The arrays that compiled code reads and writes, but for those that a state is placed in."""
         kept = [array for sheet in self.equations.sheets for array in sheet.kept]
-        acting = (*self._acting, *self._natural)
+        acting = (self._scratch, *self._acting, *self._natural)
         return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *acting)
 
     def take(self, loads: LoadsAt) -> None:
@@ -160,12 +169,12 @@ class Assembler:
             work.table[record.NATURAL] = place
         return places
 
-    def weigh(self, coefficients: Sequence[float]) -> None:
+    def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
         """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too.
 
-        Likewise cv = ca = 0 leaves out damping.
+        Likewise cv = ca = 0 leaves out damping. dt [s]: time step from the committed history.
         """
-        self._factors[:] = coefficients
+        self._factors[:] = *coefficients, dt
         moving, rated = coefficients[2] != 0.0, coefficients[1] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 

@@ -1,5 +1,8 @@
 """The arrays that the compiled iteration of a band works on, kept for the next solve of the same model."""
 
+import numpy as np
+
+from beamfem.assembly import scratch
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.system import System
@@ -17,7 +20,7 @@ class BandSpace:
 
     def __init__(self, system: System) -> None:
         n, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        self.assembler = system.assembler()
+        self.assembler = system.assembler(lent=True)
         self.assembler.weigh(STATICS)
         self.assembler.require("tangent", "prediction")
         self._room = Arena(
@@ -48,13 +51,21 @@ class BandSpace:
 
     def give_back(self, system: System) -> None:
         """Leave it for the next solve, if it is small."""
+        scratch.take_back(self._scratch)
         if self._entries <= _KEPT:
             system.spare.append(self)
+
+    def take(self, memory: np.ndarray) -> None:
+        """Take memory to work in until it is given back."""
+        self._scratch = memory
+        self.assembler.work_in(memory)
 
 
 def band_space(system: System) -> BandSpace:
     """Return space that no other solve works in."""
     try:
-        return system.spare.pop()
+        found: BandSpace = system.spare.pop()
     except IndexError:
-        return BandSpace(system)
+        found = BandSpace(system)
+    found.take(scratch.lend(found.assembler.scratch))
+    return found

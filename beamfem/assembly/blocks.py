@@ -1,18 +1,19 @@
 """From beam meshes to the plain arrays of the kernels."""
 
 from collections.abc import Hashable, Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, r_slots
-from beamfem.kernels.block import ELASTIC_LINE, Block
+from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
+_FEW = 2000  # elements; what belongs to larger blocks is not kept
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
 
@@ -23,7 +24,6 @@ def build_block(
 
     imposing: loads that impose strains, each with the number of its beam.
     """
-    field = element.field
     xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
@@ -34,26 +34,18 @@ def build_block(
         if like not in known:
             for name in _PER_CLASS:
                 parts[name].append(getattr(mesh.classes, name))
-            known[like] = first_kind + mesh.classes.kind
+            known[like] = mesh.classes.kind + first_kind if first_kind else mesh.classes.kind
             first_kind += len(mesh.classes.scale)
         kinds.append(known[like])
-    joined = {name: np.ascontiguousarray(np.concatenate(values)) for name, values in parts.items()}
-    joined.update(_numbers(meshes), kind=np.concatenate(kinds))
-    table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
-    curved = np.zeros_like(table)
-    table[:, r_slots(field)], table[:, d_slots(field)] = field.centreline(xi, 1), field.director(xi, 1)
-    curved[:, r_slots(field)] = field.centreline(xi, 2)
-    # from derivatives by xi to those by arc length
-    scale, inverse = joined["scale"][:, None, :], 1.0 / joined["jacobian"][:, :, None]
-    second = (curved - joined.pop("jacobian_xi")[:, :, None] * inverse * table) * scale * inverse**2
-    bends, law = element.forces.code == ELASTIC_LINE, own[0].beam.law
+    joined = {name: _joined(values) for name, values in parts.items()}
+    joined.update(_numbers(meshes), kind=_joined(kinds))
+    law = own[0].beam.law
     return Block(
         measures=element.forces.code,
-        slope=np.ascontiguousarray(table * scale * inverse),
-        second=np.ascontiguousarray(second) if bends else np.empty((0, 0, 0)),
-        director=np.ascontiguousarray(field.director(xi)),
+        director=np.ascontiguousarray(element.field.director(xi)),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
+        history=_joined([mesh.history for mesh in own]) if own[0].history.size else NO_HISTORY,
         **joined,
     )
 
@@ -65,9 +57,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     node = _joined([mesh.node for mesh in own])
     if len(own) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
-    home = np.empty((nodes.sum(), 2), dtype=np.int64)
-    for place, there in enumerate(node.T):
-        home[there, 0], home[there, 1] = np.arange(len(node)), place
+    home = _homes(node, int(nodes.sum())) if len(node) > _FEW else _homes_of_few(node.tobytes(), node.shape)
     width = max(mesh.carried.dof.shape[1] for mesh in own)
     return {
         "node": node,
@@ -77,6 +67,21 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
         "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),
         "home": home,
     }
+
+
+def _homes(node: np.ndarray, nodes: int) -> np.ndarray:
+    """Return an element of each node and its place there (nodes, 2)."""
+    home = np.empty((nodes, 2), dtype=np.int64)
+    for place, there in enumerate(node.T):
+        home[there, 0], home[there, 1] = np.arange(len(node)), place
+    home.setflags(write=False)
+    return home
+
+
+@lru_cache(maxsize=64)
+def _homes_of_few(node: bytes, shape: tuple[int, int]) -> np.ndarray:
+    own = np.frombuffer(node, dtype=np.int64).reshape(shape)
+    return _homes(own, int(own.max()) + 1)
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:

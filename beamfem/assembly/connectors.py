@@ -14,6 +14,7 @@ from beamfem.model.model import Model
 
 _ROUND_OFF = 1e-13  # of the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
+_NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,33 +28,22 @@ class Connectors:
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Numbers (k,) of the unknowns of their own."""
-        return np.concatenate([np.empty(0, dtype=np.int64), *(item.own for item in self.items)])
+        return np.concatenate([_NO_NUMBERS, *(item.own for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def memory(self) -> np.ndarray:
         """Numbers (h,) of what they remember."""
-        return np.concatenate([np.empty(0, dtype=np.int64), *(item.memory for item in self.items)])
+        return np.concatenate([_NO_NUMBERS, *(item.memory for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def start(self) -> np.ndarray:
         """What they remember at the start (h,)."""
-        return np.concatenate([np.empty(0), *(remembered(item.item) for item in self.items)])
+        return np.concatenate([_NOTHING, *(remembered(item.item) for item in self.items)]) if self.items else _NOTHING
 
-    def after_step(self, motion: Motion, time: float) -> np.ndarray:
-        """Return p (n,) with what they remember once a step to this state is accepted."""
-        if len(self.memory) == 0:
-            return motion[0]
-        gravity, p = self.gravity(time), motion[0].copy()
-        for item in self.items:
-            p[item.memory] = item.remember(item.at(motion, time, gravity))
-        return p
-
-    def after_load_step(self, p: np.ndarray, load_factor: float) -> np.ndarray:
-        """Return p (n,) with what they remember once an equilibrium is accepted."""
-        if len(self.memory) == 0:
-            return p
-        zeros = np.zeros(len(p))
-        return self.after_step((p, zeros, zeros), load_factor)
+    def remember(self, motion: Motion, time: float) -> np.ndarray:
+        """Return what they remember (h,) once a step to this state is accepted."""
+        gravity = self.gravity(time)
+        return np.concatenate([np.empty(0), *(item.remember(item.at(motion, time, gravity)) for item in self.items)])
 
     @property
     def conservative(self) -> bool:

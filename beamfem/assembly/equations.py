@@ -18,11 +18,14 @@ _EMPTY = np.empty(0)
 _KEPT = 200_000  # numbers of a work space up to which making it takes a part of an evaluation that anybody would notice
 
 
-def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
-    """Return inertia + elastic - external generalized forces (n,) [N, N m]: reactions at prescribed coordinates."""
+def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float = 0.0) -> np.ndarray:
+    """Return inertia + elastic - external generalized forces (n,) [N, N m]: reactions at prescribed coordinates.
+
+    dt [s]: time step from the committed history, 0 in an accepted state.
+    """
     result, assembler = np.empty(len(p)), _borrowed(system)
     assembler.take(system.loads_at(time))
-    assembler.weigh((1.0, 1.0, 1.0))
+    assembler.weigh((1.0, 1.0, 1.0), dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, _EMPTY, False)
     _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
@@ -56,17 +59,18 @@ def linearise(
     coefficients: tuple[float, float, float],
     stresses: tuple[np.ndarray, ...] | None = None,
     equations: Equations | None = None,
+    dt: float = 0.0,
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
 
     stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); equations: of other
-    blocks, to take instead of those of the system.
+    blocks, to take instead of those of the system; dt [s]: see `residual`.
     """
     matrix, result = _entries(system), np.empty(len(p))
     borrowed = stresses is None and equations is None
     assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
     assembler.take(system.loads_at(time))
-    assembler.weigh(coefficients)
+    assembler.weigh(coefficients, dt)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if borrowed:
         _give_back(system, assembler)
@@ -154,7 +158,7 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], or the size of the model, and the largest of all other coordinates, or 1."""
     reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
     others = ~system.positions
-    others[system.connectors.memory] = False
+    others[system.history.numbers] = False
     return reach, max(float(np.max(np.abs(p[others]), initial=0.0)), 1.0)
 
 
@@ -165,17 +169,18 @@ def predicted_stresses(
     time: float,
     equations: Equations | None = None,
     rates: tuple[np.ndarray, tuple[float, float, float]] | None = None,
+    dt: float = 0.0,
 ) -> tuple[np.ndarray, ...]:
     """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
 
     time: at the end of the step, for strains that loads impose;
     equations: of other blocks, to take instead of those of the system; rates: p' (n,) in motions, and the weights of p,
-    p' and p'' in their tangent.
+    p' and p'' in their tangent; dt [s]: see `residual`.
     """
     assembler = Assembler(equations or system.equations)
     assembler.impose(system.imposing(time))
     if rates is not None:
-        assembler.weigh(rates[1])
+        assembler.weigh(rates[1], dt)
     assembler.predict(_plain(p), _plain(step), None if rates is None else _plain(rates[0]))
     return assembler.stresses
 

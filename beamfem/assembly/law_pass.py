@@ -1,18 +1,22 @@
 """A law of a section as a pass over rows of points that compiled code calls, see `kernels.linear_law`."""
 
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
+from math import prod
 from typing import Any
 
 import numpy as np
 
+from beamfem.kernels import record
 from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW
-from beamfem.section.law import ElasticLaw
+from beamfem.section.law import ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch, which a law does not see
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
-_Pass = CFUNCTYPE(None, c_int64, c_int64, *(c_void_p,) * 4)
+_Pass = CFUNCTYPE(None, *(c_int64,) * 6, *(c_void_p,) * 4)
+_Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step from there [s]
+_NOTHING: _Past = (np.empty((0, 0)), 0.0)
 
 
 class LawPass:
@@ -22,16 +26,16 @@ class LawPass:
     iteration, and `raise_error` raises it.
     """
 
-    def __init__(self, law: ElasticLaw) -> None:
+    def __init__(self, law: ConstitutiveLaw) -> None:
         self._law = law
         self._errors: list[BaseException] = []
         self._pass = _Pass(self._fill)
         self.address = int(cast(self._pass, c_void_p).value or 0)
 
-    def linearised(self, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (..., 4) and their derivatives (..., 4, 4) at strains (..., 4)."""
-        shape = strain.shape[:-1]
-        found, slope = self._law.linearised(strain[..., :3].reshape(-1, 3))
+    def linearised(self, strain: np.ndarray, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (..., 4) and their derivatives (..., 4, 4) at strains (..., 4) and history (..., k)."""
+        shape, known = strain.shape[:-1], strain[..., :3].reshape(-1, 3)
+        found, slope = self._law.linearised(known, history.reshape(len(known), -1))
         result, stiffness = np.zeros((*shape, _MEASURES)), np.zeros((*shape, _MEASURES, _MEASURES))
         result[..., :3], stiffness[..., :3, :3] = found.reshape(*shape, 3), slope.reshape(*shape, 3, 3)
         return result, stiffness
@@ -43,30 +47,67 @@ class LawPass:
             self._errors.clear()
             raise first
 
-    def _fill(self, count: int, tangent: int, weight: int, c: int, reference: int, x: int) -> None:
+    def _fill(
+        self,
+        group: int,
+        system: int,
+        first: int,
+        number: int,
+        count: int,
+        tangent: int,
+        weight: int,
+        c: int,
+        reference: int,
+        x: int,
+    ) -> None:
         try:
             own = _rows(x, POINT_ROWS)[:, :count]
             try:
-                self._fill_rows(own, _rows(weight, 1)[0, :count], _rows(reference, 3)[:, :count], tangent != 0)
+                past = _NOTHING
+                if self._law.remembers:
+                    past = _past(group, system, slice(first, first + count), number)
+                rows = _rows(weight, 1)[0, :count], _rows(reference, 3)[:, :count]
+                self._fill_rows(own, *rows, past, tangent != 0)
             except BaseException:
                 own[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise
         except BaseException as error:
             self._errors.append(error)
 
-    def _fill_rows(self, own: np.ndarray, weight: np.ndarray, reference: np.ndarray, tangent: bool) -> None:
+    def _fill_rows(
+        self, own: np.ndarray, weight: np.ndarray, reference: np.ndarray, past: _Past, tangent: bool
+    ) -> None:
         strain = np.ascontiguousarray((own[STRAIN : STRAIN + 3] - reference).T)
         own[RESULTANT + 3] = 0.0
         if not tangent:
-            own[RESULTANT : RESULTANT + 3] = weight * self._law.resultants(strain).T
+            own[RESULTANT : RESULTANT + 3] = weight * self._law.resultants(strain, *past).T
             return
-        found, slope = self._law.linearised(strain)
+        found, slope = self._law.linearised(strain, *past)
         own[RESULTANT : RESULTANT + 3] = weight * found.T
         own[STIFFNESS : STIFFNESS + len(_PAIRS[0])] = 0.0
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 
 
+def _past(group: int, system: int, elements: slice, number: int) -> _Past:
+    """Return what a point of elements remembers of the state that the system stands in."""
+    b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
+    table = _wholes(b[record.HISTORY], b[record.ELEMENTS], b[record.POINTS], b[record.VARIABLES])
+    state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
+    return state[table[elements, number]], float(factors[-1])
+
+
 def _rows(address: int, count: int) -> np.ndarray:
     """Return rows of numbers at an address (count, ROW)."""
-    memory: Any = (c_double * (count * ROW)).from_address(address)
-    return np.frombuffer(memory).reshape(count, ROW)
+    return _reals(address, count * ROW).reshape(count, ROW)
+
+
+def _reals(address: int, count: int) -> np.ndarray:
+    """Return numbers at an address (count,)."""
+    memory: Any = (c_double * count).from_address(address)
+    return np.frombuffer(memory)
+
+
+def _wholes(address: int, *shape: int) -> np.ndarray:
+    """Return whole numbers at an address (shape)."""
+    memory: Any = (c_int64 * prod(shape)).from_address(address)
+    return np.frombuffer(memory, dtype=np.int64).reshape(shape)

@@ -5,6 +5,8 @@ A sparse matrix is ordered for little fill once, here, so that each factorisatio
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, eye_array
@@ -13,7 +15,15 @@ from scipy.sparse.linalg import spilu
 
 from beamfem.kernels.block import Block, Layout
 
+_FEW = 20_000  # coordinates; the order of more is not kept
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
+
+
+class Mesh(NamedTuple):
+    """Nodes (ne, nn) of the elements of a block, and coordinates (N, npn) of its nodes."""
+
+    node: np.ndarray
+    dof: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +64,29 @@ def order_unknowns(
     coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
     coordinates that come last, since they have no stiffness.
     """
+    if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
+        node, dof = blocks[0].node, blocks[0].dof
+        return _order_few(node.tobytes(), node.shape, dof.tobytes(), dof.shape, size, prescribed.tobytes())
+    mesh = [Mesh(block.node, block.dof) for block in blocks]
+    return _order(mesh, size, prescribed, joined, coupled, multipliers)
+
+
+@lru_cache(maxsize=64)  # studies make models of the same numbering time and again
+def _order_few(
+    node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes
+) -> Unknowns:
+    whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
+    return _order([Mesh(*whole)], size, np.frombuffer(prescribed, dtype=np.int64), False, (), ())
+
+
+def _order(
+    blocks: Sequence[Mesh],
+    size: int,
+    prescribed: np.ndarray,
+    joined: bool,
+    coupled: Sequence[np.ndarray],
+    multipliers: Sequence[int],
+) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
     dofs = np.flatnonzero(mask)
@@ -66,7 +99,7 @@ def order_unknowns(
     half_width = _half_width(blocks, free)
     if not joined:
         # short beams have the band of long ones, for which there is compiled code
-        half_width = max(half_width, *(int((block.dof >= 0)[block.node[:1]].sum()) - 1 for block in blocks))
+        half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
@@ -88,23 +121,24 @@ def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
     return free
 
 
-def _numbers_of(block: Block, free: np.ndarray) -> np.ndarray:
+def _numbers_of(block: Mesh, free: np.ndarray) -> np.ndarray:
     """Numbers among the unknown (ne, nn npn) of each element's coordinates, -1 if there is none."""
     numbers = np.where(block.dof >= 0, free[block.dof], -1)
     return np.asarray(numbers[block.node].reshape(len(block.node), -1))
 
 
-def _half_width(blocks: Sequence[Block], free: np.ndarray) -> int:
+def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
     """Largest distance between two unknowns of an element."""
     widest = 0
     for block in blocks:
-        number = _numbers_of(block, free)
-        low = np.where(number >= 0, number, len(free)).min(axis=1)
-        widest = max(widest, int((number.max(axis=1) - low).max(initial=0)))
+        numbers, known = np.where(block.dof >= 0, free[block.dof], -1), len(free)
+        high, low = numbers.max(axis=1), np.where(numbers >= 0, numbers, known).min(axis=1)
+        ends = high[block.node].max(axis=1) - low[block.node].min(axis=1)
+        widest = max(widest, int(ends.max(initial=0)))
     return widest
 
 
-def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
+def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     """Order the coordinates (size,) by reverse Cuthill-McKee on pairs (x, y) and the rest of a node together."""
     owner = _owners(blocks, size)
     rows, columns = [], []
@@ -121,7 +155,7 @@ def _narrow(blocks: Sequence[Block], size: int) -> np.ndarray:
     return np.lexsort((np.arange(size), rank[owner]))
 
 
-def _scattered(blocks: Sequence[Block], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
+def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
     """Order the coordinates (size,) by multiple minimum degree on the nodes, for little fill."""
     owner = _owners(blocks, size)
     nodes, number = np.unique(owner, return_inverse=True)
@@ -145,7 +179,7 @@ def _scattered(blocks: Sequence[Block], size: int, coupled: Sequence[np.ndarray]
     return np.lexsort((np.arange(size), order[number]))
 
 
-def _owners(blocks: Sequence[Block], size: int) -> np.ndarray:
+def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     """First coordinate (size,) of the node of each: x and y of a node and what turns with it stay neighbours."""
     owner = np.arange(size)
     for block in blocks:

@@ -5,14 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.routines import Routines, routines
+from beamfem.assembly.sheet_structure import Needs, structure_of
 from beamfem.kernels import record
-from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import (
     ELASTIC_LINE,
     GRADIENTS,
     ROTATION,
-    SHEAR_RIGID,
-    STRETCH,
     TURNED_GRADIENTS,
     Block,
     Imposed,
@@ -24,8 +22,7 @@ from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
-_CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
-_SMALLEST = 16
+_UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +40,7 @@ class Sheet:
     order: np.ndarray | None
     constant: np.ndarray | None
     routines: Routines
-    needs: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
+    needs: Needs
     law: Law | None
     imposed: Imposed | None
 
@@ -59,20 +56,6 @@ class Sheet:
         return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
 
 
-def storage_order(block: Block) -> np.ndarray | None:
-    """Return the nodes (N,) of a block as they are stored: those at ends of elements, then the inner ones by place.
-
-    So nodes of the same place in neighbouring elements are neighbours. None if there are no inner ones.
-    """
-    last = block.node.shape[1] - 1
-    if last == 1:
-        return None
-    place = np.zeros(len(block.node_kind), dtype=np.int64)
-    for inner in range(1, last):
-        place[block.node[:, inner]] = inner
-    return np.argsort(place, kind="stable")
-
-
 def stored(block: Block, order: np.ndarray | None) -> Block:
     """Return a block with its nodes numbered as they are stored."""
     if order is None:
@@ -85,102 +68,48 @@ def stored(block: Block, order: np.ndarray | None) -> Block:
 
 def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     """Return the sheet of a block."""
-    order = storage_order(block)
-    block = stored(block, order)
-    elements, nodes = block.node.shape
-    count, coordinates = block.dof.shape
-    slots = block.scale.shape[1]
-    vectors = slots // nodes
-    size = 2 * vectors
-    classes, points, measures = block.reference.shape
-    bends = int(block.measures == ELASTIC_LINE)
-    kinds = np.unique(block.node_kind) if len(block.node_kind) else np.empty(0, dtype=int)
-    turned = 4 if np.isin(kinds, (STRETCH, SHEAR_RIGID)).any() else (0 if (kinds == GRADIENTS).all() else 2)
-    turning = coordinates - (size - turned) if turned else 0
-    upper = np.triu_indices(measures)
-    parts = {
-        record.SLOPE: block.slope.reshape(classes, -1),
-        record.SECOND: block.second.reshape(classes, -1) if bends else np.empty((classes, 0)),
-        record.STIFFNESS: block.stiffness[:, :, upper[0], upper[1]].reshape(classes, -1),
-        record.REFERENCE: block.reference.reshape(classes, -1),
-        record.WEIGHT: block.weight,
-        record.MASS: block.mass.reshape(classes, -1),
-        record.GRAVITY: block.gravity,
-        record.LENGTH: block.length,
-    }
-    damped = bool(block.damping.any())
-    if damped:
-        parts[record.DAMPING] = block.damping[:, None]
-    table, own = np.zeros(record.BLOCK_FIELDS, dtype=np.int64), _routines(block)
-    first = 0
-    for number, part in parts.items():
-        table[number] = first
-        first += part.shape[1]
-    tables = np.concatenate(list(parts.values()), axis=1)
-    velocity = 2 * size + 2 * turned * turning
-    gathered = velocity + size * damped
-    chunk_rows = gathered + turning * turning + 2 * size
-    table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
-    table[record.CONVECTIVE] = 2 * size + turned * turning
-    table[record.VELOCITY], table[record.DAMPED] = velocity, damped
-    table[record.APART] = not block.mass.reshape(classes, nodes, vectors, nodes, vectors)[..., :-1, :, -1].any()
-    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
-    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
-    used = rows_of(nodes, vectors, points, gathered, tables.shape[1])[-1]
-    batch = LANES
-    while batch > _SMALLEST and used * batch > _CACHE * LANES:
-        batch //= 2
-    place = _places(block.node, chunk_rows)
-    number = np.where(block.dof >= 0, layout.free[block.dof], -1)[block.node].reshape(elements, -1)
+    structure, own = structure_of(block, layout, loads), _routines(block)
+    classes, nodes = len(block.scale), block.node.shape[1]
+    vectors, order = block.scale.shape[1] // nodes, structure.order
+    upper = _UPPER[block.reference.shape[2]]
+    parts = [
+        block.slope.reshape(classes, -1),
+        block.second.reshape(classes, -1) if block.second.size else np.empty((classes, 0)),
+        block.stiffness.reshape(*block.stiffness.shape[:2], -1).take(upper, axis=2).reshape(classes, -1),
+        block.reference.reshape(classes, -1),
+        block.weight,
+        block.mass.reshape(classes, -1),
+        block.gravity,
+        block.length,
+        *((block.damping[:, None],) if structure.table[record.DAMPED] else ()),
+    ]
+    table, frame = structure.table.copy(), block.frame if order is None else block.frame[order]
+    mixed = block.mass.reshape(classes, nodes, vectors, nodes, vectors)[..., :-1, :, -1]
+    table[record.APART] = not mixed.any()
     arrays = {
-        record.TABLES: tables,
+        record.TABLES: np.concatenate(parts, axis=1),
         record.DIRECTOR: block.director,
-        record.CLASS: block.kind,
-        record.BEAM: block.beam,
-        record.PLACE: place.T,
-        record.DOF: block.dof.T,
-        record.SOURCE: np.append(np.maximum(block.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
-        record.FRAME: np.append(block.frame.T, np.zeros(WIDTH)),  # read in vectors, beyond the last node too
-        record.RUNS: _runs(block.node_kind),
-        record.NUMBER: number.T,
-        record.SLOT: layout.slot,
-        record.FREE: layout.free,
-        record.HOME: block.home,
-        record.LOAD_ELEMENT: loads.element,
+        record.FRAME: np.append(frame.T, np.zeros(WIDTH)),  # read in vectors, beyond the last node too
         record.POSITION: loads.position.T,
         record.DIRECTION: loads.direction.T,
         record.FOLLOWS: loads.follows.T,
-        record.STRETCHES: loads.stretches.astype(float),
+        record.STRETCHES: loads.stretches,
         record.SPRING: loads.spring.T,
         record.ANCHOR: loads.anchor.T,
-        record.LOAD_PLACE: place[loads.element].T,
-        record.LOAD_NUMBER: number[loads.element].T,
-        record.COUNTED: np.arange(elements) if layout.half_width < 0 else np.empty(0, dtype=np.int64),
-        record.ROUTINES: own.addresses,
     }
-    kept = []
+    slot, history = np.ascontiguousarray(layout.slot, dtype=np.int32), np.ascontiguousarray(block.history)
+    kept = [*structure.kept, slot, own.addresses, history]
+    table[record.SLOT], table[record.ROUTINES], table[record.HISTORY] = (address_of(each) for each in kept[-3:])
+    table[record.VARIABLES] = history.shape[-1]
     for field, values in arrays.items():
-        kind = np.int32 if field == record.SLOT else (np.float64 if values.dtype.kind == "f" else np.int64)
-        kept.append(np.ascontiguousarray(values, dtype=kind))
+        kept.append(np.ascontiguousarray(values, dtype=float))
         table[field] = address_of(kept[-1])
-    table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
-    table[record.ORDERED] = (np.diff(block.node, axis=0) > 0).all()
-    table[record.VECTORS], table[record.POINTS], table[record.MEASURES] = vectors, points, measures
-    table[record.TURNED], table[record.TURNING], table[record.BENDS] = turned, turning, bends
-    table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, tables.shape[1], coordinates
-    table[record.RUN_COUNT], table[record.HALF_WIDTH], table[record.LOADS] = (
-        len(arrays[record.RUNS]),
-        layout.half_width,
-        len(loads.element),
-    )
-    chunks = -(-count // LANES), chunk_rows, ROW
-    constant = (
-        _constant(block, chunks, size, turned, turning)
-        if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds
-        else None
-    )
-    needs = _needs(kinds, layout.half_width >= 0, bool(len(loads.element)), damped, block.imposed is not None)
-    return Sheet(table, tuple(kept), chunks, used * ROW, order, constant, own, needs, block.law, block.imposed)
+    turned, kinds, constant = structure.turned, structure.kinds, None
+    if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds:
+        constant = _constant(stored(block, order), structure.chunks, 2 * vectors, turned, structure.turning)
+    space = structure.used * ROW
+    needs, law = structure.needs, block.law
+    return Sheet(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
 
 
 def _routines(block: Block) -> Routines:
@@ -188,34 +117,6 @@ def _routines(block: Block) -> Routines:
     vectors, bends = block.scale.shape[1] // nodes, int(block.measures == ELASTIC_LINE)
     sizes = (("nodes", nodes), ("vectors", vectors), ("bends", bends))
     return routines(block.measures, sizes) if block.law is None else Routines(block.measures, sizes, block.law.address)
-
-
-def _needs(
-    kinds: np.ndarray, band: bool, loads: bool, damped: bool, imposed: bool
-) -> dict[str, tuple[tuple[str, ...], tuple[int, ...]]]:
-    """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
-    angles = tuple(int(kind) - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
-    rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
-    turns = bool(angles or rotated)
-    forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
-    forces += (*(("damping",) if damped else ()), *(("imposed",) if imposed else ()))
-    tangent = ["tangent", "band" if band else "sparse"]
-    tangent += ["turning tangent"] if turns else []
-    tangent += ["load tangent"] if loads else []
-    tangent += ["turning load tangent"] if loads and turns else []
-    parts = {"forces": forces, "tangent": tuple(tangent), "mass": ("mass",), "prediction": ("prediction",)}
-    return {task: (names, angles) for task, names in parts.items()}
-
-
-def _places(node: np.ndarray, rows: int) -> np.ndarray:
-    """Return where the first entry of nodes stands among the chunks."""
-    return np.asarray(node // LANES * (rows * ROW) + node % LANES)
-
-
-def _runs(node_kind: np.ndarray) -> np.ndarray:
-    """Return kind, first node and number of nodes (runs, 3) of neighbours of one kind."""
-    first = np.flatnonzero(np.diff(node_kind, prepend=-1))
-    return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])
 
 
 def _constant(block: Block, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:

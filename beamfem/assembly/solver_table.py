@@ -33,7 +33,7 @@ class SolverTable:
             self._table[field] = address_of(values)
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), half_width
         self._table[record.ROLLERS] = len(rotated[0])
-        in_a_row = len(free_dofs) > 0 and (np.diff(free_dofs) == 1).all()
+        in_a_row = len(free_dofs) > 0 and (free_dofs[1:] - free_dofs[:-1] == 1).all()
         self._table[record.FIRST_FREE] = free_dofs[0] if in_a_row else -1
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:

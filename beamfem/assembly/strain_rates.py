@@ -26,7 +26,7 @@ class StrainRates:
     dof (coordinates,): of the model, -1 for none; coordinates: of an element; resists: the measures that are resisted
     at some point; loose (ne, nq, nr): where a point resists less than others do; place, point: of the rates by
     unknowns, among those by all coordinates (coordinates, m); column: their unknowns; weight (m,); flexibility: rows,
-    columns and values of weights times inverse stiffness, of a law those at zero strain.
+    columns and values of weights times inverse stiffness, of a law those at zero strain; history: see `Block`.
     """
 
     sheet: Sheet
@@ -40,6 +40,7 @@ class StrainRates:
     weight: np.ndarray
     flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
     law: Law | None
+    history: np.ndarray
 
     def at(self, p: np.ndarray, imposing: np.ndarray) -> "StrainsAt":
         """Return what they are in a state p (n,), less what is imposed by loads with the factors `imposing` (k,).
@@ -55,7 +56,7 @@ class StrainRates:
         rates = moved[self.place, self.point] - strain[self.point]
         if self.law is None:
             return StrainsAt(rates, strain, self.flexibility[2], len(strain))
-        found, slope = self.law.linearised(zeros)
+        found, slope = self.law.linearised(zeros, p[self.history])
         own = slope[:, :, self.resists[:, None], self.resists]
         inverse = np.linalg.inv(own)
         # strains to which the stiffness of this state, as that of a linear law, has these resultants
@@ -105,6 +106,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
         column=np.repeat(column[place, element], count),
         weight=weight[block.kind].ravel(),
         law=block.law,
+        history=block.history,
         flexibility=(
             np.broadcast_to(number[..., :, None], shape).ravel(),
             np.broadcast_to(number[..., None, :], shape).ravel(),

@@ -10,18 +10,19 @@ import numpy as np
 from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
-from beamfem.assembly.columns import columns_of
 from beamfem.assembly.connectors import Connectors, connectors_of
 from beamfem.assembly.grounded_springs import grounded_springs
+from beamfem.assembly.history import History
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
-from beamfem.assembly.sheet import make_sheet, storage_order, stored
+from beamfem.assembly.sheet import make_sheet, stored
+from beamfem.assembly.sheet_structure import storage_order
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
-from beamfem.element.coordinates import across
+from beamfem.assembly.stress_free import stress_free
 from beamfem.errors import InputError
 from beamfem.kernels.block import (
     GRADIENTS,
@@ -69,20 +70,8 @@ class System:
     @cached_property
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
-        p = np.zeros(self.model.size)
-        p[self.connectors.memory] = self.connectors.start
-        for number, (element, block) in enumerate(zip(self.model.groups, self.blocks, strict=True)):
-            own = [mesh for mesh in self.model.meshes if mesh.block == number]
-            position, tangent, speed = (
-                np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
-            )
-            values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
-            for label, nodes, dofs in columns_of(block.node_kind, block.dof, element.field.vectors):
-                if label == "s":
-                    p[dofs] = speed[nodes]
-                elif label != "theta":
-                    name, axis = label.split("^")
-                    p[dofs] = values[name][nodes, "xy".index(axis)]
+        p = stress_free(self.model, self.blocks)
+        p[self.history.numbers] = self.history.start
         return p
 
     @cached_property
@@ -113,9 +102,9 @@ class System:
         sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(sheets, self.springs, self.model.size)
 
-    def assembler(self) -> Assembler:
-        """Return the equations with new work space."""
-        return Assembler(self.equations)
+    def assembler(self, lent: bool = False) -> Assembler:
+        """Return the equations with new work space; lent: see `Assembler`."""
+        return Assembler(self.equations, lent=lent)
 
     @cached_property
     def solver_table(self) -> SolverTable:
@@ -253,13 +242,18 @@ class System:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
-        known = np.append(self.prescribed_dofs, connectors.memory)
+        known = np.append(self.prescribed_dofs, self.history.numbers)
         return order_unknowns(self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist())
 
     @cached_property
     def connectors(self) -> Connectors:
         """What adds forces by a rule of its own. Raises InputError for a force that is not analytic."""
         return connectors_of(self.model, self.static)
+
+    @cached_property
+    def history(self) -> History:
+        """What connectors and section laws remember."""
+        return History(self.connectors, self.blocks)
 
     @property
     def layouts(self) -> tuple[Layout, ...]:
@@ -285,7 +279,7 @@ class System:
         """
         free, found, first = self.unknowns.free, [], 0
         for numbered in self.blocks:
-            block = stored(numbered, storage_order(numbered))
+            block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
             vectors = block.scale.shape[1] // block.node.shape[1]
             for slot in range(vectors):
                 turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
@@ -315,7 +309,8 @@ class System:
     def extent(self) -> float:
         """Size of the model [m]: its longest beam, or twice the largest distance of a node from their mean."""
         position = np.concatenate([mesh.position for mesh in self.model.meshes])
-        reach = float(np.linalg.norm(position - position.mean(axis=0), axis=1).max())
+        x, y = (position - position.sum(axis=0) / len(position)).T
+        reach = float(np.hypot(x, y).max())
         return max(2.0 * reach, *(beam.curve.length for beam in self.model.beams))
 
     @cached_property
@@ -327,7 +322,7 @@ class System:
         result, multipliers = np.where(self.positions, self.extent, 1.0), self.connectors.multipliers
         if len(multipliers):
             result[multipliers] = self.extent * self.residual_errors[0].max()
-        result[self.connectors.memory] = _NO_MOVEMENT
+        result[self.history.numbers] = _NO_MOVEMENT
         return result
 
     @cached_property

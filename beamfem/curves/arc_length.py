@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.quadrature import gauss
 
 Speed = Callable[[np.ndarray], np.ndarray]
 
-_NODES, _WEIGHTS = (values / 2 for values in np.polynomial.legendre.leggauss(16))
-_NODES = _NODES + 0.5
+_NODES, _WEIGHTS = gauss(16)
 # A panel is fine enough if halving it changes its length by less than this fraction of the total: the halves, which are
 # kept, are then more accurate by a factor of about 2^32.
 _CHANGE = 4e-15

@@ -1,6 +1,7 @@
 """Nodal coordinates: which numbers p carry the nodal vectors e of a field."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -73,6 +74,7 @@ KINEMATICS = {ROTATION: kinematics.ROTATION, STRETCH: kinematics.STRETCH, SHEAR_
 _STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
 
 
+@lru_cache(maxsize=64)
 def labels(node_kind: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
     """Names of a node's coordinates: components of nodal vectors, then what turns the others, the angle last."""
     kind = KINEMATICS.get(node_kind)
@@ -116,7 +118,9 @@ def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.nd
 
 def across(vector: np.ndarray) -> np.ndarray:
     """Return vectors (..., 2) turned by a right angle, counter-clockwise."""
-    return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
+    result = np.empty_like(vector)
+    result[..., 0], result[..., 1] = -vector[..., 1], vector[..., 0]
+    return result
 
 
 def _turned(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

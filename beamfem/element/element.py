@@ -1,6 +1,7 @@
 """An element as a user chooses it, and the named combinations of the paper."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -9,9 +10,9 @@ from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
-from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
-from beamfem.validation import flag, one_of, optional, shown, text
+from beamfem.quadrature import gauss
+from beamfem.validation import flag, fulfils, one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
 
@@ -58,10 +59,11 @@ class Element:
     def __post_init__(self) -> None:
         one_of("integration", self.integration, ("full", "reduced", "lobatto", None))
         optional(text)("label of an element", self.label)
-        kinds = (("field", Field), ("coordinates", Coordinates), ("forces", Forces))
-        for name, kind in kinds:
-            if isinstance(getattr(self, name), type) or not isinstance(getattr(self, name), kind):
+        for name, kind in (("coordinates", Coordinates), ("forces", Forces)):
+            if not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {shown(getattr(self, name))}")
+        if not fulfils(self.field, Field):
+            raise InputError(f"field of an element must be one of {Field}, got {shown(self.field)}")
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:
             free_of_locking = has_slope and isinstance(self.forces, Structural | ElasticLine)
@@ -101,17 +103,14 @@ class Element:
 
     def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
         """Points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
-        if self.integration == "lobatto":
-            return lobatto.energy_points(self.forces)
-        rules = self.energy_rules()
-        return np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+        return _energy_points(self)
 
     def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
         """Return what of the section stiffness (ne, nq, ns, ns) counts at these points; jacobian (ne, nq) [m]."""
         if self.integration == "lobatto":
             return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)
-        counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in self.energy_rules()])
-        return stiffness * (counted[:, :, None] & counted[:, None, :])
+        counted = _counted(self)
+        return stiffness if counted is None else stiffness * counted
 
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
         """Gauss points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one where all agree.
@@ -127,6 +126,26 @@ class Element:
         if isinstance(self.coordinates, Gradients) and thickness.any():
             return (*self.quadrature(), ~thickness), (*self.field.director_rule(), thickness)
         return ((*self.quadrature(), np.ones_like(shear)),)
+
+
+@lru_cache(maxsize=64)  # asked for by every beam of a model
+def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points and weights (nq,) of the strain energy, which cannot be written to."""
+    if element.integration == "lobatto":
+        found = lobatto.energy_points(element.forces)
+    else:
+        rules = element.energy_rules()
+        found = np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+    for values in found:
+        values.setflags(write=False)
+    return found
+
+
+@lru_cache(maxsize=64)
+def _counted(element: Element) -> np.ndarray | None:
+    """Return which parts of the stiffness count at the points of the energy (nq, ns, ns); None if all of them do."""
+    counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in element.energy_rules()])
+    return None if counted.all() else counted[:, :, None] & counted[:, None, :]
 
 
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:

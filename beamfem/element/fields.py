@@ -8,8 +8,8 @@ from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
-from beamfem.element.gauss import gauss
 from beamfem.errors import InputError
+from beamfem.quadrature import gauss
 from beamfem.validation import count
 
 HIGHEST_ORDER = 8
@@ -36,14 +36,21 @@ class Field(Protocol):
 
 def r_slots(field: Field) -> np.ndarray:
     """Nodal vectors of an element (nr,) that carry r0, in the order of `Field.centreline`."""
-    per_node = [i for i, vector in enumerate(field.vectors) if vector != "r_y"]
-    return np.array([n * len(field.vectors) + i for n in range(len(field.nodes)) for i in per_node])
+    return slots(field.vectors, len(field.nodes), ("r", "r_x"))
 
 
 def d_slots(field: Field) -> np.ndarray:
     """Nodal vectors of an element (nd,) that carry d, in the order of `Field.director`."""
-    per_node = field.vectors.index("r_y")
-    return np.array([n * len(field.vectors) + per_node for n in range(len(field.nodes))])
+    return slots(field.vectors, len(field.nodes), ("r_y",))
+
+
+@lru_cache(maxsize=64)
+def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.ndarray:
+    """Return the numbers (k,) of the wanted nodal vectors among those of an element, which cannot be written to."""
+    found = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
+    found = found.astype(np.int64)
+    found.setflags(write=False)
+    return found
 
 
 @dataclass(frozen=True)

@@ -44,10 +44,11 @@ class Structural:
         zero if the nodes hold the length of d.
         """
         rigidity = section.rigidity(material)
-        matrix = np.diag([rigidity.axial, rigidity.shear, rigidity.bending, rigidity.axial])
+        matrix = np.zeros((4, 4))
+        matrix[0, 0], matrix[1, 1], matrix[2, 2] = rigidity.axial, rigidity.shear, rigidity.bending
         matrix[0, 2] = matrix[2, 0] = rigidity.coupling
-        if not isinstance(coordinates, Gradients):
-            matrix[3, 3] = 0.0
+        if isinstance(coordinates, Gradients):
+            matrix[3, 3] = rigidity.axial
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:

@@ -17,6 +17,9 @@ STRUCTURAL = 1
 ELASTIC_LINE = 2
 
 
+NO_HISTORY = np.empty((0, 0, 0), dtype=np.int64)
+
+
 class Law(Protocol):
     """What takes the place of the linear law of a block, see `kernels.linear_law`."""
 
@@ -29,8 +32,11 @@ class Law(Protocol):
         """Raise what it could not raise in compiled code."""
         ...
 
-    def linearised(self, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (..., ns) and their derivatives (..., ns, ns) at strains (..., ns) from the reference's."""
+    def linearised(self, strain: np.ndarray, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (..., ns) and their derivatives (..., ns, ns) at strains (..., ns) from the reference's.
+
+        history (..., k): committed history variables.
+        """
         ...
 
 
@@ -84,14 +90,19 @@ class Block(NamedTuple):
     damping: np.ndarray  # (nc,) retardation time [s]: rates of strains add that much of the stiffness
     law: Law | None = None  # instead of the linear one
     imposed: Imposed | None = None  # strains of the state without stress, besides those of the reference
+    history: np.ndarray = NO_HISTORY  # (ne, nq, k) coordinates that are history variables of the law
+
+    def history_of(self, elements: slice | np.ndarray) -> np.ndarray:
+        """Return the history variables of some elements."""
+        return self.history[elements] if self.history.size else self.history
 
     def resisting(self, stiffness: np.ndarray) -> "Block":
         """Return the block with the linear law of a stiffness (nc, nq, ns, ns)."""
         return self._replace(stiffness=np.ascontiguousarray(stiffness), law=None)
 
-    def linearised(self, strain: np.ndarray) -> np.ndarray:
-        """Return the stiffness (ne, nq, ns, ns) at strains (ne, nq, ns) from the reference's."""
-        return self.stiffness[self.kind] if self.law is None else self.law.linearised(strain)[1]
+    def linearised(self, strain: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """Return the stiffness (ne, nq, ns, ns) at strains (ne, nq, ns) from the reference's, p (n,) with history."""
+        return self.stiffness[self.kind] if self.law is None else self.law.linearised(strain, p[self.history])[1]
 
 
 class PointLoads(NamedTuple):

@@ -11,7 +11,7 @@ from beamfem.kernels.record import ROW
 
 _collect, _scatter = caller("iiiiii", "i"), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
-_measure, _law = caller("ir"), caller("iirrrr")
+_measure, _law = caller("ir"), caller("iiiiiirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
 _release = caller("iiiiirr")
@@ -81,6 +81,10 @@ def add_elements(group, system):
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(
                 call[r.LAW],
+                group,
+                system,
+                first,
+                number,
                 count,
                 1 if stiff else 0,
                 weight,

@@ -1,6 +1,7 @@
 """The linear section law s = C (eps - eps0) over rows of points; resultants and stiffness are times the point's weight.
 
-C comes as the rows of its upper triangle. Laws are passes over rows: strains in, resultants and their derivatives out.
+C comes as the rows of its upper triangle. Laws are passes over rows of a point of elements from
+`first` on: strains in, resultants and their derivatives out; those with history find it in the state of the system.
 """
 
 from beamfem.kernels.compiling import routine
@@ -12,8 +13,8 @@ from beamfem.kernels.record import ROW
 FAST = {"contract", "reassoc", "nsz"}
 
 
-@routine("iivvvv", fastmath=FAST)
-def four_resultants(count, tangent, weight, c, reference, x):
+@routine("iiiiiivvvv", fastmath=FAST)
+def four_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
     """Fill resultants of four measures and, where tangent, their stiffness; x: rows of a point, see `point`."""
     small_code()
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
@@ -34,8 +35,8 @@ def four_resultants(count, tangent, weight, c, reference, x):
                 to[i] = weight[i] * own[i]
 
 
-@routine("iivvvv", fastmath=FAST)
-def six_resultants(count, tangent, weight, c, reference, x):
+@routine("iiiiiivvvv", fastmath=FAST)
+def six_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
     """The same of six measures."""
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
     for i in range(0, count, WIDTH):

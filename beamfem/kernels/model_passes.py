@@ -8,7 +8,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import LANES, ROW
 
 _two, _three, _collect = caller("ii"), caller("iii"), caller("iiiiii", "i")
-_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iirrrr")
+_interpolate, _measure, _law = caller("iiiiirrrrr"), caller("ir"), caller("iiiiiirrrr")
 _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 
@@ -155,6 +155,10 @@ def predict_resultants(group, system):
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(
                 call[r.LAW],
+                group,
+                system,
+                first,
+                number,
                 count,
                 0,
                 unit,

@@ -79,7 +79,9 @@ APART = 61  # whether no entry of the mass is of d and r0
 NATURAL = 62  # address (elements, points, measures): strains that loads impose; 0 where none do
 ORDERED = 63  # whether each node of an element has a greater number than that of the element before
 SOURCE = 64  # address (coordinates of a node, nodes) and more: as DOF, 0 where there are fewer, read in vectors
-BLOCK_FIELDS = 65
+HISTORY = 65  # address (elements, points, k): coordinates that are history variables of a law
+VARIABLES = 66  # k
+BLOCK_FIELDS = 67
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
@@ -93,7 +95,7 @@ RESIDUAL = 7
 SIZE = 8
 MATRIX = 9
 ENTRIES = 10
-FACTORS = 11  # ck, cv, ca
+FACTORS = 11  # ck, cv, ca; and the time step from the committed history
 TANGENT = 12
 PREDICTED = 13  # the geometric part of the tangent takes the resultants in `STRESS`
 MOVING = 14
@@ -105,6 +107,7 @@ SPRING_REST = 19
 SPRING_PLACE = 20
 RATED = 21  # rates of strains count
 SYSTEM_FIELDS = 22
+FACTOR_COUNT = 4
 
 # ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
 (

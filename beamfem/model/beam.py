@@ -17,7 +17,7 @@ from beamfem.model.damping import retardation_time
 from beamfem.model.jumps import find_jumps
 from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
-from beamfem.section.law import ElasticLaw, law_of
+from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
 from beamfem.validation import called, count, finite, fulfils, function_of_one, shown
@@ -128,7 +128,7 @@ class Beam:
         return section
 
     @cached_property
-    def law(self) -> ElasticLaw | None:
+    def law(self) -> ConstitutiveLaw | None:
         """The nonlinear law of its section, None for linear sections."""
         return law_of(self.section, self.material) if self.prismatic else None
 
@@ -168,7 +168,7 @@ class Beam:
 
     @property
     def shortest(self) -> float:
-        """Shortest element as a fraction of the length, before supports and loads divide it; the mean for knot spans."""
+        """Shortest element over the length, before supports and loads divide it; the mean for knot spans."""
         whole = isinstance(self.elements, int | str)
         return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 

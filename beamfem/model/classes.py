@@ -2,14 +2,30 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
+from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
+from beamfem.kernels.block import ELASTIC_LINE
+from beamfem.material import Material
 from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
-from beamfem.model.reference import energy_points, energy_stiffness_at, inertia_points, jacobians, length_points, scales
+from beamfem.model.reference import (
+    energy_points,
+    energy_stiffness_at,
+    inertia_points,
+    jacobians,
+    length_points,
+    length_rule,
+    scales,
+)
+
+_FEW = 2000  # elements; the classes of more are not kept
+_ALIKE = 1e-9  # of the longest element: lengths that differ by less are those of one class
 
 
 @dataclass(frozen=True)
@@ -17,9 +33,10 @@ class Classes:
     """nc classes; kind (ne,) is the class of an element, the rest as in `kernels.block.Block`."""
 
     kind: np.ndarray
+    slope: np.ndarray
+    second: np.ndarray
     scale: np.ndarray
     jacobian: np.ndarray
-    jacobian_xi: np.ndarray
     weight: np.ndarray
     stiffness: np.ndarray
     reference: np.ndarray
@@ -31,35 +48,92 @@ class Classes:
 
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
-    if grid.straight and grid.beam.prismatic:
-        _, first, kind = np.unique(
-            np.round(grid.lengths / grid.lengths.max(), 9), return_index=True, return_inverse=True
-        )
-    else:
-        first = kind = np.arange(grid.elements)
+    beam, few = grid.beam, grid.elements <= _FEW
+    # studies make like beams time and again; what a user's own section is may change from one to the next
+    if few and grid.straight and type(beam.section).__module__.startswith("beamfem."):
+        x, y = grid.tangent[0].tolist()
+        like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
+        return _classes_of_like(like)
+    return _classes(grid)
+
+
+@dataclass(frozen=True)
+class _Like:
+    """What tells the classes of a straight prismatic beam; grid: one of those that are alike."""
+
+    element: Element
+    section: Hashable
+    material: Material | None
+    lengths: bytes
+    x: float
+    y: float
+    grid: Grid = field(compare=False)
+
+
+@lru_cache(maxsize=64)
+def _classes_of_like(like: _Like) -> Classes:
+    found = _classes(like.grid)
+    for name in Classes.__dataclass_fields__:
+        getattr(found, name).setflags(write=False)
+    return found
+
+
+def _classes(grid: Grid) -> Classes:
+    first, kind = _likes(grid)
     element, xi, weight = energy_points(grid, first)
     count, size = len(first), len(element) // len(first)
-    jacobian, jacobian_xi = jacobians(grid, element, xi)
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
+    damping = np.empty(count)
+    damping[:] = retardation_time(grid.beam.section_at(0.0), grid.beam.material)
 
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
 
-    return Classes(
-        kind.astype(np.int64),
-        scale,
-        by_class(jacobian),
-        by_class(jacobian_xi),
-        by_class(weight),
-        by_class(stiffness),
-        by_class(reference),
-        mass,
-        gravity,
-        length,
-        np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material)),
-    )
+    jacobian, jacobian_xi = map(by_class, jacobians(grid, element, xi))
+    slope, second = _derivatives(grid.beam.element, scale, jacobian, jacobian_xi)
+    weight, stiffness, reference = map(by_class, (weight, stiffness, reference))
+    shapes = kind, slope, second, scale, jacobian
+    return Classes(*shapes, weight, stiffness, reference, mass, gravity, length, damping)
+
+
+def _derivatives(
+    element: Element, scale: np.ndarray, jacobian: np.ndarray, jacobian_xi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty but for the elastic line.
+
+    Of nodal vectors times their scale (nc, nv); jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its derivative.
+    """
+    table, curved = _slopes(element)
+    scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
+    second = np.empty((len(scale), 0, 0))
+    if element.forces.code == ELASTIC_LINE:
+        second = np.ascontiguousarray((curved - jacobian_xi[:, :, None] * inverse * table) * scaled * inverse**2)
+    return np.ascontiguousarray(table * scaled * inverse), second
+
+
+@lru_cache(maxsize=64)
+def _slopes(element: Element) -> tuple[np.ndarray, np.ndarray]:
+    """Return derivatives by xi (nq, nv) of what carries r0 and d at the points of the energy, and second of r0."""
+    basis, (xi, _) = element.field, element.energy_points()
+    table, curved = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
+    table[:, r_slots(basis)], table[:, d_slots(basis)] = basis.centreline(xi, 1), basis.director(xi, 1)
+    curved[:, r_slots(basis)] = basis.centreline(xi, 2)
+    return table, curved
+
+
+def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first element (nc,) of each class and the class (ne,) of each element."""
+    if not (grid.straight and grid.beam.prismatic):
+        every = np.arange(grid.elements)
+        return every, every
+    longest = grid.lengths.max()
+    if grid.lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
+        return np.zeros(1, dtype=np.int64), np.zeros(grid.elements, dtype=np.int64)
+    lengths = np.round(grid.lengths / (_ALIKE * longest))
+    _, first, kind = np.unique(lengths, return_index=True, return_inverse=True)
+    return first, kind.astype(np.int64)
 
 
 def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
@@ -96,19 +170,37 @@ def by_value(item: object) -> Hashable:
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mass (nc, nv, nv), its sum against a uniform acceleration (nc, nv) and the loaded length (nc, nv)."""
-    field = grid.beam.element.field
-    where, xi, inertia = inertia_points(grid, chosen)
-    count = len(chosen)
-    r = np.zeros((count, len(where) // count, scale.shape[1]))
-    d = np.zeros_like(r)
-    r[:, :, r_slots(field)] = field.centreline(xi).reshape(count, r.shape[1], -1)
-    d[:, :, d_slots(field)] = field.director(xi).reshape(count, r.shape[1], -1)
-    r *= scale[:, None, :]
-    mass, first, rotary = np.moveaxis(inertia.reshape(count, r.shape[1], 3), -1, 0)
-    mixed = np.einsum("cq,cqi,cqj->cij", first, r, d)
-    matrix = np.einsum("cq,cqi,cqj->cij", mass, r, r) + np.einsum("cq,cqi,cqj->cij", rotary, d, d)
-    matrix += mixed + np.swapaxes(mixed, 1, 2)
-    gravity = np.einsum("cq,cqi->ci", mass, r) + np.einsum("cq,cqi->ci", first, d)
+    tables = _tables(grid.beam.element)
+    _, _, inertia = inertia_points(grid, chosen)
     _, _, weight = length_points(grid, chosen)
-    length = np.einsum("cq,cqi->ci", weight.reshape(count, -1), r)
-    return matrix, gravity, length
+    count, points = len(chosen), len(tables.r)
+    mass, first, rotary = inertia.reshape(count, points, 3).transpose(2, 0, 1)
+    matrix, gravity = mass @ tables.rr + rotary @ tables.dd, mass @ tables.r
+    if first.any():
+        matrix += first @ tables.rd
+        gravity += first @ tables.d
+    matrix = matrix.reshape(count, *scale.shape[1:], -1) * (scale[:, :, None] * scale[:, None, :])
+    return matrix, gravity * scale, weight.reshape(count, points) @ tables.r * scale
+
+
+class _Tables(NamedTuple):
+    """Shape functions of r0 and d at the points that integrate mass (points, nv), and their products (points, nv nv).
+
+    rd: of one with the other, and the transpose.
+    """
+
+    r: np.ndarray
+    d: np.ndarray
+    rr: np.ndarray
+    dd: np.ndarray
+    rd: np.ndarray
+
+
+@lru_cache(maxsize=32)
+def _tables(element: Element) -> _Tables:
+    basis = element.field
+    xi, _ = length_rule(basis)
+    r, d = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
+    r[:, r_slots(basis)], d[:, d_slots(basis)] = basis.centreline(xi), basis.director(xi)
+    rr, dd, rd = (one[:, :, None] * other[:, None, :] for one, other in ((r, r), (d, d), (r, d)))
+    return _Tables(r, d, *(product.reshape(len(xi), -1) for product in (rr, dd, rd + np.swapaxes(rd, 1, 2))))

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from skfem import MeshLine
@@ -35,10 +36,16 @@ class Grid:
     speed: np.ndarray
     moved: bool = field(default=False, kw_only=True)
 
+    def skfem(self, elements: slice = slice(None)) -> MeshLine:
+        """Return the mesh of all elements or some neighbours for scikit-fem."""
+        chosen = range(self.elements)[elements]
+        return MeshLine(self.vertices[chosen.start : chosen.stop + 1])
+
     @property
-    def skfem(self) -> MeshLine:
-        """The same mesh for scikit-fem."""
-        return MeshLine(self.vertices)
+    def pieces(self) -> list[slice]:
+        """The elements of each smooth piece: between corners of the curve."""
+        ends = 1 + np.flatnonzero(self.node[:-1, -1] != self.node[1:, 0])
+        return [slice(a, b) for a, b in pairwise([0, *ends.tolist(), self.elements])]
 
     @property
     def elements(self) -> int:
@@ -59,10 +66,10 @@ class Grid:
 
     def locate(self, fraction: float) -> tuple[int, float]:
         """Return element and xi in [0, 1] of a point of the beam."""
-        along = self._along(fraction * self.vertices[-1])
-        element = int(np.clip(np.searchsorted(self.parameter, along, side="right") - 1, 0, self.elements - 1))
-        start, end = self.parameter[element : element + 2]
-        return element, float(np.clip((along - start) / (end - start), 0.0, 1.0))
+        along = self._along(fraction * float(self.vertices[-1]))
+        element = min(max(int(self.parameter.searchsorted(along, side="right")) - 1, 0), self.elements - 1)
+        start, end = self.parameter[element : element + 2].tolist()
+        return element, min(max((along - start) / (end - start), 0.0), 1.0)
 
     def node_of(self, element: int, xi: float) -> int | None:
         """Return the node at a point of an element, None if there is none."""
@@ -71,6 +78,8 @@ class Grid:
 
     def node_at(self, fraction: float) -> int:
         """Return the node at a support or joint; `make_grid` has put one there."""
+        if fraction in (0.0, 1.0):
+            return 0 if fraction == 0.0 else self.nodes - 1
         return int(np.argmin(np.abs(self.arc - fraction * self.vertices[-1])))
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:

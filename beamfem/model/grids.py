@@ -2,6 +2,8 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +11,8 @@ from beamfem.curves import Line
 from beamfem.element.fields import Field
 from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid, make_grid
+
+_FEW = 2000  # elements; the divisions of longer lines are not kept
 
 
 def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> list[Grid]:
@@ -32,18 +36,49 @@ def _at_ends(fractions: Sequence[float], elements: int) -> bool:
 
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
     """Return the grids of straight beams with the same number of equal elements of one field."""
-    curves = [beam.curve for beam in beams]
-    length = np.array([curve.length for curve in curves])[:, None]
-    start, end = (np.array([getattr(curve, name) for curve in curves])[:, None] for name in ("start", "end"))
+    lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
+    if len(lines) > 1 or elements > _FEW:
+        found = _divided(lines, elements, field.nodes)
+    else:
+        found = _divided_few(lines[0], elements, field.nodes.tobytes())
+    parts = zip(beams, found.vertices, found.arc, found.position, found.tangent, strict=True)
+    return [
+        Grid(beam, ends, ends, 1.0, found.node, arc, position, tangent, found.speed)
+        for beam, ends, arc, position, tangent in parts
+    ]
+
+
+class _Divided(NamedTuple):
+    """Straight lines (n,) divided into equal elements: see `Grid`."""
+
+    vertices: np.ndarray
+    node: np.ndarray
+    arc: np.ndarray
+    position: np.ndarray
+    tangent: np.ndarray
+    speed: np.ndarray
+
+
+def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divided:
+    """Return straight lines divided into equal elements with nodes (nn,) at these places of [0, 1]."""
+    length = np.array([line.length for line in lines])[:, None]
+    start, end = (np.array([getattr(line, name) for line in lines])[:, None] for name in ("start", "end"))
+    last = len(nodes) - 1
     vertices = np.linspace(0.0, 1.0, elements + 1) * length
-    last = len(field.nodes) - 1
     node = last * np.arange(elements)[:, None] + np.arange(last + 1)
-    arc = np.empty((len(beams), node[-1, -1] + 1))
-    arc[:, node] = vertices[:, :-1, None] + np.diff(vertices)[:, :, None] * field.nodes
+    arc = np.empty((len(lines), elements * last + 1))
+    sizes = vertices[:, 1:] - vertices[:, :-1]
+    arc[:, :-1] = (vertices[:, :-1, None] + sizes[:, :, None] * nodes[:-1]).reshape(len(lines), -1)
     arc[:, -1] = vertices[:, -1]
     fraction = (arc / length)[:, :, None]
-    position = (1.0 - fraction) * start + fraction * end
-    tangent = np.repeat((end - start) / length[:, :, None], arc.shape[1], axis=1)
-    speed = np.ones(arc.shape[1])
-    parts = zip(beams, vertices, arc, position, tangent, strict=True)
-    return [Grid(beam, ends, ends, 1.0, node, own, at, along, speed) for beam, ends, own, at, along in parts]
+    position, tangent = (1.0 - fraction) * start + fraction * end, np.empty((*arc.shape, 2))
+    tangent[:] = (end - start) / length[:, :, None]
+    return _Divided(vertices, node, arc, position, tangent, np.ones(arc.shape[1]))
+
+
+@lru_cache(maxsize=64)  # studies divide a line in the same way time and again
+def _divided_few(line: Line, elements: int, nodes: bytes) -> _Divided:
+    found = _divided([line], elements, np.frombuffer(nodes))
+    for values in found:
+        values.setflags(write=False)
+    return found

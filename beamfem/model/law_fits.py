@@ -6,7 +6,8 @@ import numpy as np
 
 from beamfem.element.structural import Structural
 from beamfem.errors import InputError
-from beamfem.section.law import SectionLaw, require_law
+from beamfem.section.law import SectionLaw
+from beamfem.section.law_checks import require_law
 from beamfem.validation import fulfils
 
 if TYPE_CHECKING:

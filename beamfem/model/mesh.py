@@ -16,12 +16,14 @@ class BeamMesh(Grid):
     """Grid of a beam with its numbers in the model.
 
     carried: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
-    number of its block.
+    number of its block; history (ne, nq, k): numbers of the history variables at its integration points, empty
+    without.
     """
 
     carried: Nodes
     first_element: int
     block: int
+    history: np.ndarray
 
     @cached_property
     def classes(self) -> Classes:

@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
+from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
@@ -37,6 +39,8 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "joints": (Joint,),
     "connectors": (Contribution,),
 }
+_GRID = tuple(each.name for each in fields(Grid))
+_NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +133,8 @@ class Model(ModelOutputs):
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
+        if not self.joints:
+            return
         a, b = (reference_positions([getattr(joint, name) for joint in self.joints]) for name in "ab")
         gaps = np.linalg.norm(a - b, axis=1).tolist()
         for joint, gap in zip(self.joints, gaps, strict=True):
@@ -150,23 +156,7 @@ class Model(ModelOutputs):
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for an SI unit.
-
-        Parameters
-        ----------
-        unit : str
-            SI unit, such as "N m".
-
-        Returns
-        -------
-        str
-            Name in the units of the model.
-
-        Examples
-        --------
-        >>> bf.Model([beam], units="N, mm").unit("Pa")
-        'MPa'
-        """
+        """Return the name of the model's unit for an SI unit, such as "MPa" for "Pa" in a model in N and mm."""
         return self._units.of(unit)
 
     @cached_property
@@ -174,7 +164,7 @@ class Model(ModelOutputs):
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int]:
+    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
         require_room(self.beams)
         fractions: list[list[float]] = [[] for _ in self.beams]
         places = [support.point for support in self.point_supports]
@@ -192,23 +182,32 @@ class Model(ModelOutputs):
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
-        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
-        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
-        moving = np.concatenate([turning, hinged])
+        turning, moving = self._joined(grids)
         grids = close_gaps(grids, moving)
         for grid in grids:
             require_body(grid)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {kind: number for number, kind in enumerate(self._kinds)}
-        meshes, names = [], [each.name for each in fields(Grid)]
+        meshes = []
+        behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
         for grid, carried in zip(grids, nodes, strict=True):
-            block = block_of[_kind(grid.beam)]
-            parts = {name: getattr(grid, name) for name in names}
-            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block))
+            block = block_of[block_key(grid.beam)]
+            parts = {name: getattr(grid, name) for name in _GRID}
+            history = _history(grid, behind)
+            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
             filled[block] += grid.elements
-        return tuple(meshes), size
+            behind += history.size
+        return tuple(meshes), size, behind
+
+    def _joined(self, grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
+        """Return pairs (grid, node, grid, node) of nodes (n, 4) that turn together, and of those that move together."""
+        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
+        if not corners and not self.joints:
+            return _NO_PAIRS, _NO_PAIRS
+        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
+        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
+        return turning, np.concatenate([turning, hinged])
 
     def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
         """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
@@ -220,13 +219,9 @@ class Model(ModelOutputs):
         """Return grid and node (n, 2) of points at which there is a node."""
         if not points:
             return np.empty((0, 2), dtype=np.int64)
-        number = np.array([self._numbers[id(point.beam)] for point in points], dtype=np.int64)
-        fraction = np.array([point.fraction for point in points])
-        last = np.array([grid.nodes - 1 for grid in grids])
-        node = np.where(fraction == 0.0, 0, last[number])
-        for i in np.flatnonzero((fraction > 0.0) & (fraction < 1.0)).tolist():
-            node[i] = grids[number[i]].node_at(points[i].fraction)
-        return np.column_stack([number, node])
+        numbers = [self._numbers[id(point.beam)] for point in points]
+        pairs = [(i, grids[i].node_at(point.fraction)) for i, point in zip(numbers, points, strict=True)]
+        return np.array(pairs, dtype=np.int64)
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
@@ -238,10 +233,10 @@ class Model(ModelOutputs):
         """Number of coordinates of the beams, including prescribed ones, shared ones counted once."""
         return self._numbered[1]
 
-    @cached_property
+    @property
     def size(self) -> int:
-        """Number of coordinates of the beams, followed by the unknowns and history variables of connectors."""
-        return self.coordinates + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
+        """Number of coordinates of the beams, of unknowns and history variables of connectors and those of sections."""
+        return self._numbered[2]
 
     @cached_property
     def groups(self) -> tuple[Element, ...]:
@@ -250,7 +245,7 @@ class Model(ModelOutputs):
 
     @cached_property
     def _kinds(self) -> tuple[tuple[Element, Hashable], ...]:
-        return tuple(dict.fromkeys(_kind(beam) for beam in self.beams))
+        return tuple(dict.fromkeys(block_key(beam) for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam. Raises InputError, UnknownPointError."""
@@ -268,12 +263,12 @@ class Model(ModelOutputs):
             raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
         return self.meshes[self._numbers[id(point.beam)]]
 
-    @property
+    @cached_property
     def gravity(self) -> tuple[BodyLoad, ...]:
         """Accelerations that act on all mass."""
         return tuple(load for load in self.loads if isinstance(load, BodyLoad))
 
-    @property
+    @cached_property
     def line_loads(self) -> tuple[LineLoad, ...]:
         """Forces along beams."""
         return tuple(load for load in self.loads if isinstance(load, LineLoad))
@@ -283,17 +278,17 @@ class Model(ModelOutputs):
         """Loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
-    @property
+    @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:
         """Forces and moments at points."""
         return tuple(load for load in self.loads if isinstance(load, PointLoad))
 
-    @property
+    @cached_property
     def point_supports(self) -> tuple[PointSupport, ...]:
         """Supports at points."""
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
 
-    @property
+    @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:
         """Supports along beams."""
         return tuple(support for support in self.supports if isinstance(support, LineSupport))
@@ -311,10 +306,19 @@ def _named(kinds: Sequence[type]) -> str:
     return " or ".join(", ".join(dict.fromkeys(names)).rsplit(", ", 1))  # slots make a class twice
 
 
-def _kind(beam: Beam) -> tuple[Element, Hashable]:
+def block_key(beam: Beam) -> tuple[Element, Hashable]:
     """Return the key that beams of one block share."""
     law = beam.law
     return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
+
+
+def _history(grid: Grid, first: int) -> np.ndarray:
+    """Return the numbers (ne, nq, k) of the history variables at the integration points of a beam."""
+    law = grid.beam.law
+    if law is None or not law.remembers:
+        return NO_HISTORY
+    shape = grid.elements, len(grid.beam.element.energy_points()[0]), len(law.start)
+    return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
 
 
 def _turns(support: PointSupport) -> bool:
@@ -322,8 +326,8 @@ def _turns(support: PointSupport) -> bool:
     return "rotation" in support.prescribed() or "rotation" in support.springs()
 
 
-def _corners(grid: Grid) -> np.ndarray:
+def _corners(grid: Grid) -> Sequence[int]:
     """Return the first of the two nodes at each corner."""
     if not grid.beam.curve.corners:
-        return np.empty(0, dtype=np.int64)
-    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]]
+        return ()
+    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]].tolist()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -12,6 +13,9 @@ from beamfem.element.coordinates import labels
 from beamfem.kernels.block import GRADIENTS, ROTATION, STRETCH, TURNED_GRADIENTS
 from beamfem.model.grid import Grid
 from beamfem.model.reference import reference_angle
+
+Pairs = Sequence[tuple[int, ...]]
+_FEW = 2000  # nodes; the numbering of larger models is not kept
 
 
 @dataclass(frozen=True)
@@ -34,17 +38,64 @@ def number_nodes(
     angled (m, 2): (grid, node) whose rotation is prescribed or has a spring; such a node has an angle as a coordinate.
     moving, turning (n, 4): pairs (grid, node, grid, node) with a common position, and with a common rotation.
     """
-    first = np.concatenate([[0], np.cumsum([grid.nodes for grid in grids])])
-    owner = np.repeat(np.arange(len(grids)), np.diff(first))
+    kinds = tuple(_node_kinds(grid) for grid in grids)
+    pairs = tuple(map(tuple, moving.tolist())), tuple(map(tuple, turning.tolist()))
+    number = _number if sum(kind.nodes for kind in kinds) > _FEW else _number_few
+    numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
+    frame = _frames(grids, numbered.node_kind, numbered.turns_with)
+    nodes = [
+        Nodes(numbered.node_kind[begin:end], numbered.dof[begin:end, :columns], frame[begin:end])
+        for begin, end, columns in numbered.parts
+    ]
+    return nodes, numbered.size
+
+
+@dataclass(frozen=True)
+class NodeKinds:
+    """What the numbering needs of a grid.
+
+    code: of its nodal coordinates; follows_slope: whether its sections turn with r_x; vectors: of a node.
+    """
+
+    code: int
+    follows_slope: bool
+    vectors: tuple[str, ...]
+    nodes: int
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Nodes of all grids: kinematics (total,), coordinates (total, npn), the node (total,) that each turns with.
+
+    parts: first and last node of each grid and its number of columns; size: number of coordinates.
+    """
+
+    node_kind: np.ndarray
+    dof: np.ndarray
+    turns_with: np.ndarray
+    parts: tuple[tuple[int, int, int], ...]
+    size: int
+
+
+def _node_kinds(grid: Grid) -> NodeKinds:
+    element = grid.beam.element
+    return NodeKinds(element.coordinates.code, element.forces.turns_with == "r_x", element.field.vectors, grid.nodes)
+
+
+def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: Pairs) -> Numbered:
+    """Number the coordinates of grids; see `number_nodes`."""
+    first = np.concatenate([[0], np.cumsum([kind.nodes for kind in kinds])])
+    owner = np.repeat(np.arange(len(kinds)), np.diff(first))
     total = first[-1]
-    own_code = np.array([grid.beam.element.coordinates.code for grid in grids])
-    follows_slope = np.array([grid.beam.element.forces.turns_with == "r_x" for grid in grids])
+    own_code = np.array([kind.code for kind in kinds])
+    follows_slope = np.array([kind.follows_slope for kind in kinds])
     node_kind = own_code[owner]
-    moves = groups(total, first, moving)
-    turns = groups(total, first, turning)
+    moves = groups(total, first, np.array(moving, dtype=np.int64).reshape(-1, 4))
+    turns = groups(total, first, np.array(turning, dtype=np.int64).reshape(-1, 4))
 
     as_angle = np.zeros(total, dtype=bool)
-    as_angle[first[angled[:, 0]] + angled[:, 1]] = True
+    grid_of, node_of = np.array(angled, dtype=np.int64).reshape(-1, 2).T
+    as_angle[first[grid_of] + node_of] = True
     joined = np.bincount(turns, minlength=total)[turns] > 1
     # gradients that are joined with gradients only share r_y as a vector; all others share an angle
     plain = (node_kind == GRADIENTS) & ~follows_slope[owner] & ~as_angle
@@ -58,8 +109,7 @@ def number_nodes(
     turned = joined & all_plain & (leader_turns != np.arange(total))
     node_kind = np.where(turned, TURNED_GRADIENTS, node_kind)
 
-    width = max(2 * len(grid.beam.element.field.vectors) for grid in grids)
-    own, last, turn_size = _ownership(grids, owner, node_kind, width)
+    own, last, turn_size = _ownership(kinds, owner, node_kind)
     follower_moves, follower_turns = leader_moves != np.arange(total), leader_turns != np.arange(total)
     own[follower_moves, :2] = False
     for offset in (1, 2):
@@ -72,14 +122,15 @@ def number_nodes(
         leaders = leader_turns[rows]
         dof[rows, last[rows] - offset + 1] = dof[leaders, last[leaders] - offset + 1]
 
-    frame = _frames(grids, node_kind, leader_turns)
     dof = np.ascontiguousarray(dof[:, : last.max() + 1])
     widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
-    nodes = [
-        Nodes(node_kind[begin:end], dof[begin:end, :columns], frame[begin:end])
-        for (begin, end), columns in zip(pairwise(first.tolist()), widest, strict=True)
-    ]
-    return nodes, int(own.sum())
+    parts = tuple((*ends, columns) for ends, columns in zip(pairwise(first.tolist()), widest, strict=True))
+    for values in (node_kind, dof, leader_turns):
+        values.setflags(write=False)  # models of the same numbering share them
+    return Numbered(node_kind, dof, leader_turns, parts, int(own.sum()))
+
+
+_number_few = lru_cache(maxsize=64)(_number)  # studies make models of the same numbering time and again
 
 
 def groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
@@ -98,13 +149,12 @@ def first_of_group(group: np.ndarray) -> np.ndarray:
 
 
 def _ownership(
-    grids: Sequence[Grid], owner: np.ndarray, node_kind: np.ndarray, width: int
+    kinds: Sequence[NodeKinds], owner: np.ndarray, node_kind: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return which columns a node has (total, width), its last column and how many columns its rotation takes."""
-    own = np.zeros((len(owner), width), dtype=bool)
+    own = np.zeros((len(owner), max(2 * len(kind.vectors) for kind in kinds)), dtype=bool)
     last, turn_size = np.empty(len(owner), dtype=np.int64), np.empty(len(owner), dtype=np.int64)
-    vectors = [grid.beam.element.field.vectors for grid in grids]
-    has_slope = np.array([len(names) == 3 for names in vectors])[owner]
+    has_slope = np.array([len(kind.vectors) == 3 for kind in kinds])[owner]
     for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
         for code in range(TURNED_GRADIENTS + 1):
             rows = (has_slope == slope) & (node_kind == code)
@@ -119,12 +169,13 @@ def _ownership(
 
 def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
     """Cosine and sine of each node's reference angle, for turned gradients relative to their leader's; and |r_x|."""
-    angle = np.concatenate([reference_angle(grid) for grid in grids])
-    tangent = np.concatenate([grid.tangent for grid in grids])
-    frame = np.ones((len(angle), 3))
-    frame[:, :2] = tangent
+    frame = np.empty((len(node_kind), 3))
+    frame[:, :2] = np.concatenate([grid.tangent for grid in grids])
     frame[:, 2] = np.concatenate([grid.speed for grid in grids])
     turned = node_kind == TURNED_GRADIENTS
+    if not turned.any():
+        return frame
+    angle = np.concatenate([reference_angle(grid) for grid in grids])
     between = angle[turned] - angle[leader[turned]]
     frame[turned, 0], frame[turned, 1] = np.cos(between), np.sin(between)
     return frame

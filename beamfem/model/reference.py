@@ -1,14 +1,17 @@
 """The stress-free reference of a beam: its axis, its sections' stiffness and inertia at points of elements."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.element import Element
-from beamfem.element.fields import d_slots, r_slots
-from beamfem.element.gauss import gauss
+from beamfem.element.fields import Field, d_slots, r_slots, slots
+from beamfem.element.forces import Forces
 from beamfem.element.structural import section_frame
 from beamfem.model.grid import Grid
+from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
 
 _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and how far from its ends
@@ -16,8 +19,11 @@ _SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and h
 
 def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
     """Return the factor (n, nv) of each nodal vector for mesh lengths (n,): the length for r_x."""
-    vectors = element.field.vectors * len(element.field.nodes)
-    return np.stack([lengths if name == "r_x" else np.ones_like(lengths) for name in vectors], axis=1)
+    vectors, nodes = element.field.vectors, len(element.field.nodes)
+    result = np.ones((len(lengths), nodes * len(vectors)))
+    if "r_x" in vectors:
+        result[:, slots(vectors, nodes, ("r_x",))] = lengths[:, None]
+    return result
 
 
 def reference_vectors(grid: Grid, element: np.ndarray) -> np.ndarray:
@@ -109,7 +115,7 @@ def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tupl
     """Return the stiffness (n, ns, ns) that counts in the energy and the reference's strains (n, ns) at its points."""
     own = grid.beam.element
     stiffness, reference = stiffness_at(grid, element, xi)
-    jacobian, _ = jacobians(grid, element, xi)
+    jacobian = grid.lengths[element] if grid.straight else jacobians(grid, element, xi)[0]
     points = len(own.energy_points()[0])
     by_element = stiffness.reshape(-1, points, *stiffness.shape[1:])
     return own.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
@@ -117,13 +123,22 @@ def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tupl
 
 def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return element, xi and weight [m] of the points that integrate mass exactly on a straight prismatic beam."""
-    field = grid.beam.element.field
-    return _points(grid, element, *gauss(max(field.degree, field.director_degree) + 1))
+    return _points(grid, element, *length_rule(grid.beam.element.field))
+
+
+def length_rule(field: Field) -> tuple[np.ndarray, np.ndarray]:
+    """Return points and weights on [0, 1] that integrate mass exactly on a straight prismatic beam."""
+    return gauss(max(field.degree, field.director_degree) + 1)
 
 
 def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return section stiffness (n, ns, ns) and strain measures (n, ns) of the reference at points (element, xi)."""
     beam, forces = grid.beam, grid.beam.element.forces
+    if grid.straight and beam.prismatic:
+        # the same at all points
+        at, strains = _straight_axis(forces, *grid.tangent[0].tolist())
+        stiffness = forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at)
+        return stiffness.repeat(len(element), axis=0), strains.repeat(len(element), axis=0)
     at = reference_axis(grid, element, xi)
     strains = forces.strains(at)
     if beam.prismatic:
@@ -133,6 +148,14 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
         here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis.__dataclass_fields__))
         parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, here))
     return np.concatenate(parts), strains
+
+
+@lru_cache(maxsize=64)
+def _straight_axis(forces: Forces, x: float, y: float) -> tuple[Axis, np.ndarray]:
+    """Return a point of a straight axis along (x, y) and the strain measures (1, ns) there."""
+    along, none = np.array([[x, y]]), np.zeros((1, 2))
+    at = Axis(none, along, none, across(along), none)
+    return at, forces.strains(at)
 
 
 def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSection]:
@@ -164,7 +187,7 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
     where, at, weight = length_points(grid, element)
     if beam.prismatic:
         own = beam.section_at(0.0).inertia(beam.material)
-        inertia = np.broadcast_to([own.mass, own.first_moment, own.rotary], (len(where), 3))
+        inertia = np.array([[own.mass, own.first_moment, own.rotary]])
     else:
         found = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
         inertia = np.array([[own.mass, own.first_moment, own.rotary] for own in found])
@@ -199,5 +222,7 @@ def _points(
     grid: Grid, element: np.ndarray | None, xi: np.ndarray, weights: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     chosen = np.arange(grid.elements) if element is None else element
-    where, at = np.repeat(chosen, len(xi)), np.tile(xi, len(chosen))
+    where, at = np.repeat(chosen, len(xi)), np.broadcast_to(xi, (len(chosen), len(xi))).ravel()
+    if grid.straight:
+        return where, at, (grid.lengths[chosen][:, None] * weights).ravel()
     return where, at, np.tile(weights, len(chosen)) * jacobians(grid, where, at)[0]

@@ -9,9 +9,9 @@ from beamfem.assembly.system import System
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
 from beamfem.element.fields import d_slots, r_slots
-from beamfem.element.gauss import gauss
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, scales
+from beamfem.quadrature import gauss
 from beamfem.results.loading import loading
 from beamfem.results.spread import nearest, to_more_points
 

@@ -24,12 +24,14 @@ if TYPE_CHECKING:
 class Energy:
     """Energies (steps,) [J]; potential: of gravity, other constant dead loads, springs and foundations.
 
-    Follower forces and pressures have no potential.
+    Follower forces and pressures have no potential. dissipated: since the start, by sections with history; the
+    dampers of a model are not included.
     """
 
     kinetic: np.ndarray
     strain: np.ndarray
     potential: np.ndarray
+    dissipated: np.ndarray
 
     __repr__ = brief
 

@@ -64,4 +64,5 @@ def _conservative(solution: "Solution") -> bool:
     moved = any(callable(item.value) for item in system.prescribed)
     driven = any(load.amplitude is not None or not load.conservative for load in solution.model.loads)
     damped = any(block.damping.any() for block in system.blocks)
-    return not moved and not driven and not damped and system.connectors.keep_energy
+    lossless = system.connectors.keep_energy and not system.history.laws
+    return not moved and not driven and not damped and lossless

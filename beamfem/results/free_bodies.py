@@ -114,6 +114,7 @@ def _parted(block: Block, elements: np.ndarray) -> Block:
     flat = nodes.ravel()
     return block._replace(
         imposed=None if block.imposed is None else block.imposed.of(elements),
+        history=block.history_of(elements),
         node=np.arange(len(flat)).reshape(nodes.shape),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
         home=np.indices(nodes.shape).reshape(2, -1).T,

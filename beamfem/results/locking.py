@@ -100,7 +100,10 @@ def _unlocked(element: Element) -> Element:
 
 
 def _locking_elements(model: Model) -> tuple[Element, ...]:
-    return tuple(element for element in model.groups if _unlocked(element) != element)
+    # the history at the points of another rule is not known
+    remembering = {mesh.block for mesh in model.meshes if mesh.history.size}
+    others = (element for number, element in enumerate(model.groups) if number not in remembering)
+    return tuple(element for element in others if _unlocked(element) != element)
 
 
 def _unlocked_blocks(system: System) -> tuple[Block, ...]:
@@ -109,7 +112,8 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
         other = _unlocked(element)
         own = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
         changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in own]
-        blocks.append(system.blocks[number] if other == element else build_block(other, changed, system.model.imposing))
+        kept = other == element or system.blocks[number].history.size
+        blocks.append(system.blocks[number] if kept else build_block(other, changed, system.model.imposing))
     return tuple(blocks)
 
 

@@ -62,7 +62,7 @@ class FieldOnBasis:
         return self.basis.interpolate(self.values[row])
 
 
-def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOnBasis:
+def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int | None = None) -> FieldOnBasis:
     """Return the field of a beam in all states of a solution on a scikit-fem basis.
 
     Parameters
@@ -74,6 +74,9 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOn
     body : bool, default True
         True: quadrature over the length and the section, with weights times width, for integrals over the volume [m^3].
         False: quadrature over the axis alone, for integrals over the length [m].
+    piece : int, optional
+        Number of a smooth piece, 0 at the start of the beam, for a beam with corners, where its field has two
+        directions but a basis only one.
 
     Returns
     -------
@@ -83,7 +86,7 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOn
     Raises
     ------
     InputError
-        For a beam with corners, or with knot spans as elements.
+        For a beam with corners without a piece, and for knot spans as elements.
 
     References
     ----------
@@ -99,21 +102,23 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True) -> FieldOn
         raise InputError(f"field_on_basis needs a Solution, such as solve_static returns, got {shown(solution)}")
     body = flag("body of field_on_basis", body)
     mesh, p = solution.model.meshes[solution.model.number_of(beam)], solution.p
-    if len(mesh.beam.curve.corners):
+    pieces = mesh.pieces
+    if piece is None and len(pieces) > 1:
         raise InputError(
-            f"{mesh.beam!r} has corners, where its field has two directions but a basis only one: use one beam for "
-            "each smooth piece and join them"
+            f"{mesh.beam!r} has corners, where its field has two directions but a basis only one: ask for one of its "
+            f"{len(pieces)} smooth pieces, such as piece=0"
         )
+    elements = pieces[number_below("piece of field_on_basis", piece or 0, len(pieces), -len(pieces))]
     arc_lengths = np.diff(mesh.vertices)
     if np.abs(mesh.lengths - arc_lengths).max() > _ALIKE * arc_lengths.max():
         raise InputError(
             f"the elements of {mesh.beam!r} are the knot spans of a spline, but a basis needs arc lengths: set "
             "elements to a number"
         )
-    basis = beam_basis(mesh) if body else axis_basis(mesh)
+    basis = beam_basis(mesh, elements=elements) if body else axis_basis(mesh, elements)
     vectors, element = nodal_vectors(mesh, p), basis.elem
     values = np.empty((len(p), basis.N))
     for i, numbers in enumerate(basis.element_dofs):
         node, vector, axis = element.place(i)
-        values[:, numbers] = vectors[:, mesh.node[:, node], vector, axis]
+        values[:, numbers] = vectors[:, mesh.node[elements, node], vector, axis]
     return FieldOnBasis(basis, values)

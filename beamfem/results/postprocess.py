@@ -258,17 +258,26 @@ def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
 
 
 def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
-    """Return the strain energy of a beam (steps,) [J]; imposed: see `imposed_measures`.
+    """Return the strain energy of a beam (steps,) [J], see `strain_energies`."""
+    return strain_energies(mesh, p, imposed)[:, 0]
 
-    The energy of self-stress between layers with different free strains is not included.
+
+def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:
+    """Return the strain energy of a beam and what its section with history has dissipated (steps, 2) [J].
+
+    imposed: see `imposed_measures`. Self-stress between layers with different free strains is not included.
     """
     element, xi, weight = energy_points(mesh)
     now = axis(mesh, nodal_vectors(mesh, p), element, xi)
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
     strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
-        return mesh.beam.law.energy(strains[..., :3].reshape(-1, 3)).reshape(strains.shape[:2]) @ weight
-    return np.asarray(0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight)
+        rows, points = strains.shape[:2]
+        history = p[:, mesh.history].reshape(rows * points, mesh.history.shape[-1])
+        found = mesh.beam.law.energy(strains[..., :3].reshape(-1, 3), history)
+        return np.einsum("sqi,q->si", found.reshape(rows, points, 2), weight)
+    stored = 0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight
+    return np.stack([stored, np.zeros(len(p))], axis=-1)
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ class Quantities(PointQuantities):
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
 
     def energy(self) -> Energy:
-        """Return kinetic, strain, potential and total energy.
+        """Return kinetic, strain, potential, total and dissipated energy, see `Energy`.
 
         The potential is zero in the reference configuration.
 
@@ -112,11 +112,10 @@ class Quantities(PointQuantities):
         array([  0. , 152.6])
         """
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self._whole))
-        parts = (
-            postprocess.strain_energy(mesh, self.p, imposed_measures(self._whole, mesh)) for mesh in self.model.meshes
-        )
-        strain = sum(parts, np.zeros(len(self)))
-        return Energy(kinetic, strain, potential(self._whole, [m.first_moment for m in self._momenta]))
+        imposed = ((mesh, imposed_measures(self._whole, mesh)) for mesh in self.model.meshes)
+        parts = (postprocess.strain_energies(mesh, self.p, own) for mesh, own in imposed)
+        strain, dissipated = sum(parts, np.zeros((len(self), 2))).T
+        return Energy(kinetic, strain, potential(self._whole, [m.first_moment for m in self._momenta]), dissipated)
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamfem.element.gauss import gauss
+from beamfem.quadrature import gauss
 
 
 def fractions_before(points: int, at: np.ndarray, cut: np.ndarray) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Cross-sections: by area moments, by shape, by layers, by stiffness."""
 
-from beamfem.section.law import SectionLaw
+from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered
 from beamfem.section.moments import Section
 from beamfem.section.shapes import Circle, Rectangle, ShapedSection, Tube
@@ -11,6 +11,7 @@ __all__ = [
     "Layer",
     "Layered",
     "Rectangle",
+    "RememberingLaw",
     "Section",
     "SectionLaw",
     "ShapedSection",

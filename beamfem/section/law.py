@@ -1,5 +1,6 @@
-"""Sections that are elastic but not linear: resultants by a law of their own."""
+"""Sections whose resultants are no linear functions of their strains: laws of their own, with history or without."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol, cast, runtime_checkable
@@ -8,14 +9,9 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.section.protocol import CrossSection, Rigidity
-from beamfem.validation import called, fulfils
+from beamfem.validation import called, finite, fulfils, items
 
-_COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
-_STEP = 1e-4  # of a sample: differences of fourth order then agree to about 1e-11
-_AGREE = 1e-6  # of the largest part of a stiffness
-_SAMPLES = np.array([[1.0, 0.7, -0.4], [-0.6, 0.3, 0.9], [0.2, -0.8, 0.5]])
-_SIZES = (1e-5, 1e-3, 3e-2)  # strains of the outer fibre at which a law is looked at
+COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
 
 
 @runtime_checkable
@@ -39,37 +35,107 @@ class SectionLaw(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
-class ElasticLaw:
-    """A section with a law of its own and its material."""
+@runtime_checkable
+class RememberingLaw(Protocol):
+    """A section law with history, such as plasticity or creep: what a section has instead of a `SectionLaw`.
 
-    section: SectionLaw
+    strain (n, 3), material: see `SectionLaw`; history (n, k): the committed history variables of the same points, those
+    of the last accepted step; dt [s]: time since then, 0 in statics and wherever an accepted state is looked at again.
+    They are part of the state: a rejected step restores them, and a result has them row by row. So a state must
+    determine its resultants: with the history that `remember` returns and dt = 0 they are those of the step, the
+    derivative of the stored energy at this history, and the tangent is its second derivative. This is tested when a
+    beam is made. Simo and Hughes 1998, chapter 1.
+    """
+
+    @property
+    def memory(self) -> Sequence[float]:
+        """The initial history variables (k,) of a point."""
+        ...
+
+    def resultants(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
+        """Return normal force [N], shear force [N] and moment [N m] (n, 3), an analytic function of the strain."""
+        ...
+
+    def remember(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
+        """Return the history variables (n, k) after an accepted step to these strains."""
+        ...
+
+    def energy(self, strain: np.ndarray, material: Material | None, history: np.ndarray) -> np.ndarray:
+        """Return the stored energy and the one dissipated since the start, per length (n, 2) [J/m]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ConstitutiveLaw:
+    """A section with a law of its own and its material; without history, k = 0."""
+
+    section: SectionLaw | RememberingLaw
     material: Material | None
 
     @property
     def name(self) -> str:
         return type(self.section).__name__
 
-    def resultants(self, strain: np.ndarray) -> np.ndarray:
+    @cached_property
+    def remembers(self) -> bool:
+        """Whether resultants depend on history. Raises InputError if parts of `RememberingLaw` are missing."""
+        found, parts = fulfils(self.section, RememberingLaw), ("memory", "remember")
+        if not found and any(hasattr(self.section, part) for part in parts):
+            raise InputError(
+                f"{self.name} has a memory or remember(strain, material, history, dt), but not both: a section law "
+                "with history needs its initial values and how a step changes them"
+            )
+        return found
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """The initial history variables (k,) of a point. Raises InputError."""
+        if not self.remembers:
+            return np.empty(0)
+        name = f"memory of {self.name}"
+        memory = items(name, cast(RememberingLaw, self.section).memory)
+        if not memory:
+            raise InputError(f"{name} is empty: a section law without history needs neither memory nor remember")
+        return np.array([finite(name, value) for value in memory], dtype=float)
+
+    def at_start(self, count: int) -> np.ndarray:
+        """Return the initial history (count, k) of points."""
+        return np.tile(self.start, (count, 1))
+
+    def resultants(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
         """Return the resultants (n, 3) of strains (n, 3), both real or complex. Raises InputError for what are none."""
+        past = (history, dt) if self.remembers else ()
         with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; then the iteration goes back
-            found = np.asarray(called(f"resultants of {self.name}", self.section.resultants, strain, self.material))
+            found = self._called("resultants", strain, *past)
         return self._checked("resultants", found, strain.shape)
 
-    def linearised(self, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (n, 3) and their derivatives (n, 3, 3) at real strains (n, 3)."""
+    def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (n, 3) and their derivatives (n, 3, 3) at real strains (n, 3), the consistent tangent."""
         count = len(strain)
         moved = np.tile(strain.astype(complex), (3, 1))
         for column in range(3):
-            moved[column * count : (column + 1) * count, column] += 1j * _COMPLEX_STEP
-        found = self.resultants(moved).reshape(3, count, 3)
-        tangent = np.moveaxis(found.imag / _COMPLEX_STEP, 0, -1)
+            moved[column * count : (column + 1) * count, column] += 1j * COMPLEX_STEP
+        past = np.tile(history, (3, 1)) if self.remembers else history
+        found = self.resultants(moved, past, dt).reshape(3, count, 3)
+        tangent = np.moveaxis(found.imag / COMPLEX_STEP, 0, -1)
         return found[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
 
-    def energy(self, strain: np.ndarray) -> np.ndarray:
-        """Return the strain energy per length (n,) [J/m] of strains (n, 3). Raises InputError for what is none."""
-        found = np.asarray(called(f"energy of {self.name}", self.section.energy, strain, self.material))
-        return self._checked("energy", found, strain.shape[:1])
+    def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
+        """Return the history (n, k) after an accepted step to strains (n, 3). Raises InputError for what is none."""
+        found = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
+        if found.dtype.kind == "c" or not np.isfinite(found).all():
+            raise InputError(f"remember of {self.name} must return finite numbers, real ones for real strains")
+        return found
+
+    def energy(self, strain: np.ndarray, history: np.ndarray) -> np.ndarray:
+        """Return the energies per length (n, 2) [J/m], stored and dissipated. Raises InputError for what are none."""
+        if self.remembers:
+            return self._checked("energy", self._called("energy", strain, history), (len(strain), 2))
+        stored = self._checked("energy", self._called("energy", strain), (len(strain),))
+        return np.stack([stored, np.zeros(len(strain))], axis=-1)
+
+    def _called(self, name: str, strain: np.ndarray, *past: Any) -> np.ndarray:
+        return np.asarray(called(f"{name} of {self.name}", getattr(self.section, name), strain, self.material, *past))
 
     def _checked(self, what: str, found: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
         if found.shape != shape or found.dtype.kind not in "fic":
@@ -82,71 +148,9 @@ class ElasticLaw:
     @cached_property
     def stiffness(self) -> np.ndarray:
         """The stiffness (3, 3) at zero strain."""
-        return self.linearised(np.zeros((1, 3)))[1][0]
+        return self.linearised(np.zeros((1, 3)), self.at_start(1))[1][0]
 
 
-def law_of(section: object, material: Material | None) -> ElasticLaw | None:
+def law_of(section: object, material: Material | None) -> ConstitutiveLaw | None:
     """Return the law of a section that has one, or None."""
-    return ElasticLaw(cast(SectionLaw, section), material) if fulfils(section, SectionLaw) else None
-
-
-def require_law(law: ElasticLaw) -> None:
-    """Raise InputError if a law is not what `SectionLaw` asks for."""
-    zero = np.zeros((1, 3))
-    section = cast(Any, law.section)
-    if not fulfils(section, CrossSection):
-        raise InputError(f"{law.name} has resultants, but is no section: it lacks members of CrossSection")
-    if np.any(law.resultants(zero) != 0.0) or np.any(law.energy(zero) != 0.0):
-        raise InputError(
-            f"resultants and energy of {law.name} must be zero at zero strain: a beam is free of stress along its curve"
-        )
-    low, high = section.bounds
-    lengths = np.array([1.0, 1.0, 2.0 / (high - low)])
-    for size in _SIZES:
-        _require_consistent(law, size * lengths * _SAMPLES, size * lengths)
-    _require_rigidity(law, section.rigidity(law.material), lengths)
-
-
-def _require_consistent(law: ElasticLaw, strain: np.ndarray, unit: np.ndarray) -> None:
-    """Raise InputError if derivatives by complex steps, differences and the energy of a law disagree."""
-    found, tangent = law.linearised(strain)
-    moved = law.resultants(strain.astype(complex)).imag
-    whole, work = tangent * unit[:, None] * unit, found * unit
-    largest = np.abs(whole).max(initial=0.0)
-    if not np.isfinite(whole).all() or not np.isfinite(work).all() or np.any(moved != 0.0):
-        raise InputError(f"resultants of {law.name} must be finite and real at strains such as {strain[0].tolist()}")
-    for column in range(3):
-        step = np.zeros(3)
-        step[column] = _STEP * unit[column]
-        slope = _difference(lambda at: law.resultants(at).real, strain, step) * unit
-        by_energy = law.energy(strain + 1j * _COMPLEX_STEP * step).imag / (_COMPLEX_STEP * _STEP)
-        if np.abs(slope - whole[..., column]).max() > _AGREE * largest:
-            raise InputError(
-                f"resultants of {law.name} are not analytic, or not symmetric, at strains such as "
-                f"{strain[0].tolist()}: their derivatives by complex steps and by differences disagree (abs, hypot, "
-                f"linalg.norm or conj lose complex steps)"
-            )
-        if np.abs(by_energy - work[:, column]).max() > _AGREE * max(np.abs(work).max(), largest):
-            raise InputError(
-                f"energy of {law.name} does not belong to its resultants at strains such as {strain[0].tolist()}: they "
-                f"must be its derivatives by stretch, shear and curvature"
-            )
-
-
-def _difference(function: Any, at: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Return the derivative along a step, by differences of fourth order, for a step as long as 1 / _STEP of it."""
-    near = function(at + step) - function(at - step)
-    far = function(at + 2.0 * step) - function(at - 2.0 * step)
-    return np.asarray((8.0 * near - far) / (12.0 * _STEP))
-
-
-def _require_rigidity(law: ElasticLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
-    """Raise InputError if a law does not begin with the stiffness of its section."""
-    own = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
-    own[0, 2] = own[2, 0] = rigidity.coupling
-    units = lengths[:, None] * lengths
-    if np.abs((law.stiffness - own) * units).max() > _AGREE * np.abs(own * units).max():
-        raise InputError(
-            f"the law of {law.name} begins with the stiffness {law.stiffness.tolist()}, but its rigidity is "
-            f"{own.tolist()}: rigidity(material) must be the stiffness at zero strain"
-        )
+    return ConstitutiveLaw(cast(SectionLaw, section), material) if fulfils(section, SectionLaw) else None

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.section.moments import gauss_between
+from beamfem.quadrature import gauss_between
 from beamfem.section.outline import Part, RectangleOutline
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.validation import convert, finite, items, positive, shown

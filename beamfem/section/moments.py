@@ -6,6 +6,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.material import Material
+from beamfem.quadrature import gauss_between
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.stiffness import StiffnessSection
@@ -181,9 +182,3 @@ def required(material: Material | None) -> Material:
     if material is None:
         raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
     return material
-
-
-def gauss_between(low: float, high: float, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Gauss points (points,) between two heights and their weights."""
-    at, weights = np.polynomial.legendre.leggauss(points)
-    return 0.5 * (low + high) + 0.5 * (high - low) * at, 0.5 * (high - low) * weights

@@ -1,10 +1,11 @@
 """What the stress over a section needs of its shape: how wide it is at each height, and what lies below it."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar, Protocol
 
 import numpy as np
+
+from beamfem.quadrature import gauss_between
 
 
 class Outline(Protocol):
@@ -52,9 +53,8 @@ class RectangleOutline:
         return self.breadth * thickness, 0.5 * self.breadth * thickness * (y + self.low)
 
     def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
-        at, weights = _gauss(points)
-        half = 0.5 * (self.high - self.low)
-        return 0.5 * (self.low + self.high) + half * at, self.breadth * half * weights
+        at, weights = gauss_between(self.low, self.high, points)
+        return at, self.breadth * weights
 
 
 @dataclass(frozen=True)
@@ -118,11 +118,6 @@ class MomentsOutline:
         outer = 0.5 * spread / reach**2
         heights = centroid + reach * np.array([-1.0, 0.0, 1.0])
         return heights, np.array([outer, area - 2.0 * outer, outer])
-
-
-@lru_cache(maxsize=32)
-def _gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.polynomial.legendre.leggauss(points)
 
 
 def _half_chord(radius: float, y: np.ndarray) -> np.ndarray:

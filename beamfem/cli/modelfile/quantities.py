@@ -72,7 +72,7 @@ OF_CONNECTOR: Quantities = {
     "multiplier": lambda solution, connector: solution.multipliers(connector),
 }
 OF_MODEL: Quantities = {
-    **{name: partial(_energy, name) for name in ("kinetic", "strain", "potential", "total")},
+    **{name: partial(_energy, name) for name in ("kinetic", "strain", "potential", "total", "dissipated")},
     "px": lambda solution, _: solution.linear_momentum()[:, 0],
     "py": lambda solution, _: solution.linear_momentum()[:, 1],
     "angular_momentum": lambda solution, _: solution.angular_momentum(),

@@ -32,7 +32,7 @@ def stiffness_of_modes(
         plain = free_sheet(block.resisting(unit), len(p))
         before, *after = resultants(plain, p, [zeros, *modes], imposing)
         strains = (np.array(after) - before).reshape(count, *before.shape)
-        stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before), strains)
+        stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before, p), strains)
         result += stressed.reshape(count, -1) @ strains.reshape(count, -1).T
     stresses = stresses_of(system, p, zeros if correction is None else correction, load_factor)
     free = modes[:, system.free_dofs]

@@ -141,7 +141,8 @@ def _steps(
         yield OwnSteps(system, integrator, part.loads_from, statistics)
         return
     rule, limits = integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS])
-    if system.unknowns.pattern is None:
+    # many steps in one compiled call commit no history in between
+    if system.unknowns.pattern is None and not len(system.history.numbers):
         with motion_space(system) as space:
             yield BandMotion(system, space, rule, limits, statistics)
     else:

@@ -207,7 +207,8 @@ class OwnSteps:
             state[:3, self.system.prescribed_dofs] = prescribed[step]
             state[3] = state[2]
             self.time = time
-            state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), time)
+            motion = state[0], state[1], state[2]
+            state[0] = self.system.history.committed(motion, time, self.system.imposing(time))
             count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:
                 saved[(first + step) // every] = state[:3]
@@ -222,6 +223,10 @@ def refuse_what_own_steps_lack(system: System) -> None:
         raise InputError(
             f"{moved[0].point} is moved, which user-defined integrators do not support: use GeneralizedAlpha, or let "
             "supports rest"
+        )
+    for law, _ in system.history.laws:
+        raise InputError(
+            f"a section law remembers, {law.name}, which an integrator of one's own does not take: use GeneralizedAlpha"
         )
     if len(system.connectors.multipliers):
         raise InputError(

@@ -1,4 +1,4 @@
-"""Time steps of models whose tangent is not a narrow band: those of `kernels.march` with a sparse factorisation.
+"""Time steps of models whose tangent is not a narrow band, or with history: those of `kernels.march` one by one.
 
 A step is solved to the same tolerances, but a factorisation is kept longer, since it costs as much as ten iterations.
 """
@@ -44,7 +44,7 @@ class SparseMotion:
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(1)
         self._change = np.zeros(padded(size))
-        self._multipliers = system.connectors.multipliers
+        self._multipliers, self._history, self._dt = system.connectors.multipliers, system.history, float(h)
         self._factors: Factorised | None = None
 
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
@@ -63,7 +63,9 @@ class SparseMotion:
             differences, scale, order = self._differences, self._inverse_scale, statistics[6:8]
             change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, order)
             statistics[8] = change / self.coefficients[2]
-            state[0] = self.system.connectors.after_step((state[0], state[1], state[2]), float(time))
+            state[0] = self._history.committed(
+                (state[0], state[1], state[2]), float(time), self.system.imposing(float(time)), self._dt
+            )
             count_turns(len(counted), counted, before, state, turned)
             if (first + step) % every == 0:
                 saved[(first + step) // every] = state[:3]
@@ -118,7 +120,8 @@ class SparseMotion:
             if full:
                 self._change[free] = right
                 rates = state[1], self.coefficients
-                stresses = predicted_stresses(self.system, state[0], self._change[: self._size], time, rates=rates)
+                step = self._change[: self._size]
+                stresses = predicted_stresses(self.system, state[0], step, time, rates=rates, dt=self._dt)
             scale = self._inverse_scale
             last, size = (
                 size,
@@ -168,9 +171,9 @@ class SparseMotion:
         p, v, a, _ = state
         if renew or self._factors is None:
             self._factors = None  # frees their memory before the new ones are made
-            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses)
+            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self._dt)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1
         else:
-            unbalanced = residual(self.system, p, v, a, time)
+            unbalanced = residual(self.system, p, v, a, time, self._dt)
         return self._factors.solve(-unbalanced[self.system.free_dofs])

@@ -43,7 +43,7 @@ class Substructure:
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
     """Return whether a model is one chain of at least `elements` elements and two cores are available."""
     model = system.model
-    single = len(model.beams) == 1 and not model.joints and not system.inclined
+    single = len(model.beams) == 1 and not model.joints and not system.inclined and not len(system.history.numbers)
     return single and system.unknowns.pattern is None and len(system.blocks[0].node) >= elements and usable_cores() > 1
 
 
@@ -125,6 +125,7 @@ def _part(block: Block, elements: slice, first_dof: int) -> Block:
     dof = block.dof[nodes]
     return block._replace(
         imposed=None if block.imposed is None else block.imposed.of(elements),
+        history=block.history_of(elements),
         node=node - nodes.start,
         dof=np.where(dof >= 0, dof - first_dof, -1),
         **{name: getattr(block, name)[elements] for name in ("kind", "beam")},

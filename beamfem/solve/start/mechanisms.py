@@ -4,6 +4,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import FreeMotionError
+from beamfem.model.support import PointSupport
 from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
 
 _PROVEN = "supported"
@@ -15,6 +16,9 @@ def require_support(system: System) -> None:
         return
     model = system.model
     body = bodies_of(model)
+    if len(body) == 1 and any(_fixes(support) for support in model.point_supports):
+        system.proven.add(_PROVEN)
+        return
     rows = Conditions(system, body, system.reference)
     free = mechanisms(rows)
     if not len(free):
@@ -38,6 +42,11 @@ def require_support(system: System) -> None:
         "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "
         "without them, use simulate"
     )
+
+
+def _fixes(support: PointSupport) -> bool:
+    """Return whether a support prescribes displacement and rotation of its point, which no rigid motion leaves."""
+    return {"ux", "uy", "rotation"} <= support.prescribed().keys()
 
 
 def describe(translation: np.ndarray, turn: float, origin: np.ndarray, reach: float) -> str:

@@ -22,13 +22,11 @@ def refuse_multipliers(system: System, analysis: str) -> None:
 
 
 def refuse_memory(system: System, analysis: str) -> None:
-    """Raise InputError if a connector has history, so that states do not depend on the load alone."""
-    for item in system.connectors.items:
-        if len(item.memory):
-            raise InputError(
-                f"{analysis} does not support connectors with history, such as {item.name}; solve_static and "
-                "simulate do"
-            )
+    """Raise InputError if a connector or a section law has history, so that states do not depend on the load alone."""
+    for kind, name in system.history.holders:
+        raise InputError(
+            f"{analysis} does not support {kind} with history, such as {name}; solve_static and simulate do"
+        )
 
 
 def refuse_dampers(system: System) -> None:

@@ -9,7 +9,7 @@ from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model
+from beamfem.model.model import Model, block_key
 from beamfem.model.reference import reference_angle
 from beamfem.model.turns import uncounted
 from beamfem.results import postprocess
@@ -24,8 +24,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
     Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
     whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
-    keep their history.
-    Raises InputError if the beams do not match.
+    keep their history, and so do beams with the same element and section law. Raises InputError if the beams do not
+    match.
     """
     source, target = state.model, system.model
     if source is target:
@@ -37,6 +37,8 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
             # a rotated vector belongs to the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
+        if old.history.shape == new.history.shape and new.history.size and block_key(old.beam) == block_key(new.beam):
+            p[new.history] = state.p[old.history]
     known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
         if id(item.item) in known:

@@ -18,6 +18,7 @@ from beamfem.solve.statics.static_record import StaticRecord
 Snap = Literal["error", "jump"]
 
 _CUTS = 4  # in succession, before the path is followed by arc length
+_CUTS_OF_PAST = 10  # the same for models with history, whose path is not followed
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
 SAME = 1e-12  # of the load factor: smaller differences count as zero
@@ -39,11 +40,13 @@ def reach(
     stops: load factors that get a row of their own, except those skipped by a jump.
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
-    ahead = sorted({stop for stop in stops if SAME < stop < end - SAME} | {end})
+    remembers = len(system.history.numbers) > 0
+    # models with history go through the requested steps, to the end of each, however they are cut
+    asked = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
+    ahead = sorted({stop for stop in asked if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
-    # connectors with history go through the requested steps
-    longest = step if len(system.connectors.memory) else 1.0
+    longest = step if remembers else 1.0
     with progress("load factor", end) as report:
         while done.reached < end:
             step = _within_a_turn(system, done, step)
@@ -52,7 +55,7 @@ def reach(
             result = solve_equilibrium(system, done.state, target, newton, done.negative_pivots)
             done.iterations += result.iterations
             if result.ended.good and not skips_limit_points(system, done, target, result, newton):
-                state = system.connectors.after_load_step(result.state, target)
+                state = system.history.in_equilibrium(result.state, target, system.imposing(target))
                 done.add(target, state, result.negative_pivots, result.ended, result.digits)
                 if target >= refused:
                     cuts = 0
@@ -61,15 +64,15 @@ def reach(
             elif result.ended is Termination.NO_DIGITS:
                 # round-off that hides a load hides a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
-            elif cuts < _CUTS:
+            elif cuts < (_CUTS_OF_PAST if remembers else _CUTS):
                 cuts += 1
                 done.cuts += 1
                 refused = max(refused, target)
                 step *= 0.5
-            elif len(system.connectors.memory):
+            elif holders := system.history.holders:
                 raise ConvergenceError(
                     f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
-                    f"{result.ended.value}; models with connectors that have history are not followed along a "
+                    f"{result.ended.value}; models with {holders[0][0]} that have history are not followed along a "
                     "path, but simulate shows how they move",
                     done.solution(),
                 )

@@ -19,7 +19,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
     This is so if linearised stability predicts a critical point before its end, or if the tangent at its start leads
     far beyond its end, as near a limit point; this is not tested from the reference, where it also happens to a
     straight beam that is stiffened by its own tension. If the iteration was slow, it is also so if the state half-way
-    has another count of negative pivots, or if the step has another direction than the tangents at its ends.
+    has another count of negative pivots, or, in models without history, whose path has no kinks, if the step has
+    another direction than the tangents at its ends.
     """
     if result.linear is not None:
         done.iterations += 1
@@ -33,6 +34,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         return False
     if _differs_half_way(system, done, target, result.state):
         return True
+    if len(system.history.numbers):
+        return False  # the tangent of a committed state is that of unloading, not of the path
     done.iterations += 2
     return leaves_path(system, (done.state, done.reached), (result.state, target))
 

@@ -136,7 +136,7 @@ def solve_through(
         raise ConvergenceError(
             f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
         )
-    state = system.connectors.after_load_step(first.state, 0.0)
+    state = system.history.in_equilibrium(first.state, 0.0, system.imposing(0.0))
     done.add(0.0, state, first.negative_pivots, first.ended, first.digits)
     with kept(done.solution):
         try:

@@ -1,0 +1,75 @@
+"""Committed history: what connectors and section laws remember of the last accepted step, as part of a state."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamfem.assembly.connector import Motion
+from beamfem.assembly.connectors import Connectors
+from beamfem.assembly.points import free_sheet, resultants
+from beamfem.assembly.sheet import Sheet
+from beamfem.kernels.block import Block
+from beamfem.section.law import ConstitutiveLaw
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """The history variables of a model, which stand behind its coordinates and change with accepted steps only."""
+
+    connectors: Connectors
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
+        """Section laws that remember, each with its block."""
+        known = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
+        return tuple((law, self.blocks[number]) for number, law in known.items() if law is not None and law.remembers)
+
+    @cached_property
+    def numbers(self) -> np.ndarray:
+        """Numbers (h,) of all history variables among the coordinates."""
+        own = [block.history.ravel() for _, block in self.laws]
+        return np.concatenate([self.connectors.memory, *own]) if own else self.connectors.memory
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Their initial values (h,)."""
+        own = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
+        return np.concatenate([self.connectors.start, *own]) if own else self.connectors.start
+
+    @property
+    def holders(self) -> tuple[tuple[str, str], ...]:
+        """What remembers, in words, and its name."""
+        connectors = (("connectors", item.name) for item in self.connectors.items if len(item.memory))
+        return (*connectors, *(("section laws", law.name) for law, _ in self.laws))
+
+    def committed(self, motion: Motion, time: float, imposing: np.ndarray, dt: float = 0.0) -> np.ndarray:
+        """Return p (n,) with the history variables after an accepted step to a state.
+
+        imposing (k,): factors of the loads that impose strains; dt [s]: time step, 0 in statics. Raises InputError.
+        """
+        p = motion[0]
+        if not len(self.numbers):
+            return p
+        found = p.copy()
+        found[self.connectors.memory] = self.connectors.remember(motion, time)
+        for (law, block), sheet in zip(self.laws, self._strains, strict=True):
+            strain = resultants(sheet, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
+            known, past = strain[..., :3].reshape(-1, 3), p[block.history]
+            found[block.history] = law.remember(known, past.reshape(len(known), -1), dt).reshape(past.shape)
+        return found
+
+    def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
+        """Return the same of an accepted load step to an equilibrium p (n,)."""
+        if not len(self.numbers):
+            return p
+        zeros = np.zeros(len(p))
+        return self.committed((p, zeros, zeros), load_factor, imposing)
+
+    @cached_property
+    def _strains(self) -> tuple[Sheet, ...]:
+        """Elements of each law whose resultants are their strains, from the state without stress."""
+        unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
+        blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]
+        return tuple(free_sheet(block, self.connectors.model.size) for block in blocks)

@@ -1,0 +1,221 @@
+"""The sizes, places and equation numbers of a group of elements in its table, which like groups share."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from beamfem.kernels import record
+from beamfem.kernels.batch import rows_of
+from beamfem.kernels.block import (
+    ELASTIC_LINE,
+    GRADIENTS,
+    ROTATION,
+    SHEAR_RIGID,
+    STRETCH,
+    TURNED_GRADIENTS,
+    Block,
+    Layout,
+    PointLoads,
+)
+from beamfem.kernels.lanes import WIDTH
+from beamfem.kernels.pointers import address_of
+from beamfem.kernels.record import LANES, ROW
+
+_CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
+_SMALLEST = 16
+_FEW = 2000  # elements; what belongs to larger groups is not kept
+
+Needs = dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
+
+
+class Sizes(NamedTuple):
+    """Sizes of a group that its arrays of whole numbers do not tell."""
+
+    vectors: int
+    points: int
+    measures: int
+    bends: bool
+    damped: bool
+    imposed: bool
+    half_width: int
+
+
+class Numbers(NamedTuple):
+    """Whole numbers of a group, see `kernels.block`; free (n,): equation numbers of the model, element: of loads."""
+
+    node: np.ndarray
+    kind: np.ndarray
+    beam: np.ndarray
+    node_kind: np.ndarray
+    dof: np.ndarray
+    home: np.ndarray
+    free: np.ndarray
+    element: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """The part of a sheet that like groups share: see `sheet.Sheet`.
+
+    table: see `kernels.record`; kept: the arrays whose addresses it holds; kinds: of its nodes; turned, turning:
+    components of nodal vectors that turn, and the coordinates they turn with; used: rows of work space.
+    """
+
+    table: np.ndarray
+    kept: tuple[np.ndarray, ...]
+    order: np.ndarray | None
+    kinds: tuple[int, ...]
+    turned: int
+    turning: int
+    chunks: tuple[int, int, int]
+    used: int
+    needs: Needs
+
+
+def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
+    """Return the structure of a block, the same one for small blocks that are alike."""
+    slots = block.scale.shape[1]
+    _, points, measures = block.reference.shape
+    sizes = Sizes(
+        slots // block.node.shape[1],
+        points,
+        measures,
+        block.measures == ELASTIC_LINE,
+        bool(block.damping.any()),
+        block.imposed is not None,
+        layout.half_width,
+    )
+    numbers = Numbers(
+        *(np.ascontiguousarray(getattr(block, name), dtype=np.int64) for name in Numbers._fields[:6]),
+        *(np.ascontiguousarray(values, dtype=np.int64) for values in (layout.free, loads.element)),
+    )
+    if len(block.node) > _FEW or len(layout.free) > 10 * _FEW:
+        return _structure(numbers, sizes)
+    return _shared(tuple((values.tobytes(), values.shape) for values in numbers), sizes)
+
+
+@lru_cache(maxsize=64)
+def _shared(content: tuple[tuple[bytes, tuple[int, ...]], ...], sizes: Sizes) -> Structure:
+    return _structure(Numbers(*(np.frombuffer(data, np.int64).reshape(shape) for data, shape in content)), sizes)
+
+
+def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
+    """Return the nodes (N,) of elements (ne, nn) as they are stored: those at ends, then the inner ones by place.
+
+    So nodes of the same place in neighbouring elements are neighbours. None if there are no inner ones.
+    """
+    last = node.shape[1] - 1
+    if last == 1:
+        return None
+    place = np.zeros(nodes, dtype=np.int64)
+    for inner in range(1, last):
+        place[node[:, inner]] = inner
+    return np.argsort(place, kind="stable")
+
+
+def _structure(given: Numbers, sizes: Sizes) -> Structure:
+    """Return the structure of a group; see `sheet.Sheet`."""
+    order = storage_order(given.node, len(given.node_kind))
+    if order is not None:
+        number = np.empty_like(order)
+        number[order] = np.arange(len(order))
+        own = {name: getattr(given, name)[order] for name in ("node_kind", "dof", "home")}
+        given = given._replace(node=number[given.node], **own)
+    elements, nodes = given.node.shape
+    count, coordinates = given.dof.shape
+    size = 2 * sizes.vectors
+    kinds = tuple(np.unique(given.node_kind).tolist())
+    turned = 4 if STRETCH in kinds or SHEAR_RIGID in kinds else (0 if set(kinds) <= {GRADIENTS} else 2)
+    turning = coordinates - (size - turned) if turned else 0
+    table = np.zeros(record.BLOCK_FIELDS, dtype=np.int64)
+    table_rows = _table_rows(table, nodes * sizes.vectors, sizes)
+    velocity = 2 * size + 2 * turned * turning
+    gathered = velocity + size * sizes.damped
+    chunk_rows = gathered + turning * turning + 2 * size
+    table[record.ACCELERATION], table[record.TRANSFORM] = size, 2 * size
+    table[record.CONVECTIVE] = 2 * size + turned * turning
+    table[record.VELOCITY], table[record.DAMPED] = velocity, sizes.damped
+    table[record.CURVATURE], table[record.FORCE] = gathered, gathered + turning * turning
+    table[record.PREDICTED_FORCE], table[record.NODE_ROWS] = gathered + turning * turning + size, chunk_rows
+    used = rows_of(nodes, sizes.vectors, sizes.points, gathered, table_rows)[-1]
+    batch = LANES
+    while batch > _SMALLEST and used * batch > _CACHE * LANES:
+        batch //= 2
+    place = given.node // LANES * (chunk_rows * ROW) + given.node % LANES
+    number = np.where(given.dof >= 0, given.free[given.dof], -1)[given.node].reshape(elements, -1)
+    runs = _runs(given.node_kind)
+    arrays = {
+        record.CLASS: given.kind,
+        record.BEAM: given.beam,
+        record.PLACE: place.T,
+        record.DOF: given.dof.T,
+        record.SOURCE: np.append(np.maximum(given.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
+        record.RUNS: runs,
+        record.NUMBER: number.T,
+        record.FREE: given.free,
+        record.HOME: given.home,
+        record.LOAD_ELEMENT: given.element,
+        record.LOAD_PLACE: place[given.element].T,
+        record.LOAD_NUMBER: number[given.element].T,
+        record.COUNTED: np.arange(elements) if sizes.half_width < 0 else np.empty(0, dtype=np.int64),
+    }
+    kept = []
+    for field, values in arrays.items():
+        kept.append(np.ascontiguousarray(values, dtype=np.int64))
+        table[field] = address_of(kept[-1])
+    table[record.ELEMENTS], table[record.NODES], table[record.NODES_PER_ELEMENT] = elements, count, nodes
+    table[record.ORDERED] = (np.diff(given.node, axis=0) > 0).all()
+    table[record.VECTORS], table[record.POINTS] = sizes.vectors, sizes.points
+    table[record.MEASURES], table[record.BENDS] = sizes.measures, sizes.bends
+    table[record.TURNED], table[record.TURNING] = turned, turning
+    table[record.BATCH], table[record.TABLE_ROWS], table[record.COORDINATES] = batch, table_rows, coordinates
+    table[record.RUN_COUNT], table[record.HALF_WIDTH] = len(runs), sizes.half_width
+    table[record.LOADS] = len(given.element)
+    needs = _needs(kinds, sizes, bool(len(given.element)))
+    chunks = -(-count // LANES), chunk_rows, ROW
+    return Structure(table, tuple(kept), order, kinds, turned, turning, chunks, used, needs)
+
+
+def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:
+    """Fill where each quantity of a class begins in its row; return the length of the row."""
+    points, measures = sizes.points, sizes.measures
+    lengths = {
+        record.SLOPE: points * slots,
+        record.SECOND: points * slots * sizes.bends,
+        record.STIFFNESS: points * measures * (measures + 1) // 2,
+        record.REFERENCE: points * measures,
+        record.WEIGHT: points,
+        record.MASS: slots * slots,
+        record.GRAVITY: slots,
+        record.LENGTH: slots,
+        record.DAMPING: int(sizes.damped),
+    }
+    first = 0
+    for field, length in lengths.items():
+        if length or field != record.DAMPING:
+            table[field] = first
+        first += length
+    return first
+
+
+def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
+    """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
+    angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
+    rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
+    turns = bool(angles or rotated)
+    forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
+    forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if sizes.imposed else ()))
+    tangent = ["tangent", "band" if sizes.half_width >= 0 else "sparse"]
+    tangent += ["turning tangent"] if turns else []
+    tangent += ["load tangent"] if loads else []
+    tangent += ["turning load tangent"] if loads and turns else []
+    parts = {"forces": forces, "tangent": tuple(tangent), "mass": ("mass",), "prediction": ("prediction",)}
+    return {task: (names, angles) for task, names in parts.items()}
+
+
+def _runs(node_kind: np.ndarray) -> np.ndarray:
+    """Return kind, first node and number of nodes (runs, 3) of neighbours of one kind."""
+    first = np.flatnonzero(np.diff(node_kind, prepend=-1))
+    return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])

@@ -1,0 +1,23 @@
+"""Gauss quadrature on an interval, the rules of scikit-fem."""
+
+from functools import lru_cache
+
+import numpy as np
+from skfem.quadrature import get_quadrature_line
+
+
+@lru_cache(maxsize=64)  # asked for by every beam of a model
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points (points,) and weights (points,) on [0, 1], which cannot be written to."""
+    # scikit-fem has no rule of one point
+    (xi,), weights = ([[0.5]], np.ones(1)) if points == 1 else get_quadrature_line(2 * points - 1)
+    found = np.array(xi), np.array(weights)
+    for values in found:
+        values.setflags(write=False)
+    return found
+
+
+def gauss_between(low: float, high: float, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return Gauss points (points,) between two ends and their weights (points,)."""
+    at, weights = gauss(points)
+    return low + (high - low) * at, (high - low) * weights

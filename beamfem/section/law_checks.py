@@ -1,0 +1,107 @@
+"""Whether the law of a section is what it says: analytic, with an energy, and determined by its committed history."""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+
+from beamfem.errors import InputError
+from beamfem.section.law import COMPLEX_STEP, ConstitutiveLaw
+from beamfem.section.protocol import CrossSection, Rigidity
+from beamfem.validation import fulfils
+
+_STEP = 1e-4  # of a sample: differences of fourth order then agree to about 1e-11
+_AGREE = 1e-6  # of the largest part of a stiffness
+# uneven, so that no limit of a law is likely to lie within a difference
+_SAMPLES = np.array([[1.0, 0.7137, -0.4079], [-0.6173, 0.3119, 0.9161], [0.2143, -0.8171, 0.5087]])
+_SIZES = (1e-5, 1e-3, 3e-2)  # strains of the outer fibre at which a law is looked at
+_TIMES = (0.0, 1e-3, 1.0)  # [s]: time steps likewise, where there is history
+
+
+def require_law(law: ConstitutiveLaw) -> None:
+    """Raise InputError if a law is not what `SectionLaw` or `RememberingLaw` asks for."""
+    zero, start = np.zeros((1, 3)), law.at_start(1)
+    section = cast(Any, law.section)
+    if not fulfils(section, CrossSection):
+        raise InputError(f"{law.name} has resultants, but is no section: it lacks members of CrossSection")
+    if np.any(law.resultants(zero, start) != 0.0) or np.any(law.energy(zero, start) != 0.0):
+        raise InputError(
+            f"resultants and energy of {law.name} must be zero at zero strain: a beam is free of stress along its curve"
+        )
+    low, high = section.bounds
+    lengths = np.array([1.0, 1.0, 2.0 / (high - low)])
+    for size in _SIZES:
+        for dt in _TIMES if law.remembers else _TIMES[:1]:
+            _require_consistent(law, size * lengths * _SAMPLES, size * lengths, dt)
+    _require_rigidity(law, section.rigidity(law.material), lengths)
+
+
+def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray, dt: float) -> None:
+    """Raise InputError if derivatives by complex steps, differences and the energy of a law disagree."""
+    history = law.at_start(len(strain))
+    found, tangent = law.linearised(strain, history, dt)
+    moved = law.resultants(strain.astype(complex), history, dt).imag
+    whole, work = tangent * unit[:, None] * unit, found * unit
+    largest = np.abs(whole).max(initial=0.0)
+    where = f"at strains such as {strain[0].tolist()}" + (f" after {dt:g} s" if law.remembers else "")
+    if not np.isfinite(whole).all() or not np.isfinite(work).all() or np.any(moved != 0.0):
+        raise InputError(f"resultants of {law.name} must be finite and real {where}")
+    slopes = _slopes(lambda at: law.resultants(at, history, dt).real, strain, unit) * unit
+    if not np.abs(np.moveaxis(slopes, 0, -1) - whole).max() <= _AGREE * largest:
+        raise InputError(
+            f"resultants of {law.name} are not analytic, or not symmetric, {where}: their derivatives by complex steps "
+            f"and by differences disagree (abs, hypot, linalg.norm or conj lose complex steps)"
+        )
+    least = _AGREE * max(np.abs(work).max(), largest)
+    if law.remembers:
+        history = law.remember(strain, history, dt)
+        again, elastic = law.linearised(strain, history)
+        if not np.abs((again - found) * unit).max() <= least:
+            raise InputError(
+                f"resultants of {law.name} change {where} when history is committed: with the history that remember "
+                f"returns and dt = 0 they must be those of the step"
+            )
+    if dt > 0.0:
+        return
+    if not np.abs(_force(law, strain, history, unit) - work).max() <= least:
+        raise InputError(
+            f"energy of {law.name} does not belong to its resultants {where}: they must be its derivatives by stretch, "
+            f"shear and curvature"
+        )
+    if law.remembers:
+        second = np.moveaxis(_slopes(lambda at: _force(law, at, history, unit), strain, unit), 0, -1)
+        if not np.abs(second - elastic * unit[:, None] * unit).max() <= _AGREE * largest:
+            raise InputError(
+                f"{law.name} is not elastic {where} at the history that remember has just returned: the tangent there "
+                f"must be the second derivative of the stored energy. Let a step yield beyond a limit with a tolerance "
+                f"only, such as 1e-9 of it, so that round-off decides nothing"
+            )
+
+
+def _force(law: ConstitutiveLaw, strain: np.ndarray, history: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Return the derivatives (n, 3) of the stored energy at a history, times the unit of each strain."""
+    steps = 1j * COMPLEX_STEP * np.diag(unit)
+    columns = [law.energy(strain + step, history)[:, 0].imag / COMPLEX_STEP for step in steps]
+    return np.stack(columns, axis=-1)
+
+
+def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Return the derivatives (3, n, ...) along the unit of each strain, by differences of fourth order."""
+    found = []
+    for step in _STEP * np.diag(unit):
+        near = function(at + step) - function(at - step)
+        far = function(at + 2.0 * step) - function(at - 2.0 * step)
+        found.append((8.0 * near - far) / (12.0 * _STEP))
+    return np.array(found)
+
+
+def _require_rigidity(law: ConstitutiveLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
+    """Raise InputError if a law does not begin with the stiffness of its section."""
+    own = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
+    own[0, 2] = own[2, 0] = rigidity.coupling
+    units = lengths[:, None] * lengths
+    if np.abs((law.stiffness - own) * units).max() > _AGREE * np.abs(own * units).max():
+        raise InputError(
+            f"the law of {law.name} begins with the stiffness {law.stiffness.tolist()}, but its rigidity is "
+            f"{own.tolist()}: rigidity(material) must be the stiffness at zero strain"
+        )

@@ -1,4 +1,22 @@
-"""Planar beams that bend far: a field, nodal coordinates and elastic forces, each an exchangeable part."""
+"""Finite elements for planar beams under large deflections.
+
+A field, nodal coordinates and elastic forces make an element, and each of the three can be exchanged. Any consistent
+set of units works; the docstrings state SI units, shapes of arrays in parentheses, and [-] for numbers without a unit.
+"Paper" is the paper cited in the README.
+
+Examples
+--------
+The examples of all docstrings continue this one, a steel cantilever with a force across its end:
+
+>>> import beamfem as bf
+>>> import numpy as np
+>>> steel = bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
+>>> beam = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+>>> model = bf.Model([beam], supports=[bf.Clamp(beam.start)], loads=[bf.PointForce(beam.end, (0.0, -1e4))])
+>>> solution = bf.solve_static(model)
+>>> round(float(solution.displacement(beam.end)[-1, 1]), 4)
+-0.0305
+"""
 
 import sys
 from importlib import import_module

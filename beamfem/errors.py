@@ -20,7 +20,15 @@ class FreeMotionError(InputError):
 
 
 class ConvergenceError(BeamfemError, RuntimeError):
-    """A solve that could not go on; `solution` holds every state found before."""
+    """A solve that could not be continued.
+
+    Parameters
+    ----------
+    message : str
+        What went wrong.
+    solution : Solution, optional
+        Every state found before.
+    """
 
     def __init__(self, message: str, solution: Any = None) -> None:
         super().__init__(message)
@@ -28,9 +36,16 @@ class ConvergenceError(BeamfemError, RuntimeError):
 
 
 class LimitPointError(ConvergenceError):
-    """A static solve that came to a limit point: beyond `load_factor` there is no equilibrium near by.
+    """A static solve that came to a limit point: beyond its load factor there is no equilibrium nearby.
 
-    `solution` holds the states before it.
+    Parameters
+    ----------
+    message : str
+        What went wrong.
+    load_factor : float, [-]
+        Load factor of the limit point.
+    solution : Solution, optional
+        The states before it.
     """
 
     def __init__(self, message: str, load_factor: float, solution: Any = None) -> None:

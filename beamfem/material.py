@@ -8,12 +8,36 @@ from beamfem.validation import convert, finite, optional, positive
 
 @dataclass(frozen=True)
 class Material:
-    """Hookean material, damped after Kelvin and Voigt where it has a retardation time.
+    """Hookean material, with Kelvin-Voigt damping if it has a retardation time.
 
-    youngs_modulus [Pa], poisson_ratio [-] in (-1, 0.5), density [kg/m^3]; retardation_time t [s]: in motions every
-    stress resultant is C (eps + t eps'), so that a small vibration of angular frequency w has the damping ratio t w / 2
-    and a rigid motion is not damped, but every change of strain is, a free expansion too; thermal_expansion alpha
-    [1/K], of a length, for `Temperature`; strength [Pa] that von Mises' stress is compared with. Raises InputError.
+    With a retardation time t, every section force in a motion is C (eps + t eps'). A small vibration of angular
+    frequency w then has the damping ratio t w / 2. A rigid motion is not damped, but every change of strain is,
+    including a free expansion.
+
+    Parameters
+    ----------
+    youngs_modulus : float, [Pa]
+        Young's modulus E.
+    poisson_ratio : float, [-]
+        Poisson's ratio nu, in (-1, 0.5).
+    density : float, [kg/m^3]
+        Density.
+    retardation_time : float, [s], default 0
+        Retardation time t of the damping.
+    thermal_expansion : float, [1/K], default 0
+        Coefficient alpha of thermal expansion of a length, for `Temperature`.
+    strength : float, [Pa], optional
+        Strength that the von Mises stress is compared with.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0).shear_modulus / 1e9  # GPa
+    80.76923076923077
     """
 
     youngs_modulus: float
@@ -43,7 +67,23 @@ class Material:
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
     def lame_lambda(self, plane_stress: bool = False) -> float:
-        """lambda [Pa] = E nu / ((1 + nu)(1 - 2 nu)), or E nu / (1 - nu^2) in plane stress."""
+        """Return Lamé's first parameter, E nu / ((1 + nu)(1 - 2 nu)), or E nu / (1 - nu^2) in plane stress.
+
+        Parameters
+        ----------
+        plane_stress : bool, default False
+            Whether to return the value of plane stress.
+
+        Returns
+        -------
+        float, [Pa]
+            lambda.
+
+        Examples
+        --------
+        >>> round(steel.lame_lambda() / 1e9, 2)  # GPa
+        121.15
+        """
         ratio = self.poisson_ratio
         divisor = 1.0 - ratio**2 if plane_stress else (1.0 + ratio) * (1.0 - 2.0 * ratio)
         return self.youngs_modulus * ratio / divisor

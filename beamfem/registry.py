@@ -24,7 +24,8 @@ def offer(method: Callable[..., Any], function: str) -> None:
     """
     _FUNCTIONS[method] = function
     if method.__doc__:
-        method.__doc__ += f" See `{function.replace(':', '.')}`."
+        first, *further = method.__doc__.split("\n\n", 1)
+        method.__doc__ = "\n\n".join([f"{first} See `{function.replace(':', '.')}`.", *further])
 
 
 def offered(method: Callable[..., Any]) -> Callable[..., Any]:

@@ -11,7 +11,7 @@ from plain_docstrings import as_markup, without_constants
 
 project = "beamfem"
 version = release = installed("beamfem")
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx-mathjax-offline"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx-mathjax-offline"]
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
@@ -23,6 +23,9 @@ html_static_path = ["_static"]
 html_css_files = ["wide.css"]
 html_show_copyright = False
 autodoc_member_order = "bysource"
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+napoleon_use_rtype = False
 autodoc_typehints_format = "short"
 autodoc_use_type_comments = False
 python_maximum_signature_line_length = 100
@@ -33,5 +36,5 @@ def setup(app):
     app.connect("builder-inited", draw)
     app.connect("env-get-outdated", with_pictures)
     app.connect("source-read", show)
-    app.connect("autodoc-process-docstring", as_markup)
+    app.connect("autodoc-process-docstring", as_markup, priority=400)  # napoleon takes its markup at 500
     app.connect("autodoc-process-signature", without_constants)

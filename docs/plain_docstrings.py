@@ -1,4 +1,4 @@
-"""Plain docstrings, which are written for `help()`, as markup for Sphinx."""
+"""Plain docstrings, which are written for `help()`, as markup for Sphinx; napoleon takes their sections from here."""
 
 import inspect
 import re
@@ -8,31 +8,18 @@ _CONSTANTS = ("name", "code", "turns_with", "fills_body", "shear_measures", "vec
 
 
 def as_markup(app, kind, name, thing, options, lines):
-    """Escape what would be markup, show `code` as code and parameters in bold, one a paragraph."""
-    names = "|".join(re.escape(parameter) for parameter in _parameters(thing))
-    paragraphs = []
-    for paragraph in "\n".join(lines).split("\n\n"):
-        text = " ".join(line.strip() for line in paragraph.split("\n")).strip()
-        if names:
-            # "radius [m], angle: ..." stays one phrase; a new one begins where a parameter does
-            text = re.sub(rf"(?<=[.;] )(?=(?:{names})(?:, (?:{names}))*(?: [\[(][^:;]*?[\])])?: )", "\n\n", text)
-        paragraphs += re.sub(r"(?<=[.;]) (?=(?:Raises|Source:) )", "\n\n", text).split("\n\n")
-    marked = []
-    for text in paragraphs:
-        text = re.sub(r"([\\*|])", r"\\\1", text)
-        text = re.sub(r"(?<=\w)_(?!\w)", r"\\_", text)
-        text = re.sub(r"`([^`]+)`", lambda code: f"``{code[1].replace(chr(92), '')}``", text)
-        if names:
-            text = re.sub(rf"^((?:{names})(?:, (?:{names}))*)(?=[ :])", r"**\1**", text)
-        marked += [text, ""]
-    lines[:] = marked
+    """Escape what would be markup and show `code` as code; examples and underlines of sections stay as they are."""
+    shown = False  # an example, which ends with an empty line
+    for place, line in enumerate(lines):
+        shown = bool(line.strip()) and (shown or line.lstrip().startswith(">>>"))
+        if not shown and not re.fullmatch(r"-{3,}", line.strip()):
+            lines[place] = _escaped(line)
 
 
-def _parameters(thing):
-    try:
-        return list(inspect.signature(thing).parameters)
-    except (TypeError, ValueError):
-        return []
+def _escaped(line):
+    line = re.sub(r"([\\*|])", r"\\\1", line)
+    line = re.sub(r"(?<=\w)_(?!\w)", r"\\_", line)
+    return re.sub(r"`([^`]+)`", lambda code: f"``{code[1].replace(chr(92), '')}``", line)
 
 
 def without_constants(app, kind, name, thing, options, signature, returns):

@@ -60,7 +60,7 @@ SOLVES = {
     "path of a class": (lambda: bf.trace_equilibrium(bf.Model), BAD, "a Model is asked for"),
     "path until text": (lambda: bf.trace_equilibrium(CANTILEVER, "1"), BAD, "until must be a number"),
     "path until nothing": (lambda: bf.trace_equilibrium(CANTILEVER, lambda: True), BAD, "until .* state of the path"),
-    "path until a number": (lambda: bf.trace_equilibrium(CANTILEVER, lambda s: 1), BAD, "until must give True or"),
+    "path until a number": (lambda: bf.trace_equilibrium(CANTILEVER, lambda s: 1), BAD, "until must return True or"),
     "path to the side": (lambda: bf.trace_equilibrium(CANTILEVER, direction=0), BAD, "direction must be 1 or -1"),
     "path towards True": (lambda: bf.trace_equilibrium(CANTILEVER, direction=True), BAD, "direction must be 1 or -1"),
     "path of arrays": (lambda: bf.trace_equilibrium(CANTILEVER, direction=np.ones(2)), BAD, "direction must be"),

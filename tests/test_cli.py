@@ -137,7 +137,7 @@ def test_a_free_model_is_bad_input_of_its_file(tmp_path):
         ("--vtk", "a.vtu", "a.pvd would be right"),
         ("--plot", "a.xyz", "a.png would be right"),
         ("--plot", "folder.png", "is a folder"),
-        ("--out", "file.txt/a.h5", "takes no files"),
+        ("--out", "file.txt/a.h5", "no files can be created"),
     ],
 )
 def test_what_cannot_be_written_is_refused_before_the_solve(option, path, words, tmp_path, monkeypatch):
@@ -255,7 +255,7 @@ def test_mistakes_with_studies(studies, tmp_path):
         (("nothing",), "--elements"),
         (("nothing", "--elements", "x"), "--elements"),
         (("nothing", "--elements", 1, "--lenght", 2), "--length"),
-        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is no int"),
+        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is not a valid int"),
         (("nothing", "--elements", 1, "--element", "CRFB(2)"), "did you mean CRBF"),
         (("nothing", "--elements", 1, "--element", "CRBF"), "needs its order"),
         (("nothing", "--elements", 1, "--length", "-1"), "length must be positive"),
@@ -304,7 +304,7 @@ def test_doctor(monkeypatch):
     monkeypatch.setattr(doctor, "_installed", lambda name: name != "h5py")
     monkeypatch.setattr("beamfem.cli.targets.writable", lambda folder: False)
     text = invoke("doctor").stdout
-    assert "VTK died of signal 11" in text
+    assert "VTK was killed by signal 11" in text
     assert 'missing h5py: pip install "beamfem[store]"' in text
     assert "cannot be written to" in text
 
@@ -327,4 +327,4 @@ def test_a_real_process(tmp_path):
     assert (wrong.returncode, wrong.stdout) == (2, "")
     assert wrong.stderr == "error: none.toml: there is no such file\n"
     assert invoke("--version").stdout.startswith("beamfem 0.")
-    assert "Exit codes: 0 all well" in invoke("--help").stdout
+    assert "Exit codes: 0 success" in invoke("--help").stdout

@@ -36,7 +36,7 @@ def test_a_new_model_file_runs_as_it_stands(tmp_path, monkeypatch):
     assert -0.3 < end["uy"] < 0.0
 
 
-@pytest.mark.parametrize(("name", "words"), [("a.txt", "a.toml would be right"), ("there.toml", "is there already")])
+@pytest.mark.parametrize(("name", "words"), [("a.txt", "a.toml would be right"), ("there.toml", "already exists")])
 def test_a_new_model_file_takes_no_place_of_another(tmp_path, name, words):
     (tmp_path / "there.toml").write_text("mine")
     done = invoke("new", tmp_path / name)
@@ -83,7 +83,7 @@ def test_a_colour_that_nobody_knows_is_named(saved, tmp_path):
     done = invoke("plot", saved, tmp_path / "a.png", "--colour", "momnet")
     assert done.exit_code == 2
     assert "did you mean moment" in done.stderr
-    assert "has colours to choose from" in invoke("plot", saved, tmp_path / "a.html", "--colour", "moment").stderr
+    assert "has its own choice of colours" in invoke("plot", saved, tmp_path / "a.html", "--colour", "moment").stderr
 
 
 def test_export_takes_what_one_chooses(saved, tmp_path):

@@ -98,7 +98,7 @@ class Unsure(Confused):
 def test_what_remembers_is_refused_where_it_cannot_be_taken():
     own, model = pulled(there_and_back)
     for solve in (bf.solve_buckling, bf.trace_equilibrium):
-        with pytest.raises(bf.InputError, match="takes no connectors that remember, as Rest does"):
+        with pytest.raises(bf.InputError, match="does not support connectors with history, such as Rest"):
             solve(model)
     stiffness = (1.0, 1.0, 1.0)
     for kind, words in (
@@ -112,6 +112,8 @@ def test_what_remembers_is_refused_where_it_cannot_be_taken():
 
 def test_steps_that_fail_are_named_where_the_past_counts():
     _, model = pulled(lambda load_factor: 1e9 if load_factor > 0.5 else 0.0)
-    with pytest.raises(bf.ConvergenceError, match="models with connectors that remember are not followed") as caught:
+    with pytest.raises(
+        bf.ConvergenceError, match="models with connectors that have history are not followed"
+    ) as caught:
         bf.solve_static(model, steps=4, newton=bf.Newton(iterations=3))
     assert caught.value.solution.at[-1] == pytest.approx(0.5)

@@ -302,7 +302,7 @@ def test_connectors_that_remember_may_hold_sections_that_do():
 def test_what_remembers_is_refused_where_it_cannot_be_taken():
     _, model = arm(YIELDING, lambda beam: [bf.PointForce(beam.end, (-1.0, 0.0))])
     for solve in (bf.solve_buckling, bf.trace_equilibrium):
-        with pytest.raises(bf.InputError, match="takes no section laws that remember, as Plastic does"):
+        with pytest.raises(bf.InputError, match="does not support section laws with history, such as Plastic"):
             solve(model)
     with pytest.raises(bf.InputError, match="a section law remembers, Plastic, which an integrator of one's own"):
         bf.simulate(model, 0.1, 1e-3, Radau())
@@ -311,7 +311,9 @@ def test_what_remembers_is_refused_where_it_cannot_be_taken():
 def test_steps_that_fail_are_named_where_the_past_counts():
     jump = lambda at: 1e9 if at > 0.5 else 0.0  # noqa: E731
     _, model = arm(YIELDING, lambda beam: [bf.PointForce(beam.end, (0.0, 1.0), amplitude=jump)])
-    with pytest.raises(bf.ConvergenceError, match="models with section laws that remember are not followed") as caught:
+    with pytest.raises(
+        bf.ConvergenceError, match="models with section laws that have history are not followed"
+    ) as caught:
         bf.solve_static(model, steps=4, newton=bf.Newton(iterations=3))
     assert caught.value.solution.at[-1] == pytest.approx(0.5)
 

@@ -183,7 +183,7 @@ def test_curves_are_drawn_beside_the_model_file(written, tmp_path, monkeypatch):
         ('"uy"', '"fx"', "curves[1].x.quantity", "there is no support"),
         ("curve.png", "curve.csv", "curves[1]", "must end in .png, .svg or .pdf"),
         ('y = "load_factor"', "", "curves[1]", "the key y is missing"),
-        ("[[curves]]", '[analysis]\nkind = "modes"\n[[curves]]', "curves[1]", "nothing to draw a curve of"),
+        ("[[curves]]", '[analysis]\nkind = "modes"\n[[curves]]', "curves[1]", "no states to draw a curve of"),
     ],
 )
 def test_a_mistake_in_a_curve_is_named(written, old, new, key, words):

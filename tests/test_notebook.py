@@ -111,7 +111,7 @@ def test_modes_and_critical_loads_are_tables():
     buckling = bf.solve_buckling(column, count=2)
     for load in buckling.load_factors:
         assert f"{load:.6g}" in buckling._repr_html_()
-    assert "ended because 2 are asked for" in buckling._repr_html_()
+    assert "ended because the requested number, 2, was found" in buckling._repr_html_()
 
 
 def test_sweeps_studies_and_stresses_are_tables():

@@ -160,7 +160,7 @@ def test_functions_that_are_offered_take_what_their_method_takes(method):
 
 
 def test_a_method_that_no_room_offers_says_so():
-    with pytest.raises(NotImplementedError, match=r"no room above offers Solution\.position"):
+    with pytest.raises(NotImplementedError, match=r"no room above offers PointQuantities\.position"):
         registry.offered(bf.Solution.position)
 
 

@@ -133,7 +133,7 @@ def test_a_structure_that_comes_to_rest_nowhere_says_so():
     bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.ANCF(), bf.Rectangle(0.1, 0.1), material)
     supports = [bf.Clamp(bar.start), bf.Prescribed(bar.end, uy=0.0, rotation=0.0)]
     push = bf.PointForce(bar.end, (-1.25 * 2e11 * 0.01 / (3.0 * np.sqrt(3.0)), 0.0))
-    with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it") as caught:
+    with pytest.raises(bf.LimitPointError, match="no state of rest was found beyond it") as caught:
         bf.solve_static(bf.Model([bar], supports, [push]), snap="jump")
     assert caught.value.load_factor == pytest.approx(0.8, rel=1e-6)
 
@@ -167,7 +167,7 @@ def test_a_structure_does_not_come_to_rest_where_it_is_unstable(monkeypatch):
         [*frame.loads, bf.PointForce(column.end, (-5.0 * critical, 0.0))],
         frame.joints,
     )
-    with pytest.raises(bf.LimitPointError, match="no state of rest was found behind it"):
+    with pytest.raises(bf.LimitPointError, match="no state of rest was found beyond it"):
         bf.solve_static(model, 10, snap="jump")
 
 

@@ -12,7 +12,22 @@ from beamfem.validation import convert, finite, squared, vector
 
 @dataclass(frozen=True)
 class RigidVelocity:
-    """Velocity of a rigid motion: vector (vx, vy) [m/s], angular [rad/s] about a point (x, y) [m]."""
+    """Velocity of a rigid motion, to start a motion with.
+
+    Parameters
+    ----------
+    vector : (float, float), [m/s], default (0, 0)
+        Velocity (vx, vy) of the point `about`.
+    angular : float, [rad/s], default 0
+        Angular velocity.
+    about : (float, float), [m], default (0, 0)
+        Center (x, y) of the rotation.
+
+    Examples
+    --------
+    >>> spin = bf.RigidVelocity(angular=2.0, about=(0.0, 0.0))
+    >>> motion = bf.simulate(bf.Model([beam], [bf.Pin(beam.start)]), duration=0.02, step=0.002, velocity=spin)
+    """
 
     vector: tuple[float, float] = (0.0, 0.0)
     angular: float = 0.0

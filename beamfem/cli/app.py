@@ -11,8 +11,8 @@ from beamfem.cli.run import run
 
 app = typer.Typer(
     name="beamfem",
-    help="Planar beams that bend far: run model files and studies, look at results.",
-    epilog="Exit codes: 0 all well, 1 a solve failed, 2 the input is wrong.",
+    help="Planar beams under large deflections: run model files and studies, inspect results.",
+    epilog="Exit codes: 0 success, 1 a solve failed, 2 the input is wrong.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

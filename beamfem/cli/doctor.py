@@ -1,4 +1,4 @@
-"""`beamfem doctor`: whether everything that beamfem stands on works here."""
+"""`beamfem doctor`: check of the installation."""
 
 import re
 import subprocess
@@ -21,7 +21,7 @@ _NOT_SHOWN = ("all", "test", "bench", "docs")
 
 
 def doctor(as_json: AsJson = False) -> None:
-    """Show versions, compiled kernels, a first solve, whether pictures of bodies work and which extras are missing."""
+    """Check the installation: versions, compiled kernels, a first solve, pictures of bodies and missing extras."""
     with reported(as_json):
         begun = time.perf_counter()
         from beamfem.cli import targets
@@ -46,7 +46,7 @@ def doctor(as_json: AsJson = False) -> None:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python, of beamfem and of what it needs."""
+    """Return the versions of Python, of beamfem and of the packages that it needs."""
     import platform
     from importlib.metadata import version
 
@@ -60,7 +60,7 @@ def versions() -> dict[str, str]:
 
 
 def first_solve() -> dict[str, Any]:
-    """Solve a cantilever: seconds of the first and the second time, kernels compiled for it, and whether it is right.
+    """Solve a cantilever twice: seconds of each solve, kernels compiled for it, and whether the result is right.
 
     P L^2 / (E I) = 5 of the geometrically exact beam with L / h = 100: tip deflection 0.71385896416 L.
     """
@@ -95,7 +95,7 @@ def first_solve() -> dict[str, Any]:
 
 
 def rendering() -> dict[str, Any]:
-    """Return whether VTK can draw, tried in a process of its own because it may die of a missing library."""
+    """Return whether VTK can draw, tested in a separate process because a missing library may crash it."""
     try:
         done = subprocess.run([sys.executable, "-c", _RENDER], capture_output=True, text=True, timeout=120, check=False)
     except subprocess.TimeoutExpired:
@@ -103,14 +103,14 @@ def rendering() -> dict[str, Any]:
     if done.returncode == 0:
         return {"possible": True, "reason": ""}
     if done.returncode < 0:
-        reason = f"VTK died of signal {-done.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
+        reason = f"VTK was killed by signal {-done.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
     else:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
     return {"possible": False, "reason": reason}
 
 
 def extras() -> list[dict[str, Any]]:
-    """Return for each optional extra what is missing of it and how to install it."""
+    """Return for each optional extra its missing packages and how to install them."""
     wanted: dict[str, list[str]] = {}
     for name, extra in _requirements():
         if extra and extra not in _NOT_SHOWN:
@@ -127,7 +127,7 @@ def extras() -> list[dict[str, Any]]:
 
 
 def _requirements() -> list[tuple[str, str]]:
-    """Return what beamfem requires, each with the extra it belongs to, or ""."""
+    """Return the requirements of beamfem, each with the extra it belongs to, or ""."""
     from importlib.metadata import requires
 
     found = []

@@ -1,4 +1,4 @@
-"""Elements as a text: the name of a preset, with its order where it has one."""
+"""Elements as a text: the name of a preset, with its order if it has one."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""`beamfem info`, `export` and `plot`: what to do with a results file."""
+"""`beamfem info`, `export` and `plot`: commands for a results file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,7 +15,7 @@ Results = Annotated[Path, typer.Argument(help="A results file (.h5).", show_defa
 
 
 def info(results: Results, as_json: AsJson = False) -> None:
-    """Show what a results file holds: model, states, statistics."""
+    """Show the contents of a results file: model, states, statistics."""
     with reported(as_json):
         from beamfem.io.results import load
 
@@ -45,7 +45,7 @@ def export(
         bool, typer.Option("--reference", help="Leave the points at the reference, to warp them by the displacement.")
     ] = False,
     field: Annotated[
-        list[str] | None, typer.Option(help="A field to write, once for each; all by default.", show_default=False)
+        list[str] | None, typer.Option(help="A field to write, repeated for each; all by default.", show_default=False)
     ] = None,
     every: Annotated[int, typer.Option(help="Write every n-th state.", min=1)] = 1,
     single: Annotated[bool, typer.Option("--single", help="Write numbers of four bytes.")] = False,
@@ -124,7 +124,7 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
 
 
 def _acting(item: Any, solution: "Solution") -> str:
-    """Return a support, joint or load in a line, its places by beam number and fraction."""
+    """Return a support, joint or load as one line, with its places by beam number and fraction."""
     from dataclasses import fields
 
     from beamfem.model.beam import Beam, Point

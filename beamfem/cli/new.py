@@ -1,4 +1,4 @@
-"""`beamfem new`: a model file to begin with."""
+"""`beamfem new`: a model file as a starting point."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -23,7 +23,7 @@ def new(
             right = f"; {model.with_suffix('.toml')} would be right" if model.name else ""
             raise InputError(f"a model file ends in .toml, got {model}{right}")
         if model.exists():
-            raise FileError(f"{model} is there already; give another name, or remove it first")
+            raise FileError(f"{model} already exists; give another name, or remove it first")
         with whole(model) as partial:
             partial.write_text((files("beamfem.cli") / "template.toml").read_text(encoding="utf-8"), encoding="utf-8")
         if as_json:

@@ -27,8 +27,8 @@ def command_of(
 ) -> Callable[..., None]:
     """Return a command with an option for every parameter of a function.
 
-    run: takes the arguments; extra: more parameters by the name of their option, left out where the function has one
-    of that name itself. Raises InputError for a parameter without default that no text can describe.
+    run: called with the arguments; extra: further parameters by the name of their option, left out if the function has
+    a parameter of that name. Raises InputError for a parameter without default that cannot be given as text.
     """
     hints = typing.get_type_hints(function)
     own = inspect.signature(function).parameters
@@ -54,7 +54,7 @@ def command_of(
 
 
 def _option(name: str, parameter: inspect.Parameter, hint: Any, words: str) -> inspect.Parameter | None:
-    """Return the parameter of the command, None if a text cannot describe its values."""
+    """Return the parameter of the command, None if its values cannot be given as text."""
     kind, default = _kind(hint, parameter.default), parameter.default
     required = default is parameter.empty
     names = [f"--{name.replace('_', '-')}", *([f"--{name}"] if "_" in name else [])]
@@ -87,7 +87,7 @@ def _option(name: str, parameter: inspect.Parameter, hint: Any, words: str) -> i
 
 
 def _kind(hint: Any, default: Any) -> Any:
-    """Return the type of a parameter without its None; without an annotation that of its default."""
+    """Return the type of a parameter without None; without an annotation, the type of its default."""
     if hint is None:
         return None if default is inspect.Parameter.empty or default is None else type(default)
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
@@ -97,7 +97,7 @@ def _kind(hint: Any, default: Any) -> Any:
 
 
 def _item(hint: Any, default: Any) -> Any:
-    """Return the type of the items of a list, None if the parameter is none."""
+    """Return the type of the items of a list, None if the parameter is not a list."""
     kind = _kind(hint, default)
     if kind in (tuple, list) and isinstance(default, tuple | list) and default:
         found = type(default[0])
@@ -126,7 +126,7 @@ def _parsed(kind: type, name: str) -> Callable[[Any], Any]:
         except InputError as error:
             raise typer.BadParameter(str(error)) from None
         except ValueError:
-            raise typer.BadParameter(f"{text!r} is no {kind.__name__}") from None
+            raise typer.BadParameter(f"{text!r} is not a valid {kind.__name__}") from None
 
     return parse
 
@@ -139,7 +139,7 @@ def _shown(default: Any) -> str | bool:
 
 
 def _help(function: Callable[..., Any], name: str) -> str:
-    """Return what the docstring says of a parameter: the words after `name:` up to the next semicolon or full stop."""
+    """Return the description of a parameter in the docstring: from `name:` to the next semicolon or full stop."""
     text = " ".join((inspect.getdoc(function) or "").split())
     found = re.search(
         rf"(?<![\w.])`*{re.escape(name)}`*(\s*\[[^\]]*\])?(\s*\([^)]*\))?:\s*([^;]+?)(?=;|\.\s|\.?$)", text

@@ -1,4 +1,4 @@
-"""What commands draw: pictures, pages and films, told apart by the ending of the file."""
+"""Drawings of commands: pictures, pages and films, distinguished by the suffix of the file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,7 +24,7 @@ def draw(solution: "Solution", target: Path, colour: str | None = None) -> None:
     options: dict[str, Any] = {} if colour is None else {"colour": colour}
     if kind == PAGE:
         if options:
-            raise InputError("a page has colours to choose from in it; --colour is for pictures and films")
+            raise InputError("a page has its own choice of colours; --colour is for pictures and films")
         solution.to_html(target)
     elif kind in FILMS:
         solution.animate(target, **options)

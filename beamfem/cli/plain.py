@@ -1,4 +1,4 @@
-"""Any result as what JSON knows."""
+"""Conversion of results to types of JSON."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -11,9 +11,9 @@ from beamfem.results.solution import Solution
 
 
 def plain(value: Any) -> Any:
-    """Return a value in mappings, lists, texts, numbers and None; what is not finite becomes None.
+    """Return a value as mappings, lists, texts, numbers and None; numbers that are not finite become None.
 
-    Of a solution its statistics and its ends, of anything unknown its text.
+    A solution becomes its summary, anything unknown its text.
     """
     if value is None or isinstance(value, bool | int | str):
         return value
@@ -35,7 +35,7 @@ def plain(value: Any) -> Any:
 
 
 def summary(solution: Solution) -> dict[str, Any]:
-    """Return how many states a solution has, from where to where, and how it was solved."""
+    """Return the number of states of a solution, its first and last time or load factor, and its statistics."""
     axis = "load_factor" if solution.static else "time"
     return {
         "kind": "static" if solution.static else "motion",

@@ -1,4 +1,4 @@
-"""What commands print: results on stdout, in words or as JSON, mistakes without a traceback, an exit code."""
+"""Output of commands: results on stdout as text or JSON, errors without a traceback, an exit code."""
 
 import json
 import sys
@@ -10,8 +10,8 @@ import typer
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, mistakes too.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but mistakes.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result, or an error, as JSON on stdout.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 
 
 @contextmanager
@@ -25,7 +25,7 @@ def reported(as_json: bool, quiet: bool = False) -> Iterator[None]:
     try:
         with no_progress() if quiet else nullcontext():
             yield
-    except BrokenPipeError:  # whoever reads has read enough; typer ends the process quietly
+    except BrokenPipeError:  # the reader has closed the pipe; typer ends the process quietly
         raise
     except ConvergenceError as error:
         _fail(error, FAILED, as_json)
@@ -48,14 +48,14 @@ def _fail(error: BaseException, code: int, as_json: bool) -> None:
 
 
 def print_json(value: Any) -> None:
-    """Print a value as one JSON document; what is not finite becomes null."""
+    """Print a value as one JSON document; numbers that are not finite become null."""
     from beamfem.cli.plain import plain
 
     print(json.dumps(plain(value), indent=2, allow_nan=False))
 
 
 def print_table(title: str, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Print rows that share their keys as a table; lists in them become lines of it, side by side."""
+    """Print rows with the same keys as a table; lists in them become several lines, side by side."""
     lines = [line for row in rows for line in _lines(row)]
     if not lines:
         return

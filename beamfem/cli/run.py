@@ -1,4 +1,4 @@
-"""`beamfem run`: solve what a model file describes."""
+"""`beamfem run`: solve a model file."""
 
 import sys
 import time
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _TITLES = {
     "load_factors": "Critical load factors",
-    "kinds": "What they are",
+    "kinds": "Kinds",
     "linearised": "Linearised about the start",
     "frequencies": "Frequencies [Hz]",
     "growth": "Growth [1/s]",
@@ -45,7 +45,7 @@ def run(
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
-    """Solve a model file, print what it asks for and write the files that are asked for here."""
+    """Solve a model file, print its outputs and write its files and those given as options."""
     with reported(as_json, quiet):
         from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file

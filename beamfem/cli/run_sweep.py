@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def run_sweep(
     job: "Job", out: Path | None, vtk: Path | None, plot: Path | None, colour: str | None, as_json: bool, quiet: bool
 ) -> None:
-    """Solve every point, print the table and write it; ends with 1 if a point failed. Raises InputError."""
+    """Solve every point, print the table and write it; exit with 1 if a point failed. Raises InputError."""
     from beamfem.assembly.compiled import tell_of_compilation
     from beamfem.cli.modelfile.sweep import solve_sweep
     from beamfem.cli.targets import require_target

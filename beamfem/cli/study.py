@@ -16,7 +16,7 @@ from beamfem.cli.report import AsJson, Quiet, print_json, reported
 
 @dataclass(frozen=True)
 class Study:
-    """A study as a file: its name, with its sub-folder if it is in one, and what its docstring says first."""
+    """A study as a file: its name, with its sub-folder if it is in one, and the first line of its docstring."""
 
     name: str
     title: str
@@ -25,8 +25,8 @@ class Study:
 
 def study(
     context: typer.Context,
-    name: Annotated[str | None, typer.Argument(help="The study to run; without it they are listed.")] = None,
-    folder: Annotated[Path, typer.Option(help="Where the studies are; stands before NAME.")] = Path("studies"),
+    name: Annotated[str | None, typer.Argument(help="The study to run; without it, all are listed.")] = None,
+    folder: Annotated[Path, typer.Option(help="Folder of the studies; given before NAME.")] = Path("studies"),
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
@@ -45,7 +45,7 @@ def study(
 
 
 def find_studies(folder: Path) -> list[Study]:
-    """Return the files of a folder and its sub-folders with a function main. Raises InputError if there are none."""
+    """Return the files with a function main in a folder and its sub-folders. Raises InputError if there are none."""
     from beamfem.errors import InputError
 
     right = "give the folder of the studies with --folder, or start beamfem where it is; they come with the sources"
@@ -82,7 +82,7 @@ def _named(name: str, studies: list[Study], folder: Path) -> Study:
 def _main_of(item: Study, folder: Path) -> Any:
     """Import a study and return its main.
 
-    Studies share code: its own folder, and that which holds the folder of all studies, are put on the path.
+    Studies share code: the folder of the study and the parent of the folder of all studies are put on the path.
     """
     for place in (str(folder.resolve().parent), str(item.file.parent.resolve())):
         if place not in sys.path:
@@ -99,7 +99,7 @@ def _imported(item: Study) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    # under its own name, so that its functions can be sent to other processes
+    # under its own name, so that its functions can be pickled for other processes
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
@@ -123,7 +123,7 @@ def _run(name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool)
 
 
 def _called(main: Any, values: dict[str, Any], silent: bool) -> Any:
-    """Return what a study returns; silent: what it prints does not go to stdout but to stderr."""
+    """Return what a study returns; silent: its output goes to stderr instead of stdout."""
     from contextlib import redirect_stdout
 
     if not silent:
@@ -155,7 +155,7 @@ def _show(result: Any, as_json: bool, quiet: bool) -> None:
 
 
 def _line(value: Any) -> str:
-    """Return a value in one line."""
+    """Return a value as one line."""
     if isinstance(value, float):
         return f"{value:.8g}"
     if isinstance(value, dict):

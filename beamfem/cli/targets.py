@@ -1,4 +1,4 @@
-"""Files that a command is asked to write, refused before the work rather than after."""
+"""Files that a command is to write, checked before the solve rather than after."""
 
 import tempfile
 from pathlib import Path
@@ -44,13 +44,13 @@ def require_target(option: str, path: Path | None) -> None:
     if path.is_dir():
         raise InputError(f"{path} is a folder; give the name of a file")
     if not writable(path.parent):
-        raise InputError(f"{path} cannot be written: {path.parent} takes no files")
+        raise InputError(f"{path} cannot be written: no files can be created in {path.parent}")
     for package in _OTHERWISE.get(path.suffix.lower(), _NEEDED[option]):
         require_package(package, f"writing {path}")
 
 
 def writable(folder: Path) -> bool:
-    """Return whether a file can be made in a folder, or in the nearest one above that exists."""
+    """Return whether a file can be created in a folder, or in its nearest existing parent."""
     while not folder.exists():
         folder = folder.parent
     try:

@@ -28,8 +28,20 @@ EXPLANATION = (
 class Convergence:
     """Curves of a convergence study, one for each combination of the parameters that are not refined.
 
-    quantity: the one whose error is studied. refine: the parameter of refinement. reference: the given limit or None.
-    failures: the calls that failed.
+    Parameters
+    ----------
+    function : str
+        Name of the function.
+    quantity : str
+        Name of the quantity whose error is studied.
+    refine : str
+        Name of the parameter of refinement.
+    reference : float or None
+        The given limit.
+    curves : tuple
+        The curves, of the class `convergence.curve.Curve`.
+    failures : tuple of Failure
+        The calls that failed.
     """
 
     function: str

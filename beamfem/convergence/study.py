@@ -44,17 +44,50 @@ def converge(
 ) -> Convergence:
     """Call a function along one refinement and assess the convergence of its value.
 
-    function: returns a number or a mapping of named numbers; quantity: the one whose error is studied, the others
-    become columns. refine: the parameter of refinement, counts (whole numbers, h = 1/n) or decreasing step sizes (h);
-    every other list, tuple, range or one-dimensional array gives one curve for each of its values, anything else is
-    passed on.
-    reference: the limit, if known; otherwise each curve is extrapolated (Richardson). Errors are relative to the limit
-    unless it is zero. An order is accepted if the last four values agree on it and it does not exceed twice the degree
-    of an `Element` among the parameters (16 without one); otherwise the changes between levels give the estimate, or
-    there is none (nan), as the notes of the curve say.
-    until: double the last count (or halve the last step) of each curve until its estimated error is below this, at most
-    8 times. executor: as in `sweep`. A call that fails is listed in `failures` and the study continues.
-    Raises InputError; BeamfemError if no worker starts.
+    Parameters
+    ----------
+    function : callable
+        Returns a number or a mapping of named numbers.
+    quantity : str, optional
+        Name of the number whose error is studied; the others become columns.
+    refine : str
+        Name of the parameter of refinement, whose values are counts (whole numbers, h = 1/n) or decreasing step sizes
+        (h).
+    reference : float, optional
+        The limit, if known; otherwise each curve is extrapolated (Richardson). Errors are relative to the limit unless
+        it is zero.
+    until : float, optional
+        Double the last count (or halve the last step) of each curve until its estimated error is below this value, at
+        most 8 times.
+    executor : callable, optional
+        Creates a `concurrent.futures.Executor`, as in `sweep`.
+    **parameters
+        Arguments of the function. Besides the parameter of refinement, every list, tuple, range or one-dimensional
+        array gives one curve for each of its values; anything else is passed on unchanged.
+
+    Returns
+    -------
+    Convergence
+        Curves with values, errors, orders and estimates; it prints as a table and has `plot`, `to_markdown` and others.
+
+    Raises
+    ------
+    InputError
+        If the parameters do not describe a study.
+    BeamfemError
+        If no worker starts.
+
+    Notes
+    -----
+    An order is accepted if the last four values agree on it and it does not exceed twice the degree of an `Element`
+    among the parameters (16 without one). Otherwise the changes between levels give the estimate, or there is none
+    (nan), as the notes of the curve say. A call that fails is listed in `failures` and the study continues.
+
+    Examples
+    --------
+    >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
+    >>> round(float(study.curves[0].order[-1]), 3)
+    2.0
     """
     varied, fixed = split(parameters)
     require_known(

@@ -10,10 +10,29 @@ from beamfem.validation import convert, finite, positive, vector
 
 @dataclass(frozen=True)
 class Arc:
-    """Circular axis about a center (x, y) [m] of a radius [m], from start_angle to end_angle [rad] against the x-axis.
+    """Circular axis about a center.
 
-    Clockwise where end_angle < start_angle; more than a full turn is allowed.
-    Raises InputError if the radius is not positive or the angles are equal.
+    It is clockwise if end_angle < start_angle; more than a full turn is allowed.
+
+    Parameters
+    ----------
+    center : (float, float), [m]
+        Center (x, y).
+    radius : float, [m]
+        Radius.
+    start_angle, end_angle : float, [rad]
+        Angles against the x-axis at which the axis starts and ends.
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive or the angles are equal.
+
+    Examples
+    --------
+    >>> quarter = bf.Arc(center=(0, 0), radius=2.0, start_angle=0.0, end_angle=np.pi / 2)
+    >>> round(quarter.length, 4)
+    3.1416
     """
 
     center: tuple[float, float]

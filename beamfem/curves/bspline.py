@@ -14,13 +14,36 @@ from beamfem.validation import convert, count, optional
 
 @dataclass(frozen=True)
 class BSpline:
-    """Axis along the spline r(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i, by arc length.
+    """Axis along a B-spline, rational (NURBS) or not, by arc length.
 
-    degree: of the pieces; knots (n + degree + 1,): not decreasing, clamped or not, u runs from knots[degree] to
-    knots[n]; control_points P (n, 2) [m]; weights w (n,) > 0, None for ones. An interior knot as often as the degree at
-    which the tangent jumps is a corner.
-    Raises InputError for data that is no connected spline, and where dr/du vanishes (a cusp).
-    Source: L. Piegl, W. Tiller, The NURBS Book, 2nd ed., Springer 1997, chapters 2 to 4.
+    The axis is r(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i. An interior knot that appears as often as the degree, and at
+    which the tangent jumps, is a corner.
+
+    Parameters
+    ----------
+    degree : int
+        Degree of the pieces.
+    knots : sequence of float, (n + degree + 1,)
+        Knots, not decreasing, clamped or not; u runs from knots[degree] to knots[n].
+    control_points : sequence, [m], (n, 2)
+        Control points P.
+    weights : sequence of float, [-], (n,), optional
+        Weights w > 0, by default ones.
+
+    Raises
+    ------
+    InputError
+        For data that is not a connected spline, and if dr/du vanishes (a cusp).
+
+    References
+    ----------
+    L. Piegl, W. Tiller, The NURBS Book, 2nd ed., Springer 1997, chapters 2 to 4.
+
+    Examples
+    --------
+    >>> spline = bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)])
+    >>> round(spline.length, 4)
+    2.2956
     """
 
     degree: int

@@ -13,10 +13,26 @@ from beamfem.validation import fulfils, items, shown
 
 @dataclass(frozen=True)
 class Chain:
-    """Axis that runs through curves one after the other; a corner wherever the tangent jumps between two.
+    """Axis that runs through curves one after the other.
 
-    A gap of up to 1e-5 of the whole length is rounding: it is closed by moving the curves behind it. Raises InputError
-    where one is larger.
+    There is a corner wherever the tangent jumps between two curves. A gap of up to 1e-5 of the whole length is taken as
+    rounding and closed by moving the curves behind it.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        The curves in order.
+
+    Raises
+    ------
+    InputError
+        If a gap is larger.
+
+    Examples
+    --------
+    >>> chain = bf.Chain([bf.Line((0, 0), (1, 0)), bf.Line((1, 0), (1, 2))])
+    >>> chain.length, chain.corners
+    (3.0, (1.0,))
     """
 
     curves: tuple[Curve, ...]

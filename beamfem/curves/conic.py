@@ -15,11 +15,35 @@ _MOST_TURNS = 1000
 def elliptic_arc(
     center: Sequence[float], first: Sequence[float], second: Sequence[float], start: float, end: float
 ) -> BSpline:
-    """Return the arc center + first cos a + second sin a, a from start to end [rad], as an exact rational spline.
+    """Return an elliptic arc as an exact rational spline.
 
-    center, first, second: (x, y) [m], the last two conjugate half diameters (the half axes where they are normal to
-    each other). Each piece of at most a quarter turn is a rational parabola whose middle weight is the cosine of half
-    its angle. Raises InputError if start equals end or the half diameters are parallel.
+    The arc is center + first cos a + second sin a, with a from start to end. Each piece of at most a quarter turn is a
+    rational parabola whose middle weight is the cosine of half its angle.
+
+    Parameters
+    ----------
+    center : (float, float), [m]
+        Center (x, y).
+    first, second : (float, float), [m]
+        Conjugate half diameters (x, y): the half axes if they are normal to each other.
+    start, end : float, [rad]
+        Angles a at which the arc starts and ends.
+
+    Returns
+    -------
+    BSpline
+        The arc as a rational spline of degree 2.
+
+    Raises
+    ------
+    InputError
+        If start equals end or the half diameters are parallel.
+
+    Examples
+    --------
+    >>> quarter = bf.elliptic_arc((0, 0), (2, 0), (0, 1), 0.0, np.pi / 2)
+    >>> round(quarter.length, 4)
+    2.4221
     """
     middle, one, two = (np.array(vector(*pair)) for pair in (("center", center), ("first", first), ("second", second)))
     begin, turn = finite("start", start), finite("end", end) - finite("start", start)

@@ -18,19 +18,33 @@ GAP = 1e-5
 class Curve(Protocol):
     """A planar curve by arc length s in [0, length] [m].
 
-    length [m]; position(s (n,)) (n, 2) [m]; tangent(s (n,)) (n, 2) unit vectors; corners: arc lengths strictly inside
-    at which the tangent jumps [m]. At a corner the tangent is the one after it; just before a corner, the one before.
+    At a corner the tangent is the one after it; just before a corner, the one before.
+
+    Attributes
+    ----------
+    length : float, [m]
+        Length.
+    corners : tuple of float, [m]
+        Arc lengths strictly inside at which the tangent jumps.
     """
 
     @property
-    def length(self) -> float: ...
+    def length(self) -> float:
+        """Length [m]."""
+        ...
 
     @property
-    def corners(self) -> tuple[float, ...]: ...
+    def corners(self) -> tuple[float, ...]:
+        """Arc lengths strictly inside at which the tangent jumps [m]."""
+        ...
 
-    def position(self, arc_length: np.ndarray) -> np.ndarray: ...
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return positions (n, 2) [m] at arc lengths (n,) [m]."""
+        ...
 
-    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return unit tangents (n, 2) at arc lengths (n,) [m]."""
+        ...
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

@@ -19,10 +19,34 @@ def spline_through_hermite(
     r: Sequence[Sequence[float]] | np.ndarray,
     r_u: Sequence[Sequence[float]] | np.ndarray,
 ) -> BSpline:
-    """Return the cubic spline with positions r (m + 1, 2) [m] and derivatives r_u = dr/du (m + 1, 2) at u (m + 1,).
+    """Return the cubic spline with given positions and derivatives.
 
-    Exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
-    Raises InputError if u does not increase or the numbers do not match.
+    It is exactly the cubic of each span; interior knots are double (see `without_removable_knots`).
+
+    Parameters
+    ----------
+    u : array_like, (m + 1,)
+        Increasing parameters.
+    r : array_like, [m], (m + 1, 2)
+        Positions (x, y) at u.
+    r_u : array_like, [m], (m + 1, 2)
+        Derivatives dr/du at u.
+
+    Returns
+    -------
+    BSpline
+        The cubic spline.
+
+    Raises
+    ------
+    InputError
+        If u does not increase or the numbers of values do not match.
+
+    Examples
+    --------
+    >>> spline = bf.spline_through_hermite([0, 1], [(0, 0), (1, 1)], [(1, 0), (1, 0)])
+    >>> spline.evaluate(np.array([0.5]))
+    array([[0.5, 0.5]])
     """
     knots = np.array(numbers("u", u))
     if len(knots) < 2 or not np.all(np.diff(knots) > 0.0):
@@ -37,9 +61,29 @@ def spline_through_hermite(
 def without_removable_knots(spline: BSpline) -> BSpline:
     """Return the same cubic with one knot in place of two wherever its second derivative does not jump.
 
-    A knot goes where that moves no control point by more than 1e-13 of the largest coordinate, times the ratio of the
-    spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends come back clamped.
-    Raises InputError unless `spline.hermite()` exists.
+    A knot is removed if that moves no control point by more than 1e-13 of the largest coordinate, times the ratio of
+    the spans beside it: d^2r/du^2 may jump by 6 / (h_left h_right) of this. The ends of the result are clamped.
+
+    Parameters
+    ----------
+    spline : BSpline
+        A cubic spline without weights whose interior knots appear at most twice.
+
+    Returns
+    -------
+    BSpline
+        The spline with fewer knots.
+
+    Raises
+    ------
+    InputError
+        Unless `spline.hermite()` exists.
+
+    Examples
+    --------
+    >>> spline = bf.spline_through_hermite([0, 1, 2], [(0, 0), (1, 0), (2, 0)], [(1, 0), (1, 0), (1, 0)])
+    >>> len(spline.knots), len(bf.without_removable_knots(spline).knots)
+    (10, 9)
     """
     if not isinstance(spline, BSpline):
         raise InputError(f"knots are removed from a BSpline, got {shown(spline)}")

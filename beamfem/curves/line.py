@@ -11,7 +11,23 @@ from beamfem.validation import vector
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Straight axis from start (x, y) to end (x, y) [m]. Raises InputError if they coincide."""
+    """Straight axis.
+
+    Parameters
+    ----------
+    start, end : (float, float), [m]
+        Positions (x, y) of the ends.
+
+    Raises
+    ------
+    InputError
+        If they coincide.
+
+    Examples
+    --------
+    >>> bf.Line((0, 0), (3, 4)).length
+    5.0
+    """
 
     start: tuple[float, float]
     end: tuple[float, float]

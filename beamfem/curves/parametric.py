@@ -22,11 +22,30 @@ _AGREES = 1e-6
 
 @dataclass(frozen=True)
 class Parametric:
-    """Smooth axis r(u) = function(u) = (x, y) [m] from u = start to u = end, by arc length.
+    """Smooth axis given by a function, r(u) = function(u) = (x, y), by arc length.
 
-    function: of a number or of numbers (n,); derivative: dr/du in the same form, None to take it from polynomials of
-    degree 12 that follow the function to round-off. Backwards where end < start. For a file, take `spline()`.
-    Raises InputError for values that are not finite, a corner or kink (make a Chain), and where dr/du vanishes.
+    The axis runs backwards if end < start. A model with it cannot be saved to a file, but one with its `spline()` can.
+
+    Parameters
+    ----------
+    function : callable, [m]
+        x, y as functions of a number u, or of numbers (n,).
+    start, end : float
+        Values of u at the ends.
+    derivative : callable, optional
+        dr/du in the same form; by default it is taken from polynomials of degree 12 that follow the function to
+        round-off.
+
+    Raises
+    ------
+    InputError
+        For values that are not finite, a corner or kink (make a Chain), and if dr/du vanishes.
+
+    Examples
+    --------
+    >>> sine = bf.Parametric(lambda u: (u, np.sin(u)), 0.0, np.pi)
+    >>> round(sine.length, 4)
+    3.8202
     """
 
     function: PlaneFunction
@@ -59,7 +78,18 @@ class Parametric:
         return unit(self._rate(self._arc_length.parameter(arc_length)))
 
     def spline(self) -> BSpline:
-        """Return the spline of degree 12 that is the same curve to round-off; it can be saved."""
+        """Return the spline of degree 12 that is the same curve to round-off; it can be saved.
+
+        Returns
+        -------
+        BSpline
+            The spline.
+
+        Examples
+        --------
+        >>> bf.Parametric(lambda u: (u, np.sin(u)), 0.0, np.pi).spline().degree
+        12
+        """
         bezier = bernstein(self._panels.coefficients[:, :, :2])
         control = np.concatenate([bezier[:-1].transpose(1, 0, 2).reshape(-1, 2), bezier[-1:, -1]])
         ends = self._panels.ends

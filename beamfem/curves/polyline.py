@@ -11,9 +11,22 @@ from beamfem.errors import InputError
 
 @dataclass(frozen=True)
 class Polyline:
-    """Straight axis from point to point, points (n, 2) [m]; a corner wherever the direction changes.
+    """Straight axis from point to point, with a corner wherever the direction changes.
 
-    Raises InputError for fewer than two points and where two in a row coincide.
+    Parameters
+    ----------
+    points : sequence of (float, float), [m], (n, 2)
+        Points in order.
+
+    Raises
+    ------
+    InputError
+        For fewer than two points, or if two in a row coincide.
+
+    Examples
+    --------
+    >>> bf.Polyline([(0, 0), (1, 0), (1, 1)]).corners
+    (1.0,)
     """
 
     points: tuple[tuple[float, float], ...]

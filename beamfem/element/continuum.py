@@ -76,10 +76,23 @@ class _Body:
 
 @dataclass(frozen=True)
 class ContinuumMechanics(_Body):
-    """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body; paper, section 3.3.
+    """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body.
 
-    plane_stress: take E nu / (1 - nu^2) for lambda instead of the 3D value. Bends with E I times
-    (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy cannot vary over y.
+    The element bends with E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy cannot
+    vary over y.
+
+    Parameters
+    ----------
+    plane_stress : bool, default False
+        Take E nu / (1 - nu^2) for lambda instead of the 3D value.
+
+    References
+    ----------
+    Paper, section 3.3.
+
+    Examples
+    --------
+    >>> element = bf.ANCF(bf.ContinuumMechanics(plane_stress=True))
     """
 
     plane_stress: bool = False
@@ -107,10 +120,15 @@ class ContinuumMechanics(_Body):
 
 @dataclass(frozen=True)
 class SplitContinuum(_Body):
-    """Green-Lagrange strain, Poisson coupling on the centreline only; Gerstmayr, Matikainen and Mikkola 2008.
+    """Green-Lagrange strain, with Poisson coupling on the centreline only.
 
-    Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline comes what is missing to plane stress.
-    Bends with E I. Where rotations hold the thickness the centreline has nothing to couple with and stretches with E A.
+    Over the section the stress is E exx, E eyy, 2 k_s mu exy; the centreline adds what is missing to plane stress. The
+    element bends with E I. If rotations keep the thickness constant, the centreline has nothing to couple with and
+    stretches with E A.
+
+    References
+    ----------
+    Gerstmayr, Matikainen and Mikkola 2008.
     """
 
     name: ClassVar[str] = "split"

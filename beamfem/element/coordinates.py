@@ -13,7 +13,12 @@ from beamfem.validation import flag
 
 @dataclass(frozen=True)
 class Gradients:
-    """p = e: position vector gradients, constant mass; Omar and Shabana 2001."""
+    """p = e: position vector gradients as coordinates, with a constant mass matrix.
+
+    References
+    ----------
+    Omar and Shabana 2001.
+    """
 
     name: ClassVar[str] = "gradients"
     code: ClassVar[int] = GRADIENTS
@@ -21,7 +26,12 @@ class Gradients:
 
 @dataclass(frozen=True)
 class Rotation:
-    """r_y = (-sin t, cos t), t relative to the reference; paper, eqs. (5) to (7), (11), (12)."""
+    """Rotations as coordinates: r_y = (-sin t, cos t), with t relative to the reference.
+
+    References
+    ----------
+    Paper, eqs. (5) to (7), (11), (12).
+    """
 
     name: ClassVar[str] = "rotation"
     code: ClassVar[int] = ROTATION
@@ -29,10 +39,18 @@ class Rotation:
 
 @dataclass(frozen=True)
 class ShearFree:
-    """r_x = s (cos t, sin t), r_y = (-sin t, cos t): no shear at the nodes; paper, sections 1.5 and 3.5.
+    """Coordinates without shear at the nodes: r_x = s (cos t, sin t), r_y = (-sin t, cos t).
 
-    stretchable: whether s is a coordinate; otherwise it stays as in the reference (1 by arc length). Needs a field that
-    has r_x.
+    They need a field that has r_x.
+
+    Parameters
+    ----------
+    stretchable : bool, default True
+        Whether s is a coordinate; otherwise it stays as in the reference (1 by arc length).
+
+    References
+    ----------
+    Paper, sections 1.5 and 3.5.
     """
 
     stretchable: bool = True

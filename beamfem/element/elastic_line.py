@@ -15,10 +15,14 @@ from beamfem.section.protocol import CrossSection
 
 @dataclass(frozen=True)
 class ElasticLine:
-    """Stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2; paper, section 3.4.
+    """Elastic line with stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2.
 
-    Resists them with E A, E I, G A and, with gradients, E A. The curvature is the change of the angle of r_x along the
-    reference, so that M = E I dtheta/ds; the section stands across r_x, and r_y only follows it.
+    It resists them with E A, E I, G A and, with gradients, E A. The curvature is the change of the angle of r_x along
+    the reference, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
+
+    References
+    ----------
+    Paper, section 3.4.
     """
 
     name: ClassVar[str] = "elastic-line"

@@ -21,11 +21,33 @@ Integration = Literal["full", "reduced", "lobatto"]
 class Element:
     """A field, the nodal coordinates that carry it and the elastic forces that resist it.
 
-    integration: "full" integrates the energy of a straight element exactly, "reduced" takes as many Gauss points as
-    the order of the field, and 2 where its nodes have no shear (3 for all but shear, with a stretch coordinate);
-    "lobatto" takes strains of the cubic field at its nodes and its middle, where it does not lock however slender the
-    beam is: the default there with structural forces and the elastic line, elsewhere "full".
-    Raises InputError for a combination that makes no sense.
+    Parameters
+    ----------
+    field : Cubic or Lagrange
+        Field basis.
+    coordinates : Gradients, Rotation or ShearFree
+        Nodal coordinates.
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural
+        Elastic forces.
+    integration : {"full", "reduced", "lobatto"}, optional
+        "full" integrates the energy of a straight element exactly. "reduced" takes as many Gauss points as the order of
+        the field, and 2 if its nodes have no shear (3 for all strains but shear, with a stretch coordinate). "lobatto"
+        takes strains of the cubic field at its nodes and its middle, where it does not lock however slender the beam
+        is. The default is "lobatto" for the cubic field with structural forces or the elastic line, and "full"
+        otherwise.
+    label : str, optional
+        Name for legends and files.
+
+    Raises
+    ------
+    InputError
+        For a combination that makes no sense.
+
+    Examples
+    --------
+    >>> element = bf.Element(bf.Cubic(), bf.Rotation(), bf.Structural())
+    >>> element.coordinates_per_node, element.integration
+    (5, 'lobatto')
     """
 
     field: Field
@@ -127,29 +149,148 @@ def _counted(element: Element) -> np.ndarray | None:
 
 
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
-    """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
+    """Return the ANCF element: cubic field with gradients as coordinates, 6 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Omar and Shabana 2001.
+
+    Examples
+    --------
+    >>> element = bf.ANCF(bf.Structural())
+    >>> element.coordinates_per_node, element.integration
+    (6, 'lobatto')
+    """
     return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
-    """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
+    """Return the ANCF-CRBF element: cubic field with rotations as coordinates, 5 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, section 3.
+
+    Examples
+    --------
+    >>> element = bf.ANCFCRBF()
+    >>> element.coordinates_per_node, element.integration
+    (5, 'full')
+    """
     return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
-    """Bilinear field carried by gradients, 4 coordinates a node; paper, eqs. (8) to (10)."""
+    """Return the bilinear ANCF element: bilinear field with gradients as coordinates, 4 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced"}, default "full"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, eqs. (8) to (10).
+
+    Examples
+    --------
+    >>> element = bf.BilinearANCF()
+    >>> element.coordinates_per_node, element.integration
+    (4, 'full')
+    """
     return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
-    """Bilinear field carried by rotations, 3 coordinates a node; paper, section 4."""
+    """Return the bilinear CRBF element: bilinear field with rotations as coordinates, 3 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced"}, default "full"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, section 4.
+
+    Examples
+    --------
+    >>> element = bf.BilinearCRBF()
+    >>> element.coordinates_per_node, element.integration
+    (3, 'full')
+    """
     return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
-    """Field of any order in r and r_y carried by rotations, 3 coordinates a node; suggested in the paper, section 4.
+    """Return the CRBF element: field of any order in r and r_y with rotations as coordinates, 3 coordinates per node.
 
-    order: 1 to 8. Raises InputError.
+    Parameters
+    ----------
+    order : int
+        Polynomial order of the field, 1 to 8.
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `Structural()`.
+    integration : {"full", "reduced"}, default "reduced"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    Raises
+    ------
+    InputError
+        For an order outside 1 to 8, or a combination that makes no sense.
+
+    References
+    ----------
+    Suggested in the paper, section 4.
+
+    Examples
+    --------
+    >>> element = bf.CRBF(order=3)
+    >>> element.name, element.coordinates_per_node
+    ('CRBF-3', 3)
     """
     return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
@@ -157,10 +298,34 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
 def ShearRigid(
     stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
 ) -> Element:
-    """Cubic field without shear at its nodes, 4 coordinates a node, or 3; paper, sections 1.5 and 3.5.
+    """Return the shear-rigid element: cubic field without shear at its nodes, 4 or 3 coordinates per node.
 
-    stretchable: whether the length of r_x is a coordinate. Full integration makes it 1.2 times too stiff in shear, and
-    in stretch where the length is none; without it, as any cubic field, and "reduced" with continuum forces.
+    Full integration makes it 1.2 times too stiff in shear, and in stretch if the length of r_x is no coordinate;
+    without that coordinate, as any cubic field with full integration.
+
+    Parameters
+    ----------
+    stretchable : bool, default True
+        Whether the length of r_x is a coordinate (4 coordinates per node) or not (3).
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `Structural()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`; by default "reduced" with continuum forces.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, sections 1.5 and 3.5.
+
+    Examples
+    --------
+    >>> element = bf.ShearRigid(stretchable=False)
+    >>> element.coordinates_per_node, element.integration
+    (3, 'lobatto')
     """
     label = "shear-rigid-stretchable" if flag("stretchable", stretchable) else "shear-rigid"
     chosen = _chosen(forces, Structural())

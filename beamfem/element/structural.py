@@ -15,9 +15,13 @@ from beamfem.section.protocol import CrossSection
 
 @dataclass(frozen=True)
 class Structural:
-    """Geometrically exact beam of Reissner 1972 and Simo and Vu-Quoc 1986, section along d.
+    """Geometrically exact beam with the section along d.
 
-    Resists stretch with E A, shear with k_s G A, curvature with E I; with gradients, thickness stretch with E A.
+    It resists stretch with E A, shear with k_s G A and curvature with E I; with gradients, thickness stretch with E A.
+
+    References
+    ----------
+    Reissner 1972; Simo and Vu-Quoc 1986.
     """
 
     name: ClassVar[str] = "structural"

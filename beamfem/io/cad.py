@@ -26,13 +26,37 @@ _ANNOTATION = ("TEXT", "MTEXT", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LEADER"
 
 
 def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve, ...]:
-    """Return the curves in the modelspace of a DXF file, of one layer or all, in the units and order of the drawing.
+    """Return the curves in the modelspace of a DXF file, in the units and order of the drawing.
 
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines) are
     exact, except a SPLINE with fit points only, which the file does not define: it is drawn as ezdxf draws it. Texts,
     dimensions, leaders, tolerances and hatches are skipped as annotation.
-    Raises FileError, FileNotFoundError; InputError for a file that is not DXF, an entity of another kind or off the
-    plane z = 0, or a file without curves; MissingPackageError without ezdxf.
+
+    Parameters
+    ----------
+    path : path
+        The DXF file.
+    layer : str, optional
+        Name of the layer to read; by default all layers are read.
+
+    Returns
+    -------
+    tuple of Curve
+        One curve for each entity.
+
+    Raises
+    ------
+    FileError
+        If the system refuses to read the file; FileNotFoundError if there is none.
+    InputError
+        For a file that is not DXF, an entity of another kind or off the plane z = 0, or a file without curves.
+    MissingPackageError
+        Without ezdxf.
+
+    Examples
+    --------
+    >>> curves = bf.read_dxf("frame.dxf", layer="axes")  # doctest: +SKIP
+    >>> beams = [bf.Beam(curve, 8, bf.CRBF(order=3), bf.Circle(0.02), steel) for curve in curves]  # doctest: +SKIP
     """
     ezdxf = _ezdxf()
     source = readable(path)

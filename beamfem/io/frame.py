@@ -26,7 +26,25 @@ _COLLINEAR = 1e-9  # [rad]
 class Frame:
     """Beams along the lines of a mesh and the joints between them, for a `Model`.
 
-    owner: number of the beam of each cell; places: points of the beams at each node, empty at the middle of a line3.
+    Parameters
+    ----------
+    beams : tuple of Beam
+        The beams.
+    joints : tuple of Joint
+        The joints between beams that share a node.
+    mesh : LineMesh
+        The mesh.
+    owner : array of int, (cells,)
+        Number of the beam of each cell.
+    places : tuple of tuple of Point
+        Points of the beams at each node, empty at the middle of a line3.
+
+    Examples
+    --------
+    >>> lines = bf.LineMesh([(0, 0), (0, 3), (4, 3)], [(0, 1, -1), (1, 2, -1)], {}, {})
+    >>> frame = lines.frame(4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> len(frame.beams), len(frame.joints)
+    (2, 1)
     """
 
     beams: tuple[Beam, ...]
@@ -36,19 +54,67 @@ class Frame:
     places: tuple[tuple[Point, ...], ...]
 
     def members(self, name: str) -> tuple[Beam, ...]:
-        """Return the beams of a member set. Raises InputError for an unknown name."""
+        """Return the beams of a member set.
+
+        Parameters
+        ----------
+        name : str
+            Name of the set.
+
+        Returns
+        -------
+        tuple of Beam
+            The beams.
+
+        Raises
+        ------
+        InputError
+            For an unknown name.
+        """
         numbers = np.unique(self.owner[_named(self.mesh.member_sets, "member", name)])
         return tuple(self.beams[number] for number in numbers)
 
     def points(self, name: str) -> tuple[Point, ...]:
-        """Return a point at each node of a point set, on the first of the beams there. Raises InputError."""
+        """Return a point at each node of a point set, on the first of the beams there.
+
+        Parameters
+        ----------
+        name : str
+            Name of the set.
+
+        Returns
+        -------
+        tuple of Point
+            The points.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, or a point of the set at which no line ends.
+        """
         nodes = _named(self.mesh.point_sets, "point", name)
         if np.any(nodes < 0) or not all(self.places[node] for node in nodes):
             raise InputError(f"point set {name!r} has a point at which no line ends")
         return tuple(self.places[node][0] for node in nodes)
 
     def at(self, x: float, y: float) -> Point:
-        """Return the point at the node at (x, y) [m], on the first of the beams there. Raises InputError."""
+        """Return the point at the node at a position, on the first of the beams there.
+
+        Parameters
+        ----------
+        x, y : float, [m]
+            Position of the node.
+
+        Returns
+        -------
+        Point
+            The point.
+
+        Raises
+        ------
+        InputError
+            If no line ends there.
+        """
         wanted = np.array(vector("point", (x, y)))
         nodes = np.array([node for node, here in enumerate(self.places) if here])
         distance = np.linalg.norm(self.mesh.nodes[nodes] - wanted, axis=1)

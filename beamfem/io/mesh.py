@@ -30,8 +30,28 @@ _NODES = {"vertex": 1, "line": 2, "line3": 3}
 class LineMesh:
     """Lines that share nodes, and named sets of them.
 
-    nodes (n, 2) [m]; cells (m, 3): nodes at start, end and, of a quadratic line3, in the middle (parameter 1/2), else
-    -1; member_sets: cells of each set by name; point_sets: nodes of each set by name.
+    Parameters
+    ----------
+    nodes : array_like, [m], (n, 2)
+        Positions of the nodes.
+    cells : array_like of int, (m, 3)
+        Nodes at the start, at the end and, of a quadratic line3, in the middle (parameter 1/2), else -1.
+    member_sets : mapping
+        Cells of each set by name.
+    point_sets : mapping
+        Nodes of each set by name.
+
+    Raises
+    ------
+    InputError
+        For numbers that do not fit together.
+
+    Examples
+    --------
+    >>> lines = bf.LineMesh([(0, 0), (0, 3), (4, 3)], [(0, 1, -1), (1, 2, -1)], {"post": [0]}, {"foot": [0]})
+    >>> frame = lines.frame(4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> frame.points("foot")[0].reference
+    array([0., 0.])
     """
 
     nodes: np.ndarray
@@ -67,11 +87,41 @@ class LineMesh:
     ) -> Frame:
         """Return beams along the lines and the joints between those that share a node.
 
-        elements: finite elements a cell; each of elements, element, section (see `Beam`) and material may be a mapping
-        from names of member sets, which together must name each cell once. members: "cells" makes each cell a beam,
-        "chains" joins cells that follow each other between branches, hinges, turns of 30 degrees or more and changes
-        of their sets into one beam. Members that share a node are joined rigidly; hinges: point sets where they turn
-        freely against each other. Raises InputError.
+        Members that share a node are joined rigidly. Each of elements, element, section and material may be a mapping
+        from names of member sets, which together must name each cell once.
+
+        Parameters
+        ----------
+        elements : int or mapping
+            Finite elements per cell.
+        element : Element or mapping
+            Kind of the elements.
+        section : Section or mapping
+            Section, see `Beam`.
+        material : Material or mapping, optional
+            Material, see `Beam`.
+        members : {"cells", "chains"}, default "cells"
+            "cells" makes each cell a beam; "chains" joins cells that follow each other between branches, hinges, turns
+            of 30 degrees or more and changes of their sets into one beam.
+        hinges : str or sequence of str, default ()
+            Point sets at which members rotate freely against each other.
+
+        Returns
+        -------
+        Frame
+            Beams and joints for a `Model`.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, or a cell that is named never or twice.
+
+        Examples
+        --------
+        >>> lines = bf.LineMesh([(0, 0), (0, 3), (4, 3)], [(0, 1, -1), (1, 2, -1)], {}, {"corner": [1]})
+        >>> frame = lines.frame(4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel, hinges="corner")
+        >>> type(frame.joints[0]).__name__
+        'Hinge'
         """
         return build_frame(self, elements, element, section, material, members, hinges)
 
@@ -79,16 +129,46 @@ class LineMesh:
 def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     """Return the lines of a mesh file, in its units.
 
-    Gmsh .msh (physical groups of curves and points are the sets, by number where they have no name), Abaqus and
+    Read are Gmsh .msh (physical groups of curves and points are the sets, by number if they have no name), Abaqus and
     CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
     cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
+
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
-    its end. A `NotJoinedWarning` names ends that stand within 30 times that of another line and are not joined to it.
-    A `NotReadWarning` names what else an .inp holds: sections, materials, supports, loads. merge: ends of lines at one
-    place become one node, as in the centrelines that `to_vtk` writes, whose elements share no points.
-    Raises FileError, FileNotFoundError; InputError for a file that cannot be read or holds no lines, cells of another
-    kind, nodes off the plane z = 0, lines of no length or given twice, lines that end inside a line3, and, without
-    merge, nodes at one place, to 1e-5 of the size of the mesh and a hundredth of the shortest line.
+    its end.
+
+    Parameters
+    ----------
+    path : path
+        The mesh file.
+    merge : bool, default False
+        Whether ends of lines at one place become one node, as needed for the centrelines that `to_vtk` writes, whose
+        elements share no points.
+
+    Returns
+    -------
+    LineMesh
+        Nodes, cells and their named sets.
+
+    Raises
+    ------
+    FileError
+        If the system refuses to read the file; FileNotFoundError if there is none.
+    InputError
+        For a file that cannot be read or holds no lines, cells of another kind, nodes off the plane z = 0, lines of no
+        length or given twice, lines that end inside a line3, and, without merge, nodes at one place, to 1e-5 of the
+        size of the mesh and a hundredth of the shortest line.
+
+    Warns
+    -----
+    NotJoinedWarning
+        Names ends that are within 30 times that distance of another line and are not joined to it.
+    NotReadWarning
+        Names what else an .inp file holds: sections, materials, supports, loads.
+
+    Examples
+    --------
+    >>> mesh = bf.read_mesh("frame.inp")  # doctest: +SKIP
+    >>> frame = mesh.frame(8, bf.CRBF(order=3), bf.Tube(0.05, 0.002), steel)  # doctest: +SKIP
     """
     flag("merge", merge)
     source = readable(path)

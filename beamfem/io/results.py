@@ -63,10 +63,35 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
 
 
 def load(path: str | PathLike[str]) -> Solution:
-    """Return the solution in a file; functions of time are returned as `Sampled`, their values at the saved rows.
+    """Return the solution stored in a file.
 
-    If the writing process was killed, the rows written so far are returned. Raises FileError, FileNotFoundError;
-    InputError for a file that is damaged, of a newer format or not of beamfem; MissingPackageError without h5py.
+    Functions of time are returned as `Sampled`, their values at the saved rows. If the writing process was killed, the
+    rows written so far are returned.
+
+    Parameters
+    ----------
+    path : path
+        A file that `Solution.save` wrote.
+
+    Returns
+    -------
+    Solution
+        The model with its states; a `Path` for a path.
+
+    Raises
+    ------
+    FileError
+        If the system refuses to read the file; FileNotFoundError if there is none.
+    InputError
+        If the file is damaged, of a newer format or not of beamfem.
+    MissingPackageError
+        Without h5py.
+
+    Examples
+    --------
+    >>> solution.save("cantilever.h5")
+    >>> bf.load("cantilever.h5").at
+    array([0., 1.])
     """
     h5py = required_h5py("loading")
     source = readable(path)

@@ -30,14 +30,36 @@ _SAMPLES = 32
 class Beam:
     """A beam along a curve, stress-free in this configuration.
 
-    elements: number of equal elements, or the fractions of the arc length from 0 to 1 at which elements end, or "knots"
-    for one cubic element per knot span of a cubic BSpline, exactly; element: see `beamfem.element`; section: a section,
-    or a function of the arc length [m] from the start that returns one; material: not needed if the section has its
-    own. Raises InputError, also if the squares of its stiffness, mass or lengths exceed double precision.
+    Parameters
+    ----------
+    curve : Curve
+        Axis of the beam in the reference.
+    elements : int, sequence of float or "knots"
+        Number of equal elements; or the fractions of the arc length from 0 to 1 at which elements end; or "knots" for
+        one cubic element per knot span of a cubic BSpline, which is then represented exactly.
+    element : Element
+        Kind of the elements, such as `CRBF(order=3)`.
+    section : Section or callable
+        A section, or a function of the arc length [m] from the start that returns one.
+    material : Material, optional
+        Material of the section; not needed if the section has its own.
 
+    Raises
+    ------
+    InputError
+        For an invalid value, also if the squares of the stiffness, mass or lengths exceed double precision.
+
+    Notes
+    -----
     If a support, joint, point load or jump of the section requires a node inside an element, the element is divided; an
     element end that is very close (1 % of an element) is moved there instead. Jumps are found, or declared as `kinks`
     of the function.
+
+    Examples
+    --------
+    >>> axis, height = bf.Line((0, 0), (2, 0)), bf.Interpolated([(0.0, 0.1), (2.0, 0.05)])
+    >>> bf.Beam(axis, 4, bf.CRBF(order=3), lambda s: bf.Rectangle(0.05, height(s)), steel)
+    Beam(Line of length 2, 4 x CRBF-3)
     """
 
     curve: Curve
@@ -81,7 +103,23 @@ class Beam:
         return fulfils(self.section, CrossSection)
 
     def section_at(self, arc_length: float) -> CrossSection:
-        """Return the section at an arc length [m]. Raises InputError if a user's function gives none."""
+        """Return the section at an arc length.
+
+        Parameters
+        ----------
+        arc_length : float, [m]
+            Arc length from the start.
+
+        Returns
+        -------
+        Section
+            The section there.
+
+        Raises
+        ------
+        InputError
+            If a user's function does not return a section.
+        """
         if self.prismatic:
             return cast(CrossSection, self.section)
         section = called("section", cast(Tapered, self.section), arc_length)
@@ -95,7 +133,23 @@ class Beam:
         return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
-        """Return the point at a fraction in [0, 1] of the arc length."""
+        """Return the point at a fraction of the arc length.
+
+        Parameters
+        ----------
+        fraction : float, [-]
+            Fraction from 0 to 1.
+
+        Returns
+        -------
+        Point
+            The point.
+
+        Examples
+        --------
+        >>> beam.at(0.5).reference
+        array([1., 0.])
+        """
         return Point(self, fraction)
 
     @cached_property
@@ -114,7 +168,7 @@ class Beam:
 
     @property
     def shortest(self) -> float:
-        """Shortest element as a fraction of the length, before supports and loads divide it; knot spans: the mean."""
+        """Shortest element over the length, before supports and loads divide it; the mean for knot spans."""
         whole = isinstance(self.elements, int | str)
         return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 
@@ -132,16 +186,36 @@ class Beam:
 
     @property
     def start(self) -> "Point":
+        """Point at the start of the axis."""
         return Point(self, 0.0)
 
     @property
     def end(self) -> "Point":
+        """Point at the end of the axis."""
         return Point(self, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A point of a beam's axis at a fraction of its arc length."""
+    """A point of a beam's axis.
+
+    Parameters
+    ----------
+    beam : Beam
+        The beam.
+    fraction : float, [-]
+        Fraction of the arc length, from 0 to 1.
+
+    Raises
+    ------
+    InputError
+        For a fraction outside 0 to 1.
+
+    Examples
+    --------
+    >>> bf.Point(beam, 0.5) == beam.at(0.5)
+    True
+    """
 
     beam: Beam
     fraction: float

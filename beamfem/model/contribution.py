@@ -15,10 +15,22 @@ from beamfem.validation import count, finite, flag, items
 class At:
     """The state at which a contribution is evaluated.
 
-    q (m, 3): x, y [m] and rotation from the reference [rad] of its points; v, a (m, 3): their velocities and
-    accelerations, zero in statics; own (k,): its own unknowns; memory (h,): its history variables of the last step;
-    reference (m, 3): q in the stress-free model; time: [s], in statics the load factor; gravity (2,): acceleration
-    [m/s^2] of the model's Gravity at that time.
+    Parameters
+    ----------
+    q : array, (m, 3)
+        x, y [m] and rotation from the reference [rad] of its points.
+    v, a : array, (m, 3)
+        Velocities and accelerations of its points, zero in statics.
+    own : array, (k,)
+        Its own unknowns.
+    memory : array, (h,)
+        Its history variables of the last step.
+    reference : array, (m, 3)
+        q in the stress-free model.
+    time : float, [s]
+        Time, in statics the load factor.
+    gravity : array, [m/s^2], (2,)
+        Acceleration of the model's Gravity at that time.
     """
 
     q: np.ndarray
@@ -33,14 +45,21 @@ class At:
 
 @runtime_checkable
 class Contribution(Protocol):
-    """A frozen dataclass with these members, given to `Model(connectors=[...])`.
-
-    points: the m points of beams that it acts on; unknowns: its number k of multipliers; conservative: whether its
-    force at rest has a potential, so that its stiffness is symmetric.
+    """User-defined forces between points of beams: a frozen dataclass with these members, given to
+    `Model(connectors=[...])`.
 
     Tangents are complex-step derivatives of `force`, exact to round-off, so it must consist of analytic functions:
     `x**2` and `np.sqrt`, not `abs`, `np.hypot` or `np.linalg.norm`. This is tested when a model is solved. Cases such
     as contact are distinguished by real parts, `np.where(gap.real < 0.0, ...)`.
+
+    Attributes
+    ----------
+    points : tuple of Point, (m,)
+        Points of beams that it acts on.
+    unknowns : int
+        Number k of its multipliers.
+    conservative : bool
+        Whether its force at rest has a potential, so that its stiffness is symmetric.
     """
 
     @property
@@ -59,16 +78,37 @@ class Contribution(Protocol):
         ...
 
     def force(self, at: At) -> np.ndarray:
-        """Return its resisting forces (3 m + k,): fx, fy [N] and moment [N m] at each point, then its conditions.
+        """Return its resisting forces at its points, then its conditions.
 
         In equilibrium these and all other forces add up to zero: a spring that pulls a point back to the left has a
         positive fx. A condition is a function of q that is zero when it is satisfied; its multiplier times its
         derivative is part of the forces.
+
+        Parameters
+        ----------
+        at : At
+            State to evaluate it at.
+
+        Returns
+        -------
+        array, (3 m + k,)
+            fx, fy [N] and moment [N m] at each point, then the conditions.
         """
         ...
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return its kinetic and potential energy [J]."""
+        """Return its kinetic and potential energy.
+
+        Parameters
+        ----------
+        at : At
+            State to evaluate it at.
+
+        Returns
+        -------
+        (float, float), [J]
+            Kinetic and potential energy.
+        """
         ...
 
 
@@ -77,6 +117,11 @@ class Remembering(Contribution, Protocol):
     """A contribution with history, such as friction.
 
     Its history variables are part of the state: a rejected step restores them, and a result has them row by row.
+
+    Attributes
+    ----------
+    memory : sequence of float, (h,)
+        The initial history variables.
     """
 
     @property
@@ -85,7 +130,18 @@ class Remembering(Contribution, Protocol):
         ...
 
     def remember(self, at: At) -> Sequence[float]:
-        """Return the history variables (h,) after an accepted step."""
+        """Return the history variables after an accepted step.
+
+        Parameters
+        ----------
+        at : At
+            State at the end of the step.
+
+        Returns
+        -------
+        sequence of float, (h,)
+            The history variables.
+        """
         ...
 
 

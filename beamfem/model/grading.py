@@ -10,10 +10,29 @@ _ELEMENT = 64  # bytes of an element: its fraction as a float in a tuple, and in
 
 
 def graded(elements: int, ratio: float) -> tuple[float, ...]:
-    """Return the fractions from 0 to 1 (elements + 1,) of element ends whose lengths grow geometrically.
+    """Return the ends of elements whose lengths grow geometrically, for `Beam(elements=...)`.
 
-    ratio: length of the last element over that of the first; below 1 they decrease. For `Beam(elements=...)`.
-    Raises InputError.
+    Parameters
+    ----------
+    elements : int
+        Number of elements.
+    ratio : float, [-]
+        Length of the last element over that of the first; below 1 the lengths decrease.
+
+    Returns
+    -------
+    tuple of float, [-], (elements + 1,)
+        Fractions of the arc length from 0 to 1.
+
+    Raises
+    ------
+    InputError
+        If the number or the ratio is not positive, or an element would have no length.
+
+    Examples
+    --------
+    >>> [round(end, 3) for end in bf.graded(3, ratio=4.0)]
+    [0.0, 0.143, 0.429, 1.0]
     """
     number, ratio = count("elements", elements), positive("ratio", ratio)
     memory = installed_memory()

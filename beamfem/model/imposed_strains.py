@@ -17,11 +17,40 @@ Along = float | Callable[[float], float]
 
 @dataclass(frozen=True)
 class Actuation(ImposedStrain):
-    """Imposed curvature [1/m], stretch [-] and shear [-] of the stress-free state: muscles, growth, swelling.
+    """Imposed curvature, stretch and shear of the stress-free state, as by muscles, growth or swelling.
 
-    Each is a number or a function of the arc length [m] from the start; elements end at its `kinks` (declared, or jumps
-    that are found). Resultants follow from the difference, s = C (eps - eps0 - amplitude * actuation); a positive
-    curvature turns the beam to the left from start to end. Raises InputError.
+    Section forces follow from the difference, s = C (eps - eps0 - amplitude * actuation).
+
+    Parameters
+    ----------
+    beam : Beam
+        The beam that is actuated.
+    curvature : float or callable, [1/m], default 0
+        Imposed curvature; a positive one turns the beam to the left from start to end.
+    stretch : float or callable, [-], default 0
+        Imposed stretch.
+    shear : float or callable, [-], default 0
+        Imposed shear.
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the actuation grows with the load factor in statics, if it has no amplitude.
+
+    Raises
+    ------
+    InputError
+        For an invalid value, or a strain that the nodes of the element cannot follow.
+
+    Notes
+    -----
+    Each strain is a number or a function of the arc length [m] from the start. Elements end at the `kinks` of a
+    function (declared, or jumps that are found).
+
+    Examples
+    --------
+    >>> curled = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.Actuation(beam, curvature=np.pi / 2)]))
+    >>> round(float(curled.rotation(beam.end)[-1]), 4)  # half a turn
+    3.1416
     """
 
     along: ClassVar[tuple[str, ...]] = ("curvature", "stretch", "shear")
@@ -46,11 +75,41 @@ class Actuation(ImposedStrain):
 
 @dataclass(frozen=True)
 class Temperature(ImposedStrain):
-    """Temperature: a change [K] on the axis of a beam, and a gradient [K/m] over the section, towards +y.
+    """Change of temperature of a beam, and its gradient over the section.
 
-    Both are numbers or functions of the arc length [m] from the start, as in `Actuation`. An unconstrained section of
-    one material stretches by alpha * change and bends by -alpha * gradient, with its `thermal_expansion` alpha; layers
-    balance each other. The thickness does not expand at nodes that keep it constant. Raises InputError.
+    An unconstrained section of one material stretches by alpha * change and bends by -alpha * gradient, with the
+    `thermal_expansion` alpha of its material; layers balance each other. The thickness does not expand at nodes that
+    keep it constant.
+
+    Parameters
+    ----------
+    beam : Beam
+        The heated beam.
+    change : float or callable, [K]
+        Change of temperature on the axis.
+    gradient : float or callable, [K/m], default 0
+        Gradient over the section, towards +y.
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the change grows with the load factor in statics, if it has no amplitude.
+
+    Raises
+    ------
+    InputError
+        For an invalid value, or a material without thermal expansion.
+
+    Notes
+    -----
+    Change and gradient are numbers or functions of the arc length [m] from the start, as in `Actuation`.
+
+    Examples
+    --------
+    >>> warm = bf.Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0, thermal_expansion=1.2e-5)
+    >>> rod = bf.Beam(bf.Line((0, 0), (2, 0)), 4, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), warm)
+    >>> heated = bf.solve_static(bf.Model([rod], [bf.Clamp(rod.start)], [bf.Temperature(rod, change=50.0)]))
+    >>> round(float(heated.displacement(rod.end)[-1, 0]), 6)
+    0.0012
     """
 
     along: ClassVar[tuple[str, ...]] = ("change", "gradient")

@@ -8,7 +8,15 @@ from beamfem.model.shapes import Ring
 
 
 class Joint:
-    """Two coincident points `a` and `b` of beams with a common position; keeps_angle: their rotations are equal too."""
+    """Two coincident points of beams with a common position.
+
+    Attributes
+    ----------
+    a, b : Point
+        The points.
+    keeps_angle : bool
+        Whether their rotations are equal too.
+    """
 
     __slots__ = ()
     keeps_angle: ClassVar[bool] = False
@@ -28,7 +36,18 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Rigid(Joint):
-    """Join two points so that displacement and rotation are the same, at whatever angle the beams meet."""
+    """Join two points rigidly: displacement and rotation are the same, at whatever angle the beams meet.
+
+    Parameters
+    ----------
+    a, b : Point
+        Coincident points of beams.
+
+    Examples
+    --------
+    >>> post = bf.Beam(bf.Line((2, 0), (2, -1)), 2, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> angle = bf.Model([beam, post], [bf.Clamp(beam.start)], joints=[bf.Rigid(beam.end, post.start)])
+    """
 
     keeps_angle: ClassVar[bool] = True
 
@@ -38,7 +57,19 @@ class Rigid(Joint):
 
 @dataclass(frozen=True, slots=True)
 class Hinge(Joint):
-    """Join two points so that the displacement is the same; the rotations are independent."""
+    """Join two points by a hinge: the displacement is the same, the rotations are independent.
+
+    Parameters
+    ----------
+    a, b : Point
+        Coincident points of beams.
+
+    Examples
+    --------
+    >>> post = bf.Beam(bf.Line((2, 0), (2, -1)), 2, bf.CRBF(order=3), bf.Rectangle(0.05, 0.1), steel)
+    >>> supports = [bf.Clamp(beam.start), bf.Pin(post.end)]
+    >>> hinged = bf.Model([beam, post], supports, joints=[bf.Hinge(beam.end, post.start)])
+    """
 
     a: Point
     b: Point

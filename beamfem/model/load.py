@@ -20,7 +20,7 @@ _ARROWS = 11  # along a beam
 
 
 class Load(ABC):
-    """A load, times a factor: amplitude(time), or the load factor if `scale` is True, or 1.
+    """A load times a factor: amplitude(time), or the load factor if `scale` is True, or 1.
 
     Loads are frozen dataclasses that derive from `PointLoad`, `LineLoad`, `BodyLoad` or `ImposedStrain`.
     """
@@ -50,7 +50,13 @@ class Load(ABC):
 
 
 class BodyLoad(Load):
-    """An acceleration `vector` (2,) [m/s^2] that acts on all mass."""
+    """An acceleration that acts on all mass.
+
+    Attributes
+    ----------
+    vector : (float, float), [m/s^2]
+        The acceleration.
+    """
 
     vector: tuple[float, float]
 
@@ -70,7 +76,15 @@ class BodyLoad(Load):
 
 
 class PointLoad(Load):
-    """Force [N] and moment [N m] at a point; follower: the force rotates with the section there."""
+    """Force [N] and moment [N m] at a point.
+
+    Attributes
+    ----------
+    point : Point
+        Point of application.
+    follower : bool
+        Whether the force rotates with the section there.
+    """
 
     point: Point
     follower: bool = False
@@ -107,9 +121,13 @@ class PointLoad(Load):
 class LineLoad(AlongBeam, Load):
     """Forces per length along a beam.
 
-    axes: of the forces, "plane": x and y, per reference length; "section": x and y of the reference, rotated with the
-    section, per reference length; "axis": along r0' and across it, to the left, per deformed length; uniform: whether
-    they are the same at every arc length.
+    The axes of the forces are "plane": x and y, per reference length; "section": x and y of the reference, rotated with
+    the section, per reference length; or "axis": along r0' and across it, to the left, per deformed length.
+
+    Attributes
+    ----------
+    uniform : bool
+        Whether the forces are the same at every arc length.
     """
 
     uniform: bool = False
@@ -162,7 +180,10 @@ class LineLoad(AlongBeam, Load):
 class ImposedStrain(AlongBeam, Load):
     """Strains of the stress-free state of a beam; each field named in `along` is a number or a function.
 
-    units: of the fields named in `along`.
+    Attributes
+    ----------
+    units : tuple of str
+        Units of the fields named in `along`.
     """
 
     units: ClassVar[tuple[str, ...]] = ()

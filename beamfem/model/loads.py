@@ -15,7 +15,23 @@ Varying = Callable[[float], Sequence[float]]
 
 @dataclass(frozen=True)
 class Gravity(BodyLoad):
-    """Gravity: an acceleration (gx, gy) [m/s^2] of the mass of every beam."""
+    """Gravity, an acceleration of the mass of every beam.
+
+    Parameters
+    ----------
+    vector : (float, float), [m/s^2]
+        Acceleration (gx, gy).
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether gravity grows with the load factor in statics, if it has no amplitude.
+
+    Examples
+    --------
+    >>> heavy = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.Gravity((0.0, -9.81))]))
+    >>> heavy.reaction(beam.start)[-1, 1:].round(1)  # fy, m
+    array([770.1, 770.1])
+    """
 
     vector: tuple[float, float]
     amplitude: Amplitude = None
@@ -28,12 +44,32 @@ class Gravity(BodyLoad):
 
 @dataclass(frozen=True)
 class DistributedLoad(LineLoad):
-    """Force per reference length (qx, qy) [N/m] along the axis of a beam.
+    """Force per reference length along the axis of a beam.
 
-    vector: in the global axes x and y; or a function of the arc length [m] from the start that returns it; elements end
-    at its `kinks` (declared, or jumps that are found). follower: the force at each point rotates with its section; on a
-    curved beam that is not normal to the axis: see `Pressure`.
-    Raises InputError.
+    Parameters
+    ----------
+    beam : Beam
+        The loaded beam.
+    vector : (float, float) or callable, [N/m]
+        Force per length (qx, qy) in the global axes x and y; or a function of the arc length [m] from the start that
+        returns it. Elements end at the `kinks` of a function (declared, or jumps that are found).
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the load grows with the load factor in statics, if it has no amplitude.
+    follower : bool, default False
+        Whether the force at each point rotates with its section; on a curved beam that is not normal to the axis, see
+        `Pressure`.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> weight = bf.DistributedLoad(beam, (0.0, -385.0))
+    >>> triangle = bf.DistributedLoad(beam, lambda s: (0.0, -500.0 * s))
     """
 
     along: ClassVar[tuple[str, ...]] = ("vector",)
@@ -79,12 +115,33 @@ class DistributedLoad(LineLoad):
 
 @dataclass(frozen=True)
 class Pressure(LineLoad):
-    """Pressure times width [N/m], normal to the deformed axis of a beam, per deformed length: a force p (-y', x') ds.
+    """Pressure times width, normal to the deformed axis of a beam, per deformed length: a force p (-y', x') ds.
 
-    value: positive towards the left of the direction from start to end, the +y side of its sections; or a function of
-    the reference arc length [m] that returns it; elements end at its `kinks` (declared, or jumps that are found). It
-    acts on the axis and does work on the area swept by the axis: a constant pressure is conservative if both ends of
-    the beam are constrained in at least one direction, or close a ring. Raises InputError.
+    It acts on the axis and does work on the area swept by the axis: a constant pressure is conservative if both ends of
+    the beam are constrained in at least one direction, or close a ring.
+
+    Parameters
+    ----------
+    beam : Beam
+        The loaded beam.
+    value : float or callable, [N/m]
+        Pressure times width, positive towards the left of the direction from start to end, the +y side of its sections;
+        or a function of the reference arc length [m] that returns it. Elements end at the `kinks` of a function
+        (declared, or jumps that are found).
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the pressure grows with the load factor in statics, if it has no amplitude.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> uniform = bf.Pressure(beam, -500.0)
+    >>> hydrostatic = bf.Pressure(beam, lambda s: -9810.0 * 0.05 * s)
     """
 
     along: ClassVar[tuple[str, ...]] = ("value",)
@@ -123,7 +180,26 @@ class Pressure(LineLoad):
 
 @dataclass(frozen=True)
 class PointForce(PointLoad):
-    """Force (fx, fy) [N] on the axis at a point; follower: the force rotates with the section."""
+    """Force on the axis at a point.
+
+    Parameters
+    ----------
+    point : Point
+        Point of application.
+    vector : (float, float), [N]
+        Force (fx, fy).
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the force grows with the load factor in statics, if it has no amplitude.
+    follower : bool, default False
+        Whether the force rotates with the section.
+
+    Examples
+    --------
+    >>> push = bf.PointForce(beam.end, (0.0, -1e4))
+    >>> periodic = bf.PointForce(beam.end, (0.0, -1e4), amplitude=lambda time: np.sin(20.0 * time))
+    """
 
     point: Point
     vector: tuple[float, float]
@@ -143,9 +219,26 @@ class PointForce(PointLoad):
 
 @dataclass(frozen=True)
 class PointMoment(PointLoad):
-    """Moment [N m], counter-clockwise, conjugate to the rotation of the section: virtual work M dtheta.
+    """Moment, counter-clockwise, conjugate to the rotation of the section: virtual work M dtheta.
 
-    follower: accepted for uniformity; in the plane a moment that rotates with the section is the same moment.
+    Parameters
+    ----------
+    point : Point
+        Point of application.
+    moment : float, [N m]
+        Moment.
+    amplitude : callable, optional
+        Factor as a function of time [s], in statics of the load factor.
+    scale : bool, default True
+        Whether the moment grows with the load factor in statics, if it has no amplitude.
+    follower : bool, default False
+        Accepted for uniformity; in the plane a moment that rotates with the section is the same moment.
+
+    Examples
+    --------
+    >>> bent = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e4)]))
+    >>> round(float(bent.rotation(beam.end)[-1]), 5)  # M L / E I
+    0.02286
     """
 
     point: Point

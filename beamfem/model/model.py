@@ -4,7 +4,6 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
 from math import prod
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from beamfem.model.grids import make_grids
 from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
@@ -44,14 +44,39 @@ _NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(ModelOutputs):
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports, joints, point loads and kinks of loads along beams place a mesh node at their point. Joined points may be
-    apart by 1e-5 of the longer beam: the second is moved to the first without stress. connectors: user-defined forces,
-    see `Contribution`. units: the units of the numbers, such as "N, mm", any consistent set, for labels of pictures and
-    tables.
-    Raises InputError, UnknownPointError.
+    Supports, joints, point loads and kinks of loads along beams place a mesh node at their point.
+
+    Parameters
+    ----------
+    beams : sequence of Beam
+        The beams.
+    supports : sequence, optional
+        Supports, such as `Clamp` or `Foundation`.
+    loads : sequence, optional
+        Loads, such as `PointForce`, `Gravity` or `Temperature`.
+    joints : sequence of Joint, optional
+        Joints between beams. Joined points may be apart by 1e-5 of the longer beam: the second is moved to the first
+        without stress.
+    connectors : sequence of Contribution, optional
+        User-defined forces, see `Contribution`.
+    units : str, default "N, m, s"
+        Units of the numbers, such as "N, mm", any consistent set, for labels of pictures and tables.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+    UnknownPointError
+        For a support, load, joint or connector on a beam that is not in the model.
+
+    Examples
+    --------
+    >>> model = bf.Model([beam], supports=[bf.Clamp(beam.start)], loads=[bf.PointForce(beam.end, (0.0, -1e4))])
+    >>> model
+    Model(1 beam, 1 support, 1 load)
     """
 
     beams: Sequence[Beam]
@@ -131,7 +156,7 @@ class Model:
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for one of SI, such as "N m"."""
+        """Return the name of the model's unit for an SI unit, such as "MPa" for "Pa" in a model in N and mm."""
         return self._units.of(unit)
 
     @cached_property
@@ -267,14 +292,6 @@ class Model:
     def line_supports(self) -> tuple[LineSupport, ...]:
         """Supports along beams."""
         return tuple(support for support in self.supports if isinstance(support, LineSupport))
-
-    def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
-        """Return the model with its axes displaced by a mode, by at most `size` [m], stress-free there."""
-        return offered(Model.with_imperfection)(self, modes, size, mode)
-
-    def plot(self, path: str | PathLike[str] | None = None) -> Any:
-        """Draw the undeformed model with its supports and loads; return the figure."""
-        return offered(Model.plot)(self, path)
 
     def _repr_html_(self) -> str:
         return offered(Model._repr_html_)(self)

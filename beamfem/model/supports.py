@@ -12,7 +12,21 @@ from beamfem.validation import convert, finite, function_of_one, squared, vector
 
 @dataclass(frozen=True)
 class Clamp(PointSupport):
-    """Constrain position and rotation of the section; r_x may stretch and, except for the elastic line, shear."""
+    """Constrain position and rotation of the section.
+
+    r_x may still stretch and, except for the elastic line, shear.
+
+    Parameters
+    ----------
+    point : Point
+        The point that is clamped.
+
+    Examples
+    --------
+    >>> clamped = bf.Model([beam], supports=[bf.Clamp(beam.start), bf.Clamp(beam.end)])
+    >>> len(clamped.supports)
+    2
+    """
 
     point: Point
 
@@ -23,7 +37,19 @@ class Clamp(PointSupport):
 
 @dataclass(frozen=True)
 class Pin(PointSupport):
-    """Constrain the position; the rotation is free."""
+    """Constrain the position; the rotation is free.
+
+    Parameters
+    ----------
+    point : Point
+        The point that is pinned.
+
+    Examples
+    --------
+    >>> simply_supported = bf.Model([beam], supports=[bf.Pin(beam.start), bf.Roller(beam.end)])
+    >>> len(simply_supported.supports)
+    2
+    """
 
     point: Point
 
@@ -34,7 +60,26 @@ class Pin(PointSupport):
 
 @dataclass(frozen=True)
 class Roller(PointSupport):
-    """Constrain the displacement along `normal` (2,) only. Raises InputError for a zero normal."""
+    """Constrain the displacement along a normal only.
+
+    Parameters
+    ----------
+    point : Point
+        The supported point.
+    normal : (float, float), [-], default (0, 1)
+        Direction of the constraint; its length does not matter.
+
+    Raises
+    ------
+    InputError
+        For a zero normal.
+
+    Examples
+    --------
+    >>> inclined = bf.Roller(beam.end, normal=(-1.0, 1.0))
+    >>> inclined.direction.round(3)
+    array([-0.707,  0.707])
+    """
 
     point: Point
     normal: tuple[float, float] = (0.0, 1.0)
@@ -57,10 +102,30 @@ class Roller(PointSupport):
 
 @dataclass(frozen=True)
 class Prescribed(PointSupport):
-    """Prescribe displacement ux, uy [m] and rotation [rad] from the reference; None leaves a direction free.
+    """Prescribe displacement and rotation at a point, from the reference.
 
-    A number grows with the load factor in statics and is constant in dynamics; a function depends on time, in statics
-    on the load factor. Raises InputError.
+    A number grows with the load factor in statics and is constant in dynamics; a function depends on time [s], in
+    statics on the load factor. None leaves a direction free.
+
+    Parameters
+    ----------
+    point : Point
+        The point that is moved.
+    ux, uy : float or callable, [m], optional
+        Displacement.
+    rotation : float or callable, [rad], optional
+        Rotation of the section.
+
+    Raises
+    ------
+    InputError
+        If nothing is prescribed, or a value is invalid.
+
+    Examples
+    --------
+    >>> pushed = bf.Model([beam], [bf.Clamp(beam.start), bf.Prescribed(beam.end, uy=-0.1)])
+    >>> round(float(bf.solve_static(pushed).reaction(beam.end)[-1, 1]), -2)
+    -32800.0
     """
 
     point: Point
@@ -86,9 +151,25 @@ class Prescribed(PointSupport):
 
 @dataclass(frozen=True)
 class Spring(PointSupport):
-    """Spring to the ground against displacement (kx, ky) [N/m] and rotation [N m/rad], unstressed in the reference.
+    """Spring to the ground, unstressed in the reference.
 
-    Raises InputError for a negative stiffness, or if there is none at all.
+    Parameters
+    ----------
+    point : Point
+        The supported point.
+    stiffness : (float, float), [N/m], default (0, 0)
+        Stiffness (kx, ky) against displacement.
+    rotational : float, [N m/rad], default 0
+        Stiffness against rotation.
+
+    Raises
+    ------
+    InputError
+        For a negative stiffness, or if all are zero.
+
+    Examples
+    --------
+    >>> spring = bf.Spring(beam.end, stiffness=(0.0, 1e5), rotational=200.0)
     """
 
     point: Point
@@ -111,9 +192,23 @@ class Spring(PointSupport):
 
 @dataclass(frozen=True)
 class Foundation(LineSupport):
-    """Winkler foundation along a beam, (kx, ky) [N/m^2] per reference length, unstressed in the reference.
+    """Winkler foundation along a beam, unstressed in the reference.
 
-    Raises InputError for a negative stiffness, or if there is none at all.
+    Parameters
+    ----------
+    beam : Beam
+        The supported beam.
+    stiffness : (float, float), [N/m^2]
+        Stiffness (kx, ky) per reference length.
+
+    Raises
+    ------
+    InputError
+        For a negative stiffness, or if both are zero.
+
+    Examples
+    --------
+    >>> soil = bf.Foundation(beam, stiffness=(0.0, 1e6))
     """
 
     beam: Beam

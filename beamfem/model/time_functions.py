@@ -15,9 +15,23 @@ from beamfem.validation import function_of_one
 
 @dataclass(frozen=True)
 class Interpolated:
-    """Values at increasing times [s] or arc lengths [m], points (n, 2): linear between them, constant outside.
+    """Values that are linear between given times or arc lengths, and constant outside.
 
-    Raises InputError.
+    Parameters
+    ----------
+    points : sequence of (float, float), (n, 2)
+        Increasing times [s] or arc lengths [m], each with its value.
+
+    Raises
+    ------
+    InputError
+        For less than two points, or times that do not increase.
+
+    Examples
+    --------
+    >>> ramp = bf.Interpolated([(0.0, 0.0), (0.5, 1.0)])
+    >>> ramp(0.25), ramp(2.0)
+    (0.5, 1.0)
     """
 
     points: Sequence[Sequence[float]]
@@ -44,10 +58,28 @@ class Interpolated:
 
 @dataclass(frozen=True)
 class Piecewise:
-    """A function of time that is smooth between increasing times `kinks` (n,) [s], at which it may bend or jump.
+    """A function that is smooth between kinks, at which it may bend or jump.
 
-    It may also depend on the arc length [m], for a section or a load along a beam: elements end at the kinks. Any
-    function with an attribute `kinks` works in the same way. Raises InputError.
+    It may also depend on the arc length, for a section or a load along a beam: elements end at the kinks. Any function
+    with an attribute `kinks` works in the same way.
+
+    Parameters
+    ----------
+    function : callable
+        Function of time [s] or arc length [m].
+    kinks : sequence of float, (n,)
+        Increasing times [s] or arc lengths [m] of the kinks.
+
+    Raises
+    ------
+    InputError
+        For kinks that do not increase.
+
+    Examples
+    --------
+    >>> pulse = bf.Piecewise(lambda time: 1.0 if time < 0.1 else 0.0, kinks=[0.1])
+    >>> pulse(0.05), pulse(0.2)
+    (1.0, 0.0)
     """
 
     function: Callable[[float], Any]

@@ -35,13 +35,32 @@ class Peak(NamedTuple):
 
 @dataclass(frozen=True)
 class BeamStress:
-    """Extreme stress [Pa] of the sections of a beam (steps, stations); arc_length (stations,) [m], as `SectionForces`.
+    """Extreme stresses of the sections of a beam, at the stations of its section forces.
 
-    lower, upper: normal stress at the two faces; tension, compression: largest and smallest normal stress over the
-    height; shear: largest magnitude over the height; von_mises: largest sqrt(sigma^2 + 3 tau^2) over the height, at
-    faces only if the shear stress inside is not known; utilisation [-]: largest ratio of von Mises stress to the
-    strength of the material there, nan if none is given (`Material`). Cauchy stress, as in `Fields`; nan for sections
-    that define none. Each layer is evaluated at its faces and at seven heights between them.
+    The stress is the Cauchy stress, as in `Fields`; it is nan for sections that define none. Each layer is evaluated at
+    its faces and at seven heights between them.
+
+    Parameters
+    ----------
+    arc_length : array, [m], (stations,)
+        Arc lengths of the stations, as in `SectionForces`.
+    lower, upper : array, [Pa], (steps, stations)
+        Normal stress at the two faces.
+    tension, compression : array, [Pa], (steps, stations)
+        Largest and smallest normal stress over the height.
+    shear : array, [Pa], (steps, stations)
+        Largest magnitude of the shear stress over the height.
+    von_mises : array, [Pa], (steps, stations)
+        Largest sqrt(sigma^2 + 3 tau^2) over the height; at the faces only if the shear stress inside is not known.
+    utilisation : array, [-], (steps, stations)
+        Largest ratio of von Mises stress to the strength of the material there; nan if no strength is given
+        (`Material`).
+
+    Examples
+    --------
+    >>> stress = solution.stresses(beam)
+    >>> float(stress.tension[-1, 0].round(-5))  # at the clamp
+    240000000.0
     """
 
     arc_length: np.ndarray
@@ -61,9 +80,31 @@ class BeamStress:
         return f"<b>Stress, peaks</b>{as_html(('', 'extreme', 'at arc length', 'row'), rows)}"
 
     def peak(self, part: Part = "von_mises") -> Peak:
-        """Return the peak along the beam and over the rows, nan if none is known. Raises InputError.
+        """Return the peak along the beam and over the rows.
 
-        It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, else the largest value.
+        It is the smallest value of `compression`, the largest magnitude of `lower` and `upper`, and the largest value
+        of the others.
+
+        Parameters
+        ----------
+        part : str, default "von_mises"
+            "lower", "upper", "tension", "compression", "shear", "von_mises" or "utilisation".
+
+        Returns
+        -------
+        Peak
+            Value, arc length [m] and row; nan if no value is known.
+
+        Raises
+        ------
+        InputError
+            For another part.
+
+        Examples
+        --------
+        >>> value, arc_length, row = solution.stresses(beam).peak("tension")
+        >>> round(arc_length, 3), row
+        (0.0, 1)
         """
         known = [name for name in self.__dataclass_fields__ if name != "arc_length"]
         require_known(f"there is no stress {shown(part)}", part, known)

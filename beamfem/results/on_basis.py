@@ -19,9 +19,14 @@ _ALIKE = 1e-9  # fraction of the longest element: tolerance between mesh lengths
 
 @dataclass(frozen=True, eq=False)
 class FieldOnBasis:
-    """The body r(s, y) = r0(s) + y d(s) [m] of a beam in all states.
+    """The body r(s, y) = r0(s) + y d(s) [m] of a beam in all states, on a scikit-fem basis.
 
-    basis: scikit-fem basis over the arc length s [m] and y [m]; values (steps, basis.N): coefficients in each state.
+    Parameters
+    ----------
+    basis : skfem.CellBasis
+        Basis over the arc length s [m] and y [m].
+    values : array, (steps, basis.N)
+        Coefficients in each state.
     """
 
     basis: Basis
@@ -30,9 +35,28 @@ class FieldOnBasis:
     __repr__ = brief
 
     def interpolate(self, row: int = -1) -> DiscreteField:
-        """Return r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-] in a state, for use in forms.
+        """Return position and gradient at the quadrature points in a state, for use in forms.
 
-        Raises InputError for a row that does not exist.
+        Parameters
+        ----------
+        row : int, default -1
+            Row of the solution.
+
+        Returns
+        -------
+        skfem.DiscreteField
+            r (2, ne, nq) [m] and its gradient F = (dr/ds, dr/dy) (2, 2, ne, nq) [-].
+
+        Raises
+        ------
+        InputError
+            For a row that does not exist.
+
+        Examples
+        --------
+        >>> r = bf.field_on_basis(solution, beam).interpolate(row=-1)
+        >>> r.grad.shape[:2]
+        (2, 2)
         """
         row = number_below("row of interpolate", row, len(self.values), -len(self.values))
         return self.basis.interpolate(self.values[row])
@@ -41,10 +65,38 @@ class FieldOnBasis:
 def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int | None = None) -> FieldOnBasis:
     """Return the field of a beam in all states of a solution on a scikit-fem basis.
 
-    body: quadrature over the length and the section, weights times width, for integrals over the volume [m^3]; False:
-    over the axis alone, for integrals over the length [m]. piece: number of a smooth piece, 0 at the start of the beam,
-    for a beam with corners, where its field has two directions but a basis only one. Paper, eqs. (2) to (4).
-    Raises InputError for a beam with corners without a piece, and for knot spans as elements.
+    Parameters
+    ----------
+    solution : Solution
+        States of a model.
+    beam : Beam
+        A beam of the model.
+    body : bool, default True
+        True: quadrature over the length and the section, with weights times width, for integrals over the volume [m^3].
+        False: quadrature over the axis alone, for integrals over the length [m].
+    piece : int, optional
+        Number of a smooth piece, 0 at the start of the beam, for a beam with corners, where its field has two
+        directions but a basis only one.
+
+    Returns
+    -------
+    FieldOnBasis
+        The basis and the coefficients in each state.
+
+    Raises
+    ------
+    InputError
+        For a beam with corners without a piece, and for knot spans as elements.
+
+    References
+    ----------
+    Paper, eqs. (2) to (4).
+
+    Examples
+    --------
+    >>> field = bf.field_on_basis(solution, beam)
+    >>> round(float(field.basis.dx.sum()), 6)  # volume of the beam
+    0.01
     """
     if not isinstance(solution, Solution):
         raise InputError(f"field_on_basis needs a Solution, such as solve_static returns, got {shown(solution)}")

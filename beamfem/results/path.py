@@ -19,8 +19,18 @@ from beamfem.results.turns import start_rotations
 class PathState(State):
     """One state of a path: results as those of a Solution, without the axis of steps.
 
-    stability: whether it is a stable equilibrium, None if not known; critical points are not stable. turned is counted
-    along the path.
+    Parameters
+    ----------
+    p, v, a : array, (n,)
+        Coordinates and their rates, see `State`.
+    at : float, [-]
+        Load factor.
+    model : Model
+        The model.
+    turned : array, [rad], (m,), optional
+        See `State`; counted along the path.
+    stability : bool, optional
+        Whether the state is a stable equilibrium, None if not known; critical points are not stable.
     """
 
     stability: bool | None = field(default=None, kw_only=True)
@@ -29,6 +39,7 @@ class PathState(State):
 
     @property
     def load_factor(self) -> float:
+        """Load factor of the state."""
         return self.at
 
     @cached_property
@@ -43,29 +54,100 @@ class PathState(State):
         return bool(self._alone.stable[0]) if self.stability is None else self.stability
 
     def position(self, point: Point) -> np.ndarray:
-        """Return the position of a point (2,) [m]."""
+        """Return the position of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (2,)
+            Position.
+        """
         return np.asarray(self._alone.position(point)[0])
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement of a point from the reference configuration (2,) [m]."""
+        """Return the displacement of a point from the reference configuration.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (2,)
+            Displacement.
+        """
         return np.asarray(self._alone.displacement(point)[0])
 
     def rotation(self, point: Point) -> float:
-        """Return the rotation of the section [rad], counter-clockwise positive, full turns included."""
+        """Return the rotation of the section, counter-clockwise positive, full turns included.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        float, [rad]
+            Rotation from the reference.
+        """
         return float(self._alone.rotation(point)[0])
 
     def reaction(self, point: Point) -> np.ndarray:
-        """Return the reaction of the supports on the beam (3,): fx, fy [N], m [N m]. Raises InputError elsewhere."""
+        """Return the reaction of the supports on the beam.
+
+        Parameters
+        ----------
+        point : Point
+            A supported point.
+
+        Returns
+        -------
+        array, (3,)
+            fx, fy [N], m [N m].
+
+        Raises
+        ------
+        InputError
+            If the point has no support.
+        """
         return np.asarray(self._alone.reaction(point)[0])
 
     def fields(self, point: Point) -> Fields:
-        """Return position, gradients, rotation, shear angle, strain and stress at a point."""
+        """Return position, gradients, rotation, shear angle, strain and stress at a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        Fields
+            The fields, without the axis of steps.
+        """
         found = self._alone.fields(point)
         values = [getattr(found, name) for name in Fields.__dataclass_fields__]
         return Fields(*(_first(value) for value in values))
 
     def section_forces(self, beam: Beam) -> SectionForces:
-        """Return normal and shear force [N] and moment [N m] of a beam (stations,), see `SectionForces`."""
+        """Return normal force, shear force and moment of a beam.
+
+        Parameters
+        ----------
+        beam : Beam
+            A beam of the model.
+
+        Returns
+        -------
+        SectionForces
+            Normal and shear force [N] and moment [N m], (stations,).
+        """
         found = self._alone.section_forces(beam)
         return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
 
@@ -74,8 +156,23 @@ class PathState(State):
 class Bifurcation(PathState):
     """A bifurcation point, where another branch crosses the path.
 
-    mode (n,): null vector of the tangent stiffness, with root mean square 1 in lengths of the model and radians, and
-    its largest component positive; tangent (n + 1,): direction of the path, the load factor last.
+    Parameters
+    ----------
+    p, v, a : array, (n,)
+        Coordinates and their rates, see `State`.
+    at : float, [-]
+        Load factor.
+    model : Model
+        The model.
+    mode : array, (n,)
+        Null vector of the tangent stiffness, with root mean square 1 in lengths of the model and radians, and its
+        largest component positive.
+    tangent : array, (n + 1,)
+        Direction of the path, the load factor last.
+    turned : array, [rad], (m,), optional
+        See `State`.
+    stability : bool, optional
+        See `PathState`.
     """
 
     mode: np.ndarray
@@ -92,8 +189,23 @@ class Bifurcation(PathState):
 class Path(Solution):
     """The equilibria along a path, in order; load factors may decrease.
 
-    Row i is the state `path[i]`; limit points and bifurcations lie between the rows.
-    The bifurcation point at which a branch starts does not count as stable.
+    Row i is the state `path[i]`; limit points and bifurcations lie between the rows. The bifurcation point at which a
+    branch starts does not count as stable.
+
+    Parameters
+    ----------
+    model, static, at, p, v, a, statistics, stability, turned, loaded
+        See `Solution`.
+    limit_points : tuple of PathState
+        Points at which the load factor has an extremum.
+    bifurcations : tuple of Bifurcation
+        Points at which another branch crosses the path.
+
+    Examples
+    --------
+    >>> path = bf.trace_equilibrium(model, until=1.0)
+    >>> path[-1].displacement(beam.end).round(4)
+    array([-0.0003, -0.0305])
     """
 
     limit_points: tuple[PathState, ...] = ()

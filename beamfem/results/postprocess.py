@@ -23,13 +23,32 @@ from beamfem.model.reference import (
 
 @dataclass(frozen=True)
 class Fields:
-    """Fields at points of a beam's axis; the leading shape is (steps,) or (steps, points).
+    """Fields at points of a beam's axis; the leading shape (...) is (steps,) or (steps, points).
 
-    position (..., 2) [m]; r_x (..., 2) [-]: derivative by arc length; r_y (..., 2) [-]; rotation [rad] of the section
-    from the reference configuration; shear_angle [rad]: angle from r_x to r_y less a right angle; green_strain [-] of
-    the field at y = 0; stress [Pa] there: Cauchy stress along the normal of the rotated section (x) and in it (y), per
-    undeformed area, as the section distributes the section forces; yy = 0 as in beam theory, nan if the section does
-    not define a stress there.
+    Parameters
+    ----------
+    position : array, [m], (..., 2)
+        Position.
+    r_x : array, [-], (..., 2)
+        Derivative of the position by arc length.
+    r_y : array, [-], (..., 2)
+        Direction of the section.
+    rotation : array, [rad], (...)
+        Rotation of the section from the reference configuration.
+    shear_angle : array, [rad], (...)
+        Angle from r_x to r_y less a right angle.
+    green_strain : Components, [-]
+        Green-Lagrange strain of the field at y = 0.
+    stress : Components, [Pa]
+        Stress at y = 0: Cauchy stress along the normal of the rotated section (x) and in it (y), per undeformed area,
+        as the section distributes the section forces; yy = 0 as in beam theory; nan if the section does not define a
+        stress there.
+
+    Examples
+    --------
+    >>> fields = solution.fields(beam.at(0.5))
+    >>> fields.rotation.round(4)
+    array([ 0.    , -0.0171])
     """
 
     position: np.ndarray
@@ -56,12 +75,27 @@ class Components:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Section forces (steps, stations) at the start, the Gauss points and the end of every element of a beam.
+    """Section forces at the start, the Gauss points and the end of every element of a beam.
 
-    normal: force along the section's normal [N] (> 0 in tension); shear: force across it [N]; moment about the axis
-    [N m] (> 0 if it increases the rotation along the beam); arc_length (stations,) [m]. Nodes, and points where loads
-    act, are listed twice: just before and just after them. Section forces balance each other and all loads on the
-    deformed beam, inertia included, exactly on any mesh.
+    Nodes, and points where loads act, are listed twice: just before and just after them. Section forces balance each
+    other and all loads on the deformed beam, inertia included, exactly on any mesh.
+
+    Parameters
+    ----------
+    arc_length : array, [m], (stations,)
+        Arc lengths of the stations.
+    normal : array, [N], (steps, stations)
+        Force along the section's normal, > 0 in tension.
+    shear : array, [N], (steps, stations)
+        Force across the normal.
+    moment : array, [N m], (steps, stations)
+        Moment about the axis, > 0 if it increases the rotation along the beam.
+
+    Examples
+    --------
+    >>> forces = solution.section_forces(beam)
+    >>> round(float(forces.shear[-1, 0]), -1)  # at the clamp
+    -10000.0
     """
 
     arc_length: np.ndarray

@@ -17,7 +17,25 @@ _STRIPS = 6  # Gauss points over each layer
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer of a material and a thickness [m]. Raises InputError."""
+    """A layer of a layered section.
+
+    Parameters
+    ----------
+    material : Material
+        Material of the layer.
+    thickness : float, [m]
+        Thickness of the layer.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> bf.Layer(steel, 0.002).thickness
+    0.002
+    """
 
     material: Material
     thickness: float
@@ -30,10 +48,32 @@ class Layer:
 
 @dataclass(frozen=True)
 class Layered:
-    """Rectangular layers of one width [m], the first at the bottom (y < 0); the beam brings no material.
+    """Rectangular layers of one width, each with its own material.
 
-    The beam's axis is at mid-height, or `axis` [m] above the bottom; a neutral axis elsewhere couples stretch with
-    curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis. Raises InputError.
+    A beam of this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
+    curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layers from the bottom (y < 0) to the top.
+    width : float, [m]
+        Width of all layers.
+    axis : float, [m], optional
+        Height of the beam's axis above the bottom, by default mid-height.
+    shear_factor : float, [-], default 5/6
+        Shear correction factor k_s.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> brass = bf.Material(youngs_modulus=1.0e11, poisson_ratio=0.34, density=8500.0)
+    >>> bf.Layered([bf.Layer(steel, 0.001), bf.Layer(brass, 0.002)], width=0.02).height
+    0.003
     """
 
     layers: Sequence[Layer]

@@ -18,12 +18,35 @@ _STRIPS = 8  # Gauss points over the height, for a body whose reference is curve
 
 @dataclass(frozen=True)
 class Section:
-    """Section by its area moments; without `fourth_moment` that of the rectangle of the same area and second moment.
+    """Section given by its area moments.
 
-    area A [m^2], second_moment I [m^4], shear_factor k_s [-], fourth_moment I4 = integral of y^4 dA [m^6].
-    For a rectangle h = sqrt(12 I / A) and I4 = A h^4 / 80.
-    height [m], centroid [m] above the lower face (the default is mid-height): where the faces are, for bodies and their
-    stress. Without a height the body is drawn as that rectangle and its faces have no stress. Raises InputError.
+    Parameters
+    ----------
+    area : float, [m^2]
+        Area A.
+    second_moment : float, [m^4]
+        Second moment of area I.
+    shear_factor : float, [-], default 5/6
+        Shear correction factor k_s.
+    fourth_moment : float, [m^6], optional
+        I4 = integral of y^4 dA, by default that of the rectangle of the same area and second moment, I4 = A h^4 / 80
+        with h = sqrt(12 I / A).
+    height : float, [m], optional
+        Height, for the faces of the body and their stress. Without a height the body is drawn as that rectangle and its
+        faces have no stress.
+    centroid : float, [m], optional
+        Height of the centroid above the lower face, by default mid-height.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    Examples
+    --------
+    >>> ipe100 = bf.Section(area=10.3e-4, second_moment=171e-8, shear_factor=0.4, height=0.1)
+    >>> ipe100.bounds
+    (-0.05, 0.05)
     """
 
     area: float
@@ -68,10 +91,40 @@ class Section:
     def from_stiffness(
         axial: float, shear: float, bending: float, mass: float, rotary_inertia: float, coupling: float = 0.0
     ) -> StiffnessSection:
-        """Return a section by its stiffness: E A [N], k_s G A [N], E I [N m^2], mass [kg/m], rotary inertia [kg m].
+        """Return a section given by its stiffness, which needs no material.
 
-        coupling [N m] of stretch with curvature, from a neutral axis off the beam's axis: N = E A eps + C kappa,
-        M = C eps + E I kappa. Needs no material. Raises InputError.
+        With coupling, from a neutral axis that is not on the beam's axis, N = E A eps + C kappa and M = C eps + E I
+        kappa.
+
+        Parameters
+        ----------
+        axial : float, [N]
+            Axial stiffness E A.
+        shear : float, [N]
+            Shear stiffness k_s G A.
+        bending : float, [N m^2]
+            Bending stiffness E I.
+        mass : float, [kg/m]
+            Mass per length.
+        rotary_inertia : float, [kg m]
+            Rotary inertia per length.
+        coupling : float, [N m], default 0
+            Coupling C of stretch with curvature.
+
+        Returns
+        -------
+        StiffnessSection
+            The section.
+
+        Raises
+        ------
+        InputError
+            For an invalid value.
+
+        Examples
+        --------
+        >>> section = bf.Section.from_stiffness(axial=1e6, shear=4e5, bending=50.0, mass=0.8, rotary_inertia=1e-4)
+        >>> rod = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), section)
         """
         return StiffnessSection(axial, shear, bending, mass, rotary_inertia, coupling)
 

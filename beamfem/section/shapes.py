@@ -26,7 +26,33 @@ class ShapedSection(Section):
 
 
 def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Section:
-    """Return the rectangular section width [m] (out of the plane) x height [m] (along y). Raises InputError."""
+    """Return a rectangular section.
+
+    Parameters
+    ----------
+    width : float, [m]
+        Size out of the plane.
+    height : float, [m]
+        Size along y.
+    shear_factor : float, [-], default 5/6
+        Shear correction factor k_s.
+
+    Returns
+    -------
+    Section
+        Section with A = width height and I = width height^3 / 12.
+
+    Raises
+    ------
+    InputError
+        For a size that is not positive.
+
+    Examples
+    --------
+    >>> section = bf.Rectangle(0.05, 0.1)
+    >>> round(section.area, 6), round(section.second_moment, 9)
+    (0.005, 4.167e-06)
+    """
     width, height = positive("width of Rectangle", width), positive("height of Rectangle", height)
     positive("shear_factor of Rectangle", shear_factor)
     outline = RectangleOutline(width, -0.5 * height, 0.5 * height)
@@ -36,9 +62,32 @@ def Rectangle(width: float, height: float, shear_factor: float = 5 / 6) -> Secti
 
 
 def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
-    """Return the full circular section of a diameter [m]: A = pi d^2/4, I = pi d^4/64, I4 = pi d^6/512.
+    """Return a full circular section.
 
-    shear_factor: 9/10 by the energy of Jourawski's stress. Raises InputError.
+    Its moments are A = pi d^2/4, I = pi d^4/64 and I4 = pi d^6/512.
+
+    Parameters
+    ----------
+    diameter : float, [m]
+        Diameter d.
+    shear_factor : float, [-], default 9/10
+        Shear correction factor k_s; 9/10 follows from the energy of Jourawski's shear stress.
+
+    Returns
+    -------
+    Section
+        The section.
+
+    Raises
+    ------
+    InputError
+        For a diameter that is not positive.
+
+    Examples
+    --------
+    >>> section = bf.Circle(0.1)
+    >>> round(section.area, 6), round(section.second_moment, 9)
+    (0.007854, 4.909e-06)
     """
     diameter = positive("diameter of Circle", diameter)
     positive("shear_factor of Circle", shear_factor)
@@ -46,9 +95,32 @@ def Circle(diameter: float, shear_factor: float = 0.9) -> Section:
 
 
 def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Section:
-    """Return the circular tube of an outer diameter [m] and a wall thickness [m].
+    """Return a circular tube.
 
-    shear_factor: 1/2, right for a thin wall; a full circle has 9/10. Raises InputError.
+    Parameters
+    ----------
+    diameter : float, [m]
+        Outer diameter.
+    thickness : float, [m]
+        Wall thickness.
+    shear_factor : float, [-], default 1/2
+        Shear correction factor k_s; 1/2 is right for a thin wall, a full circle has 9/10.
+
+    Returns
+    -------
+    Section
+        The section.
+
+    Raises
+    ------
+    InputError
+        For a size that is not positive, or a wall thicker than half the diameter.
+
+    Examples
+    --------
+    >>> section = bf.Tube(0.1, 0.005)
+    >>> round(section.area, 6), round(section.second_moment, 9)
+    (0.001492, 1.688e-06)
     """
     diameter, thickness = positive("diameter of Tube", diameter), positive("thickness of Tube", thickness)
     positive("shear_factor of Tube", shear_factor)

@@ -28,10 +28,29 @@ _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 class Sweep:
     """Results of a sweep, one row per point, the last parameter varying fastest; `sweep[name]` is an array.
 
-    parameters: those of each point. values: what the function returned, None if it failed. seconds: duration of each
-    call.
-    shape: number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
-    computed: number of points called in this run; the others were read from the store.
+    Parameters
+    ----------
+    parameters : tuple of mapping
+        Parameters of each point.
+    values : tuple
+        What the function returned, None if it failed.
+    failures : tuple of Failure
+        The calls that failed.
+    seconds : array, [s], (points,)
+        Duration of each call.
+    shape : tuple of int
+        Number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
+    computed : int
+        Number of points called in this run; the others were read from the store.
+    labels : tuple of mapping
+        Text of each varied parameter.
+
+    Examples
+    --------
+    >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
+    >>> results["moment"].reshape(results.shape)
+    array([[ 3.,  5.],
+           [ 6., 10.]])
     """
 
     parameters: tuple[Mapping[str, Any], ...]
@@ -169,18 +188,50 @@ def sweep(
 ) -> Sweep:
     """Call a function at every combination of the given values and return all results.
 
-    function: returns a number, an array, a Solution or a mapping of named ones; a store saves solutions as files in a
-    folder beside it. parameters: lists, tuples, ranges and one-dimensional arrays are varied, everything else is passed
-    on unchanged.
-    executor: a class, or a function without arguments, that creates a `concurrent.futures.Executor`; with None the
-    calls run in this process, one after the other. store: a file or folder that saves each result as it arrives; the
-    next run of the same function with the same parameters reads it. If one of the user files that the function
-    depends on (its constants, helpers, and their imports) has changed since, a `ChangedCodeWarning` is given and the
-    points are computed again; keep_stale: use the old results instead. A call that fails or kills its worker is listed
-    in `failures` and the sweep continues; the next run tries it again. On an interrupt, the KeyboardInterrupt carries
-    the results so far as its `sweep`, and workers are stopped at once. If the store can no longer be written, a
-    `NotStoredWarning` is given and the sweep continues.
-    Raises InputError; FileError for a store that cannot be opened; BeamfemError if no worker starts.
+    Parameters
+    ----------
+    function : callable
+        Returns a number, an array, a Solution or a mapping of named ones. A store saves solutions as files in a folder
+        beside it.
+    executor : callable, optional
+        A class, or a function without arguments, that creates a `concurrent.futures.Executor`. By default the calls run
+        in this process, one after the other.
+    store : path, optional
+        A file or folder that saves each result as it arrives; the next run of the same function with the same
+        parameters reads it.
+    keep_stale : bool, default False
+        Use stored results even if the code that they depend on has changed since. By default a `ChangedCodeWarning` is
+        given and the points are computed again if one of the user files that the function depends on (its constants,
+        helpers, and their imports) has changed.
+    **parameters
+        Arguments of the function. Lists, tuples, ranges and one-dimensional arrays are varied; everything else is
+        passed on unchanged.
+
+    Returns
+    -------
+    Sweep
+        One row per point, the last parameter varying fastest.
+
+    Raises
+    ------
+    InputError
+        If the function or the parameters are invalid.
+    FileError
+        If the store cannot be opened.
+    BeamfemError
+        If no worker starts.
+
+    Notes
+    -----
+    A call that fails or kills its worker is listed in `failures` and the sweep continues; the next run tries it again.
+    On an interrupt, the KeyboardInterrupt carries the results so far as its `sweep`, and workers are stopped at once.
+    If the store can no longer be written, a `NotStoredWarning` is given and the sweep continues.
+
+    Examples
+    --------
+    >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
+    >>> results["moment"]
+    array([ 3.,  5.,  6., 10.])
     """
     keep_stale = flag("keep_stale", keep_stale)
     varied, fixed = split(parameters)

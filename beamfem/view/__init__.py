@@ -1,22 +1,24 @@
 """Pictures and pages; what draws them is imported at the first call."""
 
 from beamfem.model.model import Model
+from beamfem.model.model_outputs import ModelOutputs
 from beamfem.registry import offer
+from beamfem.results.pictures import Pictures
 from beamfem.results.solution import Solution
 from beamfem.solve.modes.modes import Modes
 from beamfem.solve.stability.buckling import Buckling
 
-offer(Solution.plot, "beamfem.view.drawing:plot_shapes")
-offer(Solution.plot_curve, "beamfem.view.curve:plot_curve")
-offer(Solution.plot_history, "beamfem.view.history:plot_history")
-offer(Solution.plot_load_displacement, "beamfem.view.history:plot_load_displacement")
-offer(Solution.animate, "beamfem.view.animation:animate")
-offer(Solution.show, "beamfem.view.body:show")
-offer(Solution.picture, "beamfem.view.body:picture")
-offer(Solution.to_html, "beamfem.view.player:write_player")
+offer(Pictures.plot, "beamfem.view.drawing:plot_shapes")
+offer(Pictures.plot_curve, "beamfem.view.curve:plot_curve")
+offer(Pictures.plot_history, "beamfem.view.history:plot_history")
+offer(Pictures.plot_load_displacement, "beamfem.view.history:plot_load_displacement")
+offer(Pictures.animate, "beamfem.view.animation:animate")
+offer(Pictures.show, "beamfem.view.body:show")
+offer(Pictures.picture, "beamfem.view.body:picture")
+offer(Pictures.to_html, "beamfem.view.player:write_player")
 offer(Modes.plot, "beamfem.view.mode_shapes:plot_modes")
 offer(Buckling.plot, "beamfem.view.mode_shapes:plot_buckling")
-offer(Model.plot, "beamfem.view.model_drawing:plot_model")
+offer(ModelOutputs.plot, "beamfem.view.model_drawing:plot_model")
 offer(Model._repr_html_, "beamfem.view.summary:model_table")
 offer(Solution._repr_html_, "beamfem.view.summary:solution_table")
 offer(Modes._repr_html_, "beamfem.view.summary:modes_table")

@@ -1,4 +1,4 @@
-"""Beams of a model file, what holds, joins and connects them and what acts on them."""
+"""Beams of a model file, with their supports, joints, connectors and loads."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -47,7 +47,7 @@ JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
 
 @dataclass(frozen=True)
 class Structure:
-    """Beams and frames of a file by name, what they are made of, and where a crooked model has them."""
+    """Beams and frames of a file by name, the parts they are made of, and their places in an imperfect model."""
 
     beams: Mapping[str, Beam]
     frames: Mapping[str, Frame]
@@ -56,7 +56,7 @@ class Structure:
 
     @property
     def places(self) -> Places:
-        """What reads points and beams."""
+        """The reader of points and beams."""
         return Places(self.beams, self.frames, self.moved)
 
     @property
@@ -135,7 +135,7 @@ def model(root: Table, known: Structure, function: Named, moving: bool) -> Model
 
 
 def _each_place(table: Table, kinds: Kinds, places: Places) -> list[Table]:
-    """Return a table for each of its `points` or `beams`, where it has them in place of one. Raises ModelFileError."""
+    """Return a table for each of its `points` or `beams`, if it has several. Raises ModelFileError."""
     kind = table.values.get("kind")
     taken = signature(kinds[kind]).parameters if isinstance(kind, str) and kind in kinds else {}
     several: Sequence[tuple[str, str, Callable[[Table, str], Sequence[Any]]]] = (
@@ -152,7 +152,7 @@ def _each_place(table: Table, kinds: Kinds, places: Places) -> list[Table]:
 
 
 def _require_compatible(root: Table, model: Model, places: Places, static: bool) -> None:
-    """Raise ModelFileError at the first support that holds what another one holds already."""
+    """Raise ModelFileError at the first support that constrains what another one constrains already."""
 
     def check(supports: Sequence[Support]) -> None:
         system = System(Model(model.beams, supports, joints=model.joints), static)

@@ -1,4 +1,4 @@
-"""The analysis of a model file: its parameters, checked before it runs, and what it finds."""
+"""The analysis of a model file: its parameters, checked before it runs, and its results."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -29,7 +29,7 @@ from beamfem.validation import count, finite, items, one_of, optional, positive
 
 @dataclass(frozen=True)
 class Static:
-    """Equilibria from load factor 0 to 1; see `solve_static`, also for `at`, the load factors to have states at."""
+    """Equilibria from load factor 0 to 1; see `solve_static`, also for `at`, the load factors of the states."""
 
     steps: int = 1
     newton: Newton | None = None
@@ -59,7 +59,7 @@ class Static:
 
 @dataclass(frozen=True)
 class Buckling:
-    """Critical load factors; about: where the path starts; mode (from 1) is the one to save and draw, its size in m."""
+    """Critical load factors; about: start of the path; mode (from 1): the one to save and draw, with amplitude [m]."""
 
     count: int = 1
     mode: int = 1
@@ -84,9 +84,9 @@ class Buckling:
 
 @dataclass(frozen=True)
 class Modes:
-    """Frequencies, about a static equilibrium; loaded: that under the loads; mode (from 1): the one to save and draw.
+    """Frequencies about a static equilibrium; loaded: the one under the loads; mode (from 1): the one to save and draw.
 
-    amplitude [m] of it, and in how many frames.
+    amplitude [m] and frames: its largest displacement and number of states.
     """
 
     count: int = 10
@@ -119,7 +119,7 @@ class Modes:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """A motion; start: the state that it starts from; integrator: a user-defined one in place of `rho_inf`."""
+    """A motion; start: the initial state; integrator: a user-defined one instead of `rho_inf`."""
 
     duration: float
     step: float
@@ -199,7 +199,7 @@ def analysis(root: Table, places: Places) -> Analysis:
 
 
 def _function(table: Table) -> Callable[..., Any]:
-    """Return the function of the user's that a table names. Raises ModelFileError."""
+    """Return the user-defined function that a table names. Raises ModelFileError."""
     table.require_known(("function",))
     return own_code(table, "function")
 

@@ -41,7 +41,7 @@ def curve(table: Table, key: str) -> Any:
 
 
 def elements_along(table: Table, key: str) -> int | Sequence[float] | str:
-    """Return what `elements` of a beam says: a number, fractions, "knots" or a graded mesh. Raises ModelFileError."""
+    """Return `elements` of a beam: a number, fractions, "knots" or a graded mesh. Raises ModelFileError."""
     value = table.values[key]
     if isinstance(value, dict):
         value = build_kind(table.table(key), MESHES, {})

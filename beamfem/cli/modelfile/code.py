@@ -1,4 +1,4 @@
-"""Python that a model file names in its `code`: classes and functions of the user's, beside the model file."""
+"""Python file that a model file names in its `code`: user-defined classes and functions."""
 
 import sys
 import traceback
@@ -33,8 +33,7 @@ class Code:
 def run_code(folder: Path, name: str) -> Code:
     """Run a Python file of a folder, once, and return what it defines. Raises InputError.
 
-    Nothing else is run: neither files of other folders nor installed modules can be named, so that a model file alone
-    runs nothing.
+    Neither files of other folders nor installed modules can be named, so that a model file alone cannot run any code.
     """
     file = folder / name
     if Path(name).name != name or file.suffix != ".py" or not file.stem.isidentifier():
@@ -46,7 +45,7 @@ def run_code(folder: Path, name: str) -> Code:
 
 
 def _require_own_name(file: Path) -> None:
-    """Raise InputError if another module has the name, which would be taken in its place somewhere."""
+    """Raise InputError if another module has the same name, since imports could confuse them."""
     installed = PathFinder.find_spec(file.stem)
     origin = installed.origin if installed is not None else None
     if file.stem in sys.stdlib_module_names or (origin is not None and Path(origin).resolve() != file.resolve()):
@@ -59,9 +58,9 @@ def _run(file: Path) -> ModuleType:
     assert spec.loader is not None
     module = module_from_spec(spec)
     before = sys.modules.get(file.stem)
-    sys.modules[file.stem] = module  # classes are looked up there, by dataclasses and by pickle
+    sys.modules[file.stem] = module  # dataclasses and pickle look classes up there
     folder = str(file.parent.resolve())
-    sys.path.append(folder)  # for files beside it, which take the place of no other module
+    sys.path.append(folder)  # for files beside it, which do not replace other modules
     try:
         spec.loader.exec_module(module)
     except Exception as error:

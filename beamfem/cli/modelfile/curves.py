@@ -1,4 +1,4 @@
-"""Curves that a model file asks to draw: one quantity of a point over another, over time or over the load factor."""
+"""Curves to draw for a model file: one quantity of a point over another, over time or over the load factor."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,7 +56,7 @@ def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tup
     found = []
     for table in root.tables("curves"):
         if not analysis.states:
-            raise table.error("this analysis has nothing to draw a curve of; curves go with static, path and dynamics")
+            raise table.error("this analysis has no states to draw a curve of; curves need static, path or dynamics")
         found.append(build(table, OutputCurve, {"file": file, "x": quantity, "y": quantity}))
     return tuple(found)
 

@@ -9,7 +9,7 @@ from beamfem.validation import count
 
 
 def from_drawing(file: Path, layer: str | None = None, number: int | None = None) -> Curve:
-    """Return the curve of a DXF file, of one layer or of all; number: which one, from 1, where there are several.
+    """Return a curve of a DXF file, of one layer or of all; number: which one, from 1, if there are several.
 
     Raises InputError.
     """

@@ -1,4 +1,4 @@
-"""Elements of a model file: presets, and those put together of a field, coordinates and forces."""
+"""Elements of a model file: presets, and combinations of a field, coordinates and forces."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ _NEED_MORE = ("CRBF", "Element")
 
 
 def elements(root: Table) -> Named:
-    """Return the elements of a file; presets go without a name as well."""
+    """Return the elements of a file; presets need no entry of their own."""
 
     def named(what: str, kinds: Kinds) -> Named:
         return Named(what, {}, {}, lambda table: build_own_or_kind(table, kinds, {}, {}), tuple(kinds))

@@ -1,4 +1,4 @@
-"""What is wrong in a model file, and where."""
+"""Errors in a model file, with their place."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from beamfem.errors import InputError
 
 
 class ModelFileError(InputError):
-    """A mistake in a model file; the message begins with `file:line: key:`."""
+    """An error in a model file; the message begins with `file:line: key:`."""
 
     def __init__(self, message: str, file: Path, line: int | None, key: str | None) -> None:
         where = f"{file}:{line}" if line else str(file)

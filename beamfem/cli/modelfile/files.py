@@ -1,4 +1,4 @@
-"""Files that a model file asks to write: results, pictures, pages and films, each with its options."""
+"""Files to write for a model file: results, pictures, pages and films, each with its options."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _HISTORY = ("displacement", "ux", "uy", "position", "velocity", "rotation", "for
 
 
 class OutputFile(Protocol):
-    """What every file to write offers; require: raises InputError if a model or an analysis cannot fill it."""
+    """Interface of files to write; require: raises InputError if a model or an analysis cannot provide the data."""
 
     @property
     def file(self) -> Path: ...
@@ -41,7 +41,7 @@ class _OfAny:
     """A file of any model and analysis."""
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse nothing."""
+        """Accept every model and analysis."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Results(_OfAny):
     file: Path
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse parts that cannot be saved."""
+        """Reject parts that cannot be saved."""
         require_saved(model)
 
     def write(self, found: Found) -> None:
@@ -75,7 +75,7 @@ class Vtk(_OfAny):
             items("fields", self.fields)
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse fields that there are not."""
+        """Reject unknown fields."""
         if self.fields is not None:
             moving = analysis.moving or isinstance(analysis, Modes)
             content = Content(fields=tuple(self.fields))
@@ -190,7 +190,7 @@ class History:
             raise InputError('points are needed, or quantity = "energy", which is of the whole model')
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse what has no states to draw."""
+        """Reject analyses without states to draw."""
         _require_states(analysis)
 
     def write(self, found: Found) -> None:
@@ -209,7 +209,7 @@ class LoadDisplacement:
         one_of("quantity", self.quantity, ("ux", "uy", "rotation"))
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse what has no load factors."""
+        """Reject analyses without load factors."""
         _require_states(analysis)
         if analysis.moving:
             raise InputError("a motion has no load factor to draw; these go with static and path")
@@ -229,7 +229,7 @@ class Shapes:
         count("most", self.most)
 
     def require(self, model: Model, analysis: Analysis) -> None:
-        """Refuse what finds no modes."""
+        """Reject analyses without modes."""
         if analysis.states:
             raise InputError("this analysis finds no modes; these go with buckling and modes")
 
@@ -263,7 +263,7 @@ FILES: Kinds = {
 
 
 def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tuple[OutputFile, ...]:
-    """Return the files that a model file asks for. Raises ModelFileError."""
+    """Return the files that a model file requests. Raises ModelFileError."""
 
     def file(table: Table, key: str) -> Path:
         target = table.source.file.parent / table.text(key)
@@ -291,12 +291,12 @@ def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tupl
 
 
 def require_saved(model: Model) -> None:
-    """Raise InputError if a model has parts that no results file can hold."""
+    """Raise InputError if a model has parts that cannot be saved in a results file."""
     describe(model, np.zeros(1))
 
 
 def _at_rest(model: Model, static: bool) -> Solution:
-    """Return a model without stress as a solution of one row, which has the names of all fields."""
+    """Return the stress-free model as a solution of one row, which has the names of all fields."""
     p = System(model, static).reference[None]
     return Solution(model, static, np.zeros(1), p, np.zeros_like(p), np.zeros_like(p), Statistics(0, 0, 0, ""))
 

@@ -1,4 +1,4 @@
-"""What every analysis of a model file offers, and what it finds."""
+"""Interface of the analyses of a model file, and their results."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from beamfem.solve.stability.buckling import Buckling
 
 @dataclass(frozen=True)
 class Found:
-    """States to draw, save and ask, and what the analysis found besides, by name."""
+    """States to draw, save and evaluate, and further results of the analysis by name."""
 
     solution: Solution
     values: dict[str, Any] = field(default_factory=dict)
@@ -20,10 +20,10 @@ class Found:
 
 
 class Analysis(Protocol):
-    """What every analysis offers; states: whether its states answer the outputs of a file.
+    """Interface of an analysis; states: whether it has states for the outputs of a file.
 
-    span: lowest and highest load factor or time [s] that it can have states at; at: those that are asked for, which get
-    a state where the analysis is free to choose.
+    span: lowest and highest load factor or time [s] of its states; at: the requested ones, at which the analysis has a
+    state if it can choose its steps.
     """
 
     @property

@@ -1,4 +1,4 @@
-"""Functions of time, of the load factor or of the arc length, that a model file can describe."""
+"""Functions of time, load factor or arc length that a model file can describe."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -15,7 +15,7 @@ from beamfem.validation import count, one_of, positive
 class Imperfection:
     """The largest displacement of an axis, `size` [m], by a mode, counted from 1, of buckling or of vibration.
 
-    about: the equilibrium of the perfect model that it is a mode of.
+    about: the equilibrium of the perfect model about which the mode is computed.
     """
 
     size: float
@@ -35,7 +35,7 @@ class Imperfection:
 
 
 def imperfection(root: Table) -> Imperfection | None:
-    """Return the imperfection of a file, if it has one. Raises ModelFileError."""
+    """Return the imperfection of a file, None if it has none. Raises ModelFileError."""
     if "imperfection" not in root.values:
         return None
     found: Imperfection = build(root.table("imperfection"), Imperfection, {"about": start})

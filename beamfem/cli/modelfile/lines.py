@@ -1,6 +1,6 @@
 """The line of every key of a TOML text; tomllib gives the values only.
 
-The text has been read by tomllib before, so that nothing here has to be refused.
+The text has already been parsed by tomllib, so that no errors need to be handled here.
 """
 
 import re
@@ -76,7 +76,7 @@ class _Scan:
         return path
 
     def keys(self) -> Path:
-        """Read a dotted key, up to what follows it."""
+        """Read a dotted key up to the character after it."""
         keys = []
         while True:
             self.skip()
@@ -88,7 +88,7 @@ class _Scan:
             self.at += 1
 
     def string(self) -> str:
-        """Read a string where one begins."""
+        """Read the string that begins here."""
         for pattern in _STRINGS:
             if found := self.match(pattern):
                 return found

@@ -1,4 +1,4 @@
-"""Parts that a model file gives a name, and numbers or functions in their place."""
+"""Named parts of a model file, and numbers or functions given by name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from beamfem.validation import nearest
 
 @dataclass(frozen=True)
 class Named:
-    """Parts that a file gives a name, to be used by it; each is made once."""
+    """Named parts of a file, to be referred to by name; each is made once."""
 
     kind: str
     tables: Mapping[str, Table]
     made: dict[str, Any]
     make: Callable[[Table], Any]
-    short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name alone will do
+    short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name is enough
 
     def __call__(self, table: Table, key: str) -> Any:
         """Return the part at a key: a name, a table of its own, or a kind alone. Raises ModelFileError."""
@@ -37,13 +37,13 @@ class Named:
         return self.made[name]
 
     def check_all(self) -> None:
-        """Make every part, so that a mistake in one that is not used is found too."""
+        """Make every part, so that errors in unused ones are found too."""
         for name in self.tables:
             self.part(name)
 
 
 def value_by(function: Named) -> Reader:
-    """Return what reads a number, or a function by name or as a table."""
+    """Return the reader of a number, or of a function by name or as a table."""
 
     def value(table: Table, key: str) -> Any:
         given = table.values[key]

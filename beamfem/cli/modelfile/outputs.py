@@ -1,4 +1,4 @@
-"""What a model file asks to print: quantities of points, of beams, of connectors or of the whole model."""
+"""Outputs to print for a model file: quantities of points, beams, connectors or the whole model."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ _NEAR = 1e-9
 class Output:
     """Quantities of a point, of a beam (along its stations), of a connector, or of the model; at: which states.
 
-    at: "last", "all", or a list of times [s] or load factors: static solves have a state there, motions and paths give
+    at: "last", "all", or a list of times [s] or load factors: static solves have a state at each, motions and paths use
     the nearest one.
     """
 
@@ -61,7 +61,7 @@ class Output:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Quantities that can be asked here."""
+        """Quantities available here."""
         return self._kind[0]
 
     @property
@@ -77,7 +77,7 @@ class Output:
         return (tuple(OF_MODEL), "of the model") if self.connector is None else (tuple(OF_CONNECTOR), "of a connector")
 
     def rows(self, solution: Solution) -> list[dict[str, Any]]:
-        """Return a row for each state asked for: its time [s] or load factor, and the quantities."""
+        """Return a row for each requested state: its time [s] or load factor, and the quantities."""
         chosen = self._chosen(solution)
         columns = self._columns(solution)
         axis = "load_factor" if solution.static else "time"
@@ -95,7 +95,7 @@ class Output:
 
     @property
     def asked(self) -> list[float]:
-        """Times [s] or load factors that are asked for as numbers."""
+        """Times [s] or load factors that are requested as numbers."""
         return [] if isinstance(self.at, str) else [float(value) for value in self.at]
 
     def _chosen(self, solution: Solution) -> list[int]:
@@ -132,7 +132,7 @@ class Output:
 def outputs(
     root: Table, places: Places, model: Model, analysis: Analysis, connectors: Mapping[str, Contribution]
 ) -> list[Output]:
-    """Return what a file asks to print; connectors: by name. Raises ModelFileError."""
+    """Return the outputs of a file; connectors: by name. Raises ModelFileError."""
 
     def connector(table: Table, key: str) -> Contribution:
         name = table.text(key)
@@ -158,7 +158,7 @@ def outputs(
 
 
 def require_supported(table: Table, key: str, model: Model, point: Point, quantities: Sequence[str]) -> None:
-    """Raise ModelFileError if a reaction is asked for at a point without a support."""
+    """Raise ModelFileError if a reaction is requested at a point without a support."""
     reactions = [quantity for quantity in quantities if QUANTITIES.get(quantity, ("",))[0] == "reaction"]
     supported = {(id(support.point.beam), support.point.fraction) for support in model.point_supports}
     if reactions and (id(point.beam), point.fraction) not in supported:
@@ -181,7 +181,7 @@ def _alone(path: Path, state: PathState) -> Solution:
 
 
 def _output(number: int) -> Any:
-    """Return what makes an output; without a name it is called by its number."""
+    """Return a function that makes an output, named by its number by default."""
 
     def make(
         quantities: Sequence[str],

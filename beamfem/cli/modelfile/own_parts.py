@@ -1,4 +1,4 @@
-"""Parts of a model file that are made by classes of the user's: parameters are keys, read by their types."""
+"""Parts of a model file made by user-defined classes, whose parameters are keys, read by their types."""
 
 import inspect
 import typing
@@ -9,16 +9,16 @@ from typing import Any
 from beamfem.cli.modelfile.table import Kinds, Reader, Table, build, build_kind
 from beamfem.errors import InputError
 
-Types = Mapping[Any, Reader]  # how values are read of parameters of a type; Callable: functions of one number
+Types = Mapping[Any, Reader]  # readers of values by the type of the parameter; Callable: functions of one number
 
 
 def build_own_or_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], types: Types) -> Any:
-    """Return what a table with a `class` of the user's describes, or one with a `kind`. Raises ModelFileError."""
+    """Return the part of a table with a user-defined `class`, or with a `kind`. Raises ModelFileError."""
     return build_own(table, types) if "class" in table.values else build_kind(table, kinds, readers)
 
 
 def build_own(table: Table, types: Types) -> Any:
-    """Return what the class that a table names makes of its other keys. Raises ModelFileError."""
+    """Return the object that the class of a table makes of its other keys. Raises ModelFileError."""
     if "class" not in table.values:
         raise table.error("the key class is missing: the name of a class in the file that `code` names")
     name = table.text("class")
@@ -45,7 +45,7 @@ def build_own(table: Table, types: Types) -> Any:
 
 
 def own_code(table: Table, key: str) -> Callable[..., Any]:
-    """Return the class or function of the user's that a key names. Raises ModelFileError."""
+    """Return the user-defined class or function that a key names. Raises ModelFileError."""
     name, code = table.text(key), table.source.code
     if code is None:
         raise table.error(
@@ -62,7 +62,7 @@ def _hints(maker: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _reader(hint: Any, types: Types) -> Reader | None:
-    """Return what reads a value of a type, or None if it is taken as it is."""
+    """Return the reader of values of a type, or None if they are taken unchanged."""
     parts = typing.get_args(hint) if typing.get_origin(hint) in (typing.Union, UnionType) else (hint,)
     if Callable in types and any(_is_function(part) for part in parts):
         return types[Callable]
@@ -87,7 +87,7 @@ def _list_of(reader: Reader) -> Reader:
 
 
 def _tuple(table: Table, key: str) -> Any:
-    """Return arrays as tuples, which dataclasses that are compared by value need."""
+    """Return arrays as tuples, as needed by dataclasses that are compared by value."""
 
     def tuples(value: Any) -> Any:
         return tuple(map(tuples, value)) if isinstance(value, list) else value

@@ -1,4 +1,4 @@
-"""Equilibrium paths of a model file, and the bifurcations that branches start from."""
+"""Equilibrium paths of a model file, and the bifurcations at which branches start."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ from beamfem.validation import count, finite, positive
 
 @dataclass(frozen=True)
 class Until:
-    """Where a path ends: a displacement [m] or rotation [rad] of a point below or above a value."""
+    """End of a path: a displacement [m] or rotation [rad] of a point below or above a value."""
 
     point: Point
     quantity: str
@@ -42,7 +42,7 @@ class Until:
 
 @dataclass(frozen=True)
 class Trace:
-    """An equilibrium path, past limit points: from load factor 0, or from a bifurcation of another one."""
+    """An equilibrium path, past limit points: from load factor 0, or from a bifurcation of another path."""
 
     until: float | Callable[[PathState], bool] | None = None
     points: int = 500
@@ -64,7 +64,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Crossing:
-    """A bifurcation, counted from 1, of the path that its other keys describe as those of an analysis do."""
+    """A bifurcation, counted from 1, of the path described by its other keys, which are those of an analysis."""
 
     bifurcation: int = 1
     until: float | Callable[[PathState], bool] | None = None

@@ -1,4 +1,4 @@
-"""What means a beam of a model file, or a point of one."""
+"""References to beams of a model file and to points of them."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -17,30 +17,30 @@ _SET = re.compile(r"(?P<frame>[^.]+)\.(?P<set>.+)")
 
 @dataclass(frozen=True)
 class Moved:
-    """Beams of a crooked model in the place of straighter ones, by identity, and points where these have moved."""
+    """Beams and points of an imperfect model that replace those of the perfect one, by identity."""
 
     beams: Mapping[int, Beam] = field(default_factory=dict)
     points: Mapping[tuple[int, float], Point] = field(default_factory=dict)
 
     def beam(self, beam: Beam) -> Beam:
-        """Return the beam in the place of another."""
+        """Return the beam that replaces another."""
         return self.beams.get(id(beam), beam)
 
     def point(self, point: Point) -> Point:
-        """Return the point in the place of another; where nothing acts, that at the same fraction."""
+        """Return the point that replaces another; if nothing acts there, the one at the same fraction."""
         moved = self.points.get((id(point.beam), point.fraction))
         return Point(self.beam(point.beam), point.fraction) if moved is None else moved
 
 
 def moved(old: Model, new: Model) -> Moved:
-    """Return where the beams of a model are in another that is the same part for part."""
+    """Return the replacements of the beams of a model by those of another with the same parts."""
     beams = {id(before): after for before, after in zip(old.beams, new.beams, strict=True)}
     pairs = zip(_points(old), _points(new), strict=True)
     return Moved(beams, {(id(before.beam), before.fraction): after for before, after in pairs})
 
 
 def _points(model: Model) -> list[Point]:
-    """Return all points at which something holds, loads, joins or connects beams."""
+    """Return all points with supports, loads, joints or connectors."""
     found = [support.point for support in model.point_supports] + [load.point for load in model.point_loads]
     found += [point for joint in model.joints for point in (joint.a, joint.b)]
     return found + [point for connector in model.connectors for point in connector.points]
@@ -48,7 +48,7 @@ def _points(model: Model) -> list[Point]:
 
 @dataclass(frozen=True)
 class Places:
-    """Reads what means a beam of the file, or a point of one; frames: those from mesh files, by name."""
+    """Reads references to beams of the file and to points; frames: those from mesh files, by name."""
 
     beams: Mapping[str, Beam]
     frames: Mapping[str, Frame] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""Quantities that a model file can ask for, each a function of a solution and of what it is a quantity of."""
+"""Quantities that a model file can request, each a function of a solution and of a point, beam or connector."""
 
 from collections.abc import Callable, Mapping
 from functools import partial

@@ -49,7 +49,7 @@ _KEYS = (
 
 @dataclass(frozen=True)
 class Job:
-    """What a model file describes: the model with its beams by name, the analysis, what to print, write and vary."""
+    """Contents of a model file: the model with its beams by name, the analysis, outputs, files and varied keys."""
 
     title: str
     structure: Structure
@@ -74,9 +74,9 @@ class Job:
         return {name: self.structure.moved.beam(beam) for name, beam in self.structure.beams.items()}
 
     def imperfect(self) -> "Job":
-        """Return the job of the imperfect model, where the file asks for one. Raises ModelFileError, ConvergenceError.
+        """Return the job of the imperfect model, if there is an imperfection. Raises ModelFileError, ConvergenceError.
 
-        Its mode has to be solved for, so that this comes after all checks of the file.
+        Its mode has to be solved for, so this comes after all checks of the file.
         """
         if self.imperfection is None:
             return self
@@ -87,7 +87,7 @@ class Job:
         return _job(self.root, replace(self.structure, moved=moved(self.model, model)), model, self.title, None)
 
     def solve(self) -> Found:
-        """Return what the analysis finds. Raises ModelFileError for what shows only then, ConvergenceError."""
+        """Run the analysis and return its results. Raises ConvergenceError; ModelFileError for errors found late."""
         try:
             return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
         except ModelFileError:
@@ -97,9 +97,9 @@ class Job:
 
 
 def read_model_file(path: str | PathLike[str]) -> Job:
-    """Return what a model file (TOML) describes. Raises ModelFileError with file, line and key.
+    """Return the contents of a model file (TOML). Raises ModelFileError with file, line and key.
 
-    Runs the Python file that it names in `code`, if it names one.
+    Runs the Python file that is named in `code`, if there is one.
     """
     file = Path(path)
     if file.is_char_device():
@@ -129,7 +129,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
 
 
 def _code(root: Table) -> Code | None:
-    """Run the Python that a file names, if it names any. Raises ModelFileError."""
+    """Run the Python file that a model file names, if any. Raises ModelFileError."""
     if "code" not in root.values:
         return None
     name = root.text("code")
@@ -140,7 +140,7 @@ def _code(root: Table) -> Code | None:
 
 
 def job_of(root: Table) -> Job:
-    """Return what the whole table of a file describes. Raises ModelFileError."""
+    """Return the job that the whole table of a file describes. Raises ModelFileError."""
     root.require_known(_KEYS)
     title = root.text("title") if "title" in root.values else root.source.file.stem
     function = parts.functions(root)

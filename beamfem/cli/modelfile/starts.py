@@ -1,4 +1,4 @@
-"""States that analyses of a model file start from: equilibria under loads, and states in results files."""
+"""Initial states of analyses of a model file: equilibria under loads, and states in results files."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,7 +50,7 @@ def newton(table: Table, key: str) -> Newton:
 
 
 def start(table: Table, key: str) -> Start:
-    """Return what a key says: "reference", "static", a load factor, or a table. Raises ModelFileError.
+    """Return the start at a key: "reference", "static", a load factor, or a table. Raises ModelFileError.
 
     A table has the keys of `Equilibrium`, or `file`, a results file, and `row`, from 1, by default the last.
     """

@@ -1,4 +1,4 @@
-"""A model file solved at every combination of the values that it gives to some of its keys."""
+"""A model file solved at every combination of values of its varied keys."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +22,7 @@ _NUMBERED = {
 
 @dataclass(frozen=True)
 class PointOfFile:
-    """What the analysis of a file finds with some values in place of those that are written there."""
+    """The analysis of a file with other values in place of those in the file."""
 
     root: Table
     varied: tuple[Varied, ...]
@@ -41,7 +41,7 @@ class PointOfFile:
 
 
 def solve_sweep(job: Job) -> Sweep:
-    """Return what a file with a sweep finds, a row a point. Raises ModelFileError before anything is solved."""
+    """Return the results of a file with a sweep, one row per point. Raises ModelFileError before the first solve."""
     point = PointOfFile(job.root, job.varied)
     first = {each.name: each.values[0] for each in job.varied}
     for each in job.varied:
@@ -52,7 +52,7 @@ def solve_sweep(job: Job) -> Sweep:
 
 
 def numbers(job: Job, found: Found) -> dict[str, Any]:
-    """Return what a file asks for by name, and what its analysis finds, numbered from 1."""
+    """Return the outputs of a file by name, and the results of its analysis, numbered from 1."""
     named = {
         f"{title} {number}": value
         for key, title in _NUMBERED.items()
@@ -65,7 +65,7 @@ def numbers(job: Job, found: Found) -> dict[str, Any]:
 
 
 def _require_single_rows(job: Job) -> None:
-    """Raise ModelFileError for an output that has more than a number for each quantity of a point of the sweep."""
+    """Raise ModelFileError for an output with more than one number per quantity and point of the sweep."""
     for number, output in enumerate(job.outputs, 1):
         where = f"outputs[{number}]"
         if output.beam is not None or output.connector is not None:

@@ -1,4 +1,4 @@
-"""Tables of a model file: their keys checked one by one and handed to what is made of them."""
+"""Tables of a model file: their keys are checked one by one and passed to the objects made from them."""
 
 import inspect
 import re
@@ -20,14 +20,14 @@ Reader = Callable[["Table", str], Any]  # takes a table and one of its keys
 
 @dataclass(frozen=True)
 class Source:
-    """The file that is read, the line of each of its keys, and the Python that it names."""
+    """The file that is read, the line of each of its keys, and its Python code."""
 
     file: Path
     lines: Mapping[KeyPath, int]
     code: Code | None = None
 
     def error(self, path: KeyPath, message: str) -> ModelFileError:
-        """Return the error of a key; of one that is not there, with the line of what it should be in."""
+        """Return the error of a key; for a missing key, with the line of the table that should contain it."""
         known = path
         while known and known not in self.lines:
             known = known[:-1]
@@ -47,7 +47,7 @@ class Table:
         return self.source.error(self.path if key is None else (*self.path, key), message)
 
     def refused(self, error: InputError) -> ModelFileError:
-        """Return an error of the library as one of the key that it names first, or of the table."""
+        """Return an error of the library as an error of the key that it names first, or of the table."""
         if isinstance(error, ModelFileError):
             return error
         named = {key: re.search(rf"\b{re.escape(key)}\b", str(error)) for key in self.values}
@@ -59,7 +59,7 @@ class Table:
         return self.sub(self.values[key], key)
 
     def sub(self, value: Any, *path: str | int) -> "Table":
-        """Return a value below this table as a table of its own. Raises ModelFileError if it is none."""
+        """Return a value below this table as a Table. Raises ModelFileError if it is not a table."""
         if not isinstance(value, dict):
             raise self.source.error((*self.path, *path), f"must be a table, got {shown(value)}")
         return Table(self.source, (*self.path, *path), value)
@@ -72,7 +72,7 @@ class Table:
         return [self.sub(value, key, i) for i, value in enumerate(values)]
 
     def items(self, key: str) -> list[tuple["Table", Any]]:
-        """Return each item of the array at a key as a table and its key in it. Raises ModelFileError."""
+        """Return each item of the array at a key as a table and the key in it. Raises ModelFileError."""
         values = self.values[key]
         if not isinstance(values, list):
             raise self.error(f"must be an array, got {shown(values)}", key)
@@ -96,7 +96,7 @@ class Table:
         return value
 
     def require_known(self, names: Iterable[str]) -> None:
-        """Raise ModelFileError for the first key that is none of these names."""
+        """Raise ModelFileError for the first key that is not one of these names."""
         names = list(names)
         for key in self.values:
             if key not in names:
@@ -104,9 +104,9 @@ class Table:
 
 
 def build(table: Table, make: Callable[..., Any], readers: Mapping[str, Reader] | None = None) -> Any:
-    """Return what `make` makes of a table: its parameters are the keys, `kind` aside.
+    """Return what `make` makes of a table; its parameters are the keys except `kind`.
 
-    readers: how to read the values of some keys; the others are taken as they are. Raises ModelFileError.
+    readers: readers of the values of some keys; the others are taken unchanged. Raises ModelFileError.
     """
     parameters = inspect.signature(make).parameters
     hints = typing.get_type_hints(make)
@@ -127,7 +127,7 @@ def build(table: Table, make: Callable[..., Any], readers: Mapping[str, Reader] 
 
 
 def build_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], default: str | None = None) -> Any:
-    """Return what a table with a `kind` describes; without one of the default kind. Raises ModelFileError."""
+    """Return the part that a table describes by its `kind`, or by the default kind. Raises ModelFileError."""
     if "kind" not in table.values:
         if default is not None:
             return build(table, kinds[default], readers)
@@ -139,7 +139,7 @@ def build_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], defaul
 
 
 def shown(value: Any) -> str:
-    """Return a value as a reader of the file knows it."""
+    """Return a value as written in the file."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -150,7 +150,7 @@ def shown(value: Any) -> str:
 
 
 def _plain(table: Table, key: str, hint: Any) -> Any:
-    """Return a value as it is. Raises ModelFileError for true and false where they make no sense, and the reverse."""
+    """Return a value unchanged. Raises ModelFileError for a boolean in place of another type, and the reverse."""
     value = table.values[key]
     if hint in (float, int, float | None) and isinstance(value, bool | dict | list | str):
         raise table.error(f"must be a number, got {shown(value)}", key)

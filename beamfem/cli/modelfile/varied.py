@@ -14,7 +14,7 @@ _PART = re.compile(r"(?:^|\.)(?P<key>[^.\[\]]+)|\[(?P<item>[1-9]\d*)\]")
 
 @dataclass(frozen=True)
 class Varied:
-    """A key as messages write it, loads[1].vector[2] for example, where that is, and the values that it takes."""
+    """A key as written in messages, such as loads[1].vector[2], its path in the file, and its values."""
 
     name: str
     path: Path
@@ -53,7 +53,7 @@ def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
 
 
 def _path(table: Table, root: Table) -> Path:
-    """Return where in the file the key of a sweep stands. Raises ModelFileError if it does not."""
+    """Return the path of the key of a sweep in the file. Raises ModelFileError if it is not there."""
     name, path, end = table.text("key"), [], 0
     for found in _PART.finditer(name):
         if found.start() != end:

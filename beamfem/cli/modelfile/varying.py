@@ -10,7 +10,7 @@ from beamfem.model.time_functions import kinks_of
 
 @dataclass(frozen=True)
 class Varying:
-    """A section, or a layer, of each arc length [m]: made of numbers, and of functions of it. Raises InputError."""
+    """A section, or a layer, as a function of arc length [m], made of numbers and functions. Raises InputError."""
 
     make: Callable[..., Any]
     given: Mapping[str, Any]
@@ -43,7 +43,7 @@ class VaryingList:
 
 
 def varying(make: Callable[..., Any]) -> Callable[..., Any]:
-    """Return what makes a section of numbers, and of functions one that varies along the beam."""
+    """Return a function that makes a section of numbers, or one that varies along the beam if functions are given."""
 
     @wraps(make)
     def made(**given: Any) -> Any:

@@ -1,8 +1,8 @@
 """Bifurcations between two points of an equilibrium path.
 
-The count of negative pivots says how many there are, the tangent condensed onto as many modes where. Close to a
-bifurcation round-off leads Newton's method off the path, so no equilibrium is solved for there: states, stiffness and
-modes are interpolated between points that keep their distance on both sides.
+The count of negative pivots gives their number, and the tangent condensed onto as many modes their positions. Close to
+a bifurcation round-off leads Newton's method off the path, so no equilibrium is solved for there: states, stiffness and
+modes are interpolated between points at a distance on both sides.
 """
 
 from collections.abc import Iterator
@@ -14,23 +14,24 @@ from beamfem.solve.continuation.condensed import Condensed, condensed
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
 from beamfem.solve.continuation.crossings import Crossing, Samples, crossings, turning, without_limit
 
-_BESIDE = 1e-3  # of a segment: how far from a limit point signs of pivots and positions are trusted
+_BESIDE = 1e-3  # of a segment: distance from a limit point at which signs of pivots and positions are reliable
 _WINDOW = 0.1  # of a segment: around a limit point that coincides with a bifurcation
-_JUMP = 1e-3  # of a segment: points that stay further apart however close their fractions are lie on two paths
-_DISTANCE = 5e-3  # of the part of a segment that is searched: samples are no closer to a bifurcation
-_TOGETHER = 4.0  # of the distance: bifurcations closer than this are found together
-_SHARPNESS = 1e-5  # of a segment: parts that are not divided further
-_CLEAR = 0.02  # of a segment: in parts as short as this stiffnesses and counts of pivots tell the same
+_JUMP = 1e-3  # of a segment: points further apart than this at nearly equal fractions lie on two paths
+_DISTANCE = 5e-3  # of the searched part of a segment: least distance of samples from a bifurcation
+_TOGETHER = 4.0  # of the distance: bifurcations closer than this are located together
+_SHARPNESS = 1e-5  # of a segment: shorter parts are not divided further
+_CLEAR = 0.02  # of a segment: in shorter parts, condensed stiffness and pivot counts must agree
 _TRIALS = 12
-_SETTLED = 3  # trials after which roots come closer to where they end
-_GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiffnesses are looked at
+_SETTLED = 3  # trials after which the roots must converge
+_GRID = np.linspace(-1.0, 1.0, 65) ** 3  # where the signs of interpolated stiffnesses are evaluated
 
 
 def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
-    """Return where the tangent is singular but the load factor has no extremum, or one as another path crosses.
+    """Return the bifurcations of a segment in order, including those at which the load factor has an extremum.
 
-    In order; several modes that lose their stiffness at one point make as many bifurcations. limits: fractions of the
-    limit points, each of which changes the sign of one pivot. Raises SegmentLostError.
+    There the tangent is singular and another path crosses. Several modes that lose their stiffness at one point count
+    as several bifurcations. limits: fractions of the limit points, each of which changes the sign of one pivot. Raises
+    SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
     found = [turning(segment, x) for x in segment.turned]
@@ -65,14 +66,14 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
     if not isinstance(found, float):
         yield from found
     elif end - start < _SHARPNESS:
-        raise SegmentLostError("the tangent is singular at several points that cannot be told apart")
+        raise SegmentLostError("the tangent is singular at several points that cannot be distinguished")
     else:
         yield from _search(segment, start, found)
         yield from _search(segment, found, end)
 
 
 def _require_one_path(segment: Segment, start: float, end: float) -> None:
-    """Raise SegmentLostError if two points are further apart than the way from one to the other can be."""
+    """Raise SegmentLostError if two points are further apart than a path between them allows."""
     line = segment.line
     apart = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
     if apart > 2.0 * (end - start) + _JUMP:
@@ -80,7 +81,7 @@ def _require_one_path(segment: Segment, start: float, end: float) -> None:
 
 
 def _together(segment: Segment, start: float, end: float, change: int) -> list[Crossing] | float:
-    """Return the bifurcations between two fractions if they lie close together, or a fraction to divide the part at."""
+    """Return the bifurcations between two fractions if they are close together, else a fraction at which to divide."""
     line, middle, distance = segment.line, 0.5 * (start + end), _DISTANCE * (end - start)
     directions = _softer(segment, start, end, abs(change))
     known = {x: condensed(line, segment.at(x), directions) for x in (start, end)}
@@ -115,9 +116,9 @@ def _together(segment: Segment, start: float, end: float, change: int) -> list[C
 
 
 def _shows(start: Condensed, end: Condensed, change: int, symmetric: bool) -> bool:
-    """Return whether stiffnesses at both ends of a part have as many negative eigenvalues more as there are pivots.
+    """Return whether the condensed stiffness gains as many negative eigenvalues over a part as the tangent does.
 
-    Of those that are not symmetric only the sign of the determinant counts.
+    If they are not symmetric, only the sign of the determinant counts.
     """
     if not symmetric:
         signs = [np.sign(np.linalg.det(one.stiffness)) for one in (start, end)]
@@ -127,7 +128,7 @@ def _shows(start: Condensed, end: Condensed, change: int, symmetric: bool) -> bo
 
 
 def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarray:
-    """Return the softest modes (count, n + 1) of the end of a part of a segment where they are softer."""
+    """Return the softest modes (count, n + 1) at that end of a part of a segment where they are softer."""
     line, found = segment.line, []
     for x in (start, end):
         modes = line.softest_modes(segment.at(x).factors, count)
@@ -139,7 +140,7 @@ def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarra
 def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[float, float]) -> np.ndarray:
     """Return the fractions where the polynomial through the stiffnesses at `fractions` is singular, ascending.
 
-    One of each eigenvalue that changes its sign, the nearest to the samples.
+    One root for each eigenvalue that changes its sign, the one nearest to the samples.
     """
     from scipy.optimize import brentq  # slow to import
 

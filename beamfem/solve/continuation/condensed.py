@@ -1,4 +1,4 @@
-"""The tangent condensed onto a few directions: a small matrix, smooth along a path, singular where the tangent is."""
+"""The tangent condensed onto a few directions: a small matrix, smooth along a path, singular if the tangent is."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 
 @dataclass(frozen=True, eq=False)
 class Condensed:
-    """Stiffness (k, k) against unit displacements along k directions, and the shapes (k, n + 1) they deform into."""
+    """Stiffness (k, k) against unit displacements along k directions, and the deformed shapes (k, n + 1) they cause."""
 
     stiffness: np.ndarray
     shapes: np.ndarray
@@ -20,8 +20,8 @@ class Condensed:
 def condensed(line: Continuation, point: PathPoint, directions: np.ndarray) -> Condensed:
     """Return the tangent K of a point condensed onto orthonormal directions D (k, n + 1), S = (D W K^-1 W D^T)^-1.
 
-    W: the weights of the line. The shapes F = S D W K^-1 have D W F^T = 1 and are free of force elsewhere, so that
-    S = F K F^T, which errors of F change in second order only; K is singular where S is. Raises LinAlgError.
+    W: the weights of the continuation. The shapes F = S D W K^-1 satisfy D W F^T = 1 and need no other forces, so that
+    S = F K F^T, in which errors of F are of second order; K is singular exactly where S is. Raises LinAlgError.
     """
     free = line.system.free_dofs
     forces = (line.weights * directions)[:, free]

@@ -17,13 +17,13 @@ from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
 
-_SLOPE_WIDTH = 1e-4  # of the load scale: differences of the loads lose no digits, and prescribed motions are smooth
+_SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
-_STEEPER = 2.0  # times what loads do per load factor where a path begins, further on
+_STEEPER = 2.0  # ratio of the effect of loads per load factor further on to that at the start of a path
 _GROWS_WELL = 0.3  # fraction of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
-_STILL = 1e-7  # of a mode: what an iteration may still turn it by
+_STILL = 1e-7  # of a mode: change per iteration below which it has converged
 
 Stresses = tuple[np.ndarray, ...]
 
@@ -49,7 +49,7 @@ class PathPoint:
 class Corrected:
     """The last y (n + 1,) of an iteration, how many iterations it took and why it ended.
 
-    negative_pivots: fewest and most of the tangents on the way, where they were counted.
+    negative_pivots: fewest and most of the tangents during the iteration, if they were counted.
     """
 
     y: np.ndarray
@@ -62,7 +62,7 @@ class Corrected:
 class Continuation:
     """A system whose load factor is unknown, measured in lengths of the model and in `load_scale`.
 
-    load_step: how far the load factor may change in a step while it is small.
+    load_step: largest change of a small load factor in one step.
 
     The squared length of a change of y is the mean of the squared scaled changes of the unknown coordinates, plus that
     of the load factor; it depends neither on units nor on the mesh.
@@ -75,7 +75,7 @@ class Continuation:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """What a change of y is measured by (n + 1,)."""
+        """Units (n + 1,) in which changes of y are measured."""
         return np.append(self.system.scale, self.load_scale)
 
     @cached_property
@@ -102,8 +102,9 @@ class Continuation:
     def plane(self, tangent: np.ndarray) -> np.ndarray:
         """Return the normal (n + 1,) of the plane in which a step along a unit tangent is corrected.
 
-        It is the tangent; but where the load factor moves supports and grows well, its axis: independent stresses tell
-        the tangent nothing of prescribed coordinates, so that these had better rest during the correction.
+        It is the tangent, except if the load factor moves supports and changes enough along the path: then it is the
+        axis of the load factor, so that prescribed coordinates stay fixed during the correction, since independent
+        stresses give the tangent no information on them.
         """
         moved = bool(np.any(tangent[self.system.prescribed_dofs]))
         if not moved or abs(tangent[-1]) < _GROWS_WELL * self.load_scale:
@@ -113,7 +114,7 @@ class Continuation:
         return result
 
     def stresses(self, y: np.ndarray, step: np.ndarray) -> Stresses | None:
-        """Return the stress resultants that a step from y predicts, None if Newton is to take those of the state."""
+        """Return the stress resultants predicted for a step from y, None if the iteration uses those of the state."""
         if not self.newton.independent_stresses:
             return None
         return predicted_stresses(self.system, y[:-1], step[:-1], float(y[-1] + step[-1]))
@@ -126,17 +127,17 @@ class Continuation:
         farthest: float = np.inf,
         counted: bool = False,
     ) -> Corrected:
-        """Return the equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,).
+        """Return the equilibrium in the plane through `start` (n + 1,) normal to `normal` (n + 1,).
 
-        stresses: of the first geometric tangent, as they were predicted for `start`; farthest: length of the correction
-        beyond which no equilibrium is looked for; counted: whether the negative pivots on the way are asked for.
+        stresses: for the first geometric tangent, as predicted for `start`; farthest: length of the correction beyond
+        which the iteration is given up; counted: whether to count the negative pivots of all iterations.
         """
         problem = _InPlane(self, start, stresses, normal, farthest, counted)
         found = iterate(problem, self.newton)
         return Corrected(problem.state, found.iterations, found.ended, problem.counts)
 
     def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:
-        """Return the point y with the tangent that goes the way of `like` (n + 1,). Raises LinAlgError."""
+        """Return the point y with its tangent in the sense of `like` (n + 1,). Raises LinAlgError."""
         _, along, factors = self.solve(y, None)
         tangent = along / self.length(along)
         return PathPoint(y, tangent if self.dot(tangent, like) >= 0.0 else -tangent, factors)
@@ -147,7 +148,7 @@ class Continuation:
         return np.asarray(mode * np.sign(mode[np.argmax(np.abs(mode) / self.scale)]))
 
     def softest_modes(self, factors: Factorised, count: int) -> np.ndarray:
-        """Return orthonormal changes of y (count, n + 1) that span those with the smallest stiffness."""
+        """Return orthonormal changes of y (count, n + 1) that span the modes with the smallest stiffness."""
         free = self.system.free_dofs
         roots = np.sqrt(self.weights[free])
         basis = np.random.default_rng(0).standard_normal((len(free), min(count, len(free))))
@@ -164,15 +165,15 @@ class Continuation:
         return result
 
     def softness(self, factors: Factorised, mode: np.ndarray) -> float:
-        """Return mode . K^-1 mode, infinite with a change of sign where the tangent K is singular along the mode."""
+        """Return mode . K^-1 mode, which has a pole with change of sign where K is singular along the mode."""
         free = self.system.free_dofs
         right = (self.weights * mode)[free]
         return float(right @ factors.solve(right))
 
     def solve(self, y: np.ndarray, stresses: Stresses | None) -> tuple[np.ndarray, np.ndarray, Factorised]:
-        """Return the change of y that balances it at its load factor, the one with the load factor, and the factors.
+        """Return the Newton correction of y at its load factor, dy/d(load factor), and the factors of the tangent.
 
-        stresses: of the geometric tangent, None for those of the state. Raises LinAlgError.
+        stresses: for the geometric tangent, None for those of the state. Raises LinAlgError.
         """
         system, p, at = self.system, y[:-1], float(y[-1])
         zeros, free, prescribed = np.zeros(len(p)), system.free_dofs, system.prescribed_dofs
@@ -191,10 +192,10 @@ class Continuation:
 
 
 class _InPlane:
-    """The equilibrium in the plane through `start` (n + 1,) across `normal` (n + 1,), at no fixed load factor.
+    """The equilibrium in the plane through `start` (n + 1,) normal to `normal` (n + 1,), with unknown load factor.
 
-    stresses: of the first geometric tangent; farthest: length of the correction beyond which no equilibrium is looked
-    for; counts: fewest and most negative pivots so far.
+    stresses: for the first geometric tangent; farthest: length of the correction beyond which the iteration is given
+    up; counts: fewest and most negative pivots so far.
     """
 
     counts_digits = False
@@ -215,7 +216,7 @@ class _InPlane:
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError if the tangent or the path is singular across the plane."""
+        """Take the next correction. Raises LinAlgError if the tangent is singular or the path lies in the plane."""
         line, y = self.line, self.state
         balance, along, factors = line.solve(y, self.stresses)
         negative = factors.negative_pivots if self.counted else 0
@@ -236,7 +237,7 @@ class _InPlane:
         return Correction(self.number, np.inf if away else self.size, before, negative)
 
     def balance(self) -> Balance:
-        """Return what is left of the balance in the state reached."""
+        """Return the balance of forces in the state reached."""
         return balance_of(self.system, self.state[:-1], float(self.state[-1]))
 
     def after_first(self) -> tuple[float, int]:
@@ -244,17 +245,17 @@ class _InPlane:
         return self.first, self.second
 
     def count_after_linear(self) -> int:
-        """Return the negative pivots of the second tangent: no load step leads here."""
+        """Return the negative pivots of the second tangent, since there is no load step."""
         return self.second
 
 
 def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> tuple[Continuation, PathPoint]:
     """Return the continuation of a model and its first point, that of the equilibrium p, towards larger loads.
 
-    A soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
-    prescribed motions are that large. The load scale lies between it and many times it, where possible so that the
-    tangent of the first point is as much movement as load. Neither depends on the size of the loads or on units.
-    Raises LinAlgError if the tangent is singular, ConvergenceError if loads are too large or small to go on.
+    The soft load is the load factor whose forces would move the softest mode by about a length of the model, or whose
+    prescribed motions are that large. The load scale lies between it and a large multiple of it, if possible such that
+    movement and load have equal parts in the tangent of the first point. Neither depends on the size of the loads or
+    on units. Raises LinAlgError if the tangent is singular, ConvergenceError if loads are too large or too small.
     """
     plain = Continuation(system, newton, 1.0, 1.0)
     zeros = np.zeros(len(p))
@@ -265,8 +266,8 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
     per_load = _reach(plain, p, load_factor, stiffness, 1e-6)
     if system.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:
-        # an amplitude may start with slope zero, or nearly so: then what it does up to load factor 1 tells
-        with suppress(InputError):  # of a function that ends before
+        # an amplitude may start with a slope near zero: then its effect up to load factor 1 counts
+        with suppress(InputError):  # from a function that is not defined so far
             further = _reach(plain, p, load_factor, stiffness, 1.0)
             per_load = further if further > _STEEPER * per_load else per_load
     soft = 1.0 / per_load if per_load > 0.0 else 1.0
@@ -285,9 +286,9 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
 
 
 def _reach(line: Continuation, p: np.ndarray, load_factor: float, stiffness: float, width: float) -> float:
-    """Return how far forces, against a stiffness, and prescribed motions reach per load factor, scaled.
+    """Return the scaled displacement per load factor due to forces, against a stiffness, and prescribed motions.
 
-    Imposed strains by the forces that would hinder them: where nothing moves they may buckle a model all the same.
+    Imposed strains count by the forces that would suppress them: even if nothing moves, these may buckle a model.
     """
     system, zeros, scale = line.system, np.zeros(len(p)), line.scale[:-1]
     ends = load_factor, load_factor + width

@@ -1,4 +1,4 @@
-"""The path between two of its points, and the limit points there."""
+"""A segment of a path between two of its points, and the limit points on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,12 +12,12 @@ from scipy.linalg import LinAlgError
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.newton.convergence import balance_of
 
-_SHARPNESS = 1e-12  # of a segment: where its critical points are sought no closer
-_LEVEL = 1e-4  # slope of the load factor at a limit point, at most
-_DISTANCE = 5e-3  # of a part of a segment: samples are no closer to where another path crosses
+_SHARPNESS = 1e-12  # of a segment: accuracy of the fractions of critical points
+_LEVEL = 1e-4  # largest slope of the load factor accepted at a limit point
+_DISTANCE = 5e-3  # of a part of a segment: least distance of samples from a crossing path
 _TRIALS = 12
 _BALANCINGS = 4
-_EVEN = 1e-6  # of products with a tangent from both sides: what they may differ by if it is symmetric
+_EVEN = 1e-6  # relative difference of products a K^-1 b and b K^-1 a that still counts as symmetric
 
 
 class SegmentLostError(Exception):
@@ -43,11 +43,11 @@ class Segment:
         self.chord = self.after.y - self.before.y
         squared = self.line.dot(self.chord, self.chord)
         points = (self.before, self.after)
-        # slopes of the cubic through both points; along the chord they advance evenly
+        # slopes of the cubic through both points, with equal projections on the chord
         self.slopes = [point.tangent * squared / self.line.dot(point.tangent, self.chord) for point in points]
 
     def at(self, x: float, normal: np.ndarray | None = None) -> PathPoint:
-        """Return the point of the path at a fraction x in [0, 1]; normal: of the plane to search, or the chord.
+        """Return the point of the path at a fraction x in [0, 1]; normal: of the plane searched, by default the chord.
 
         Raises SegmentLostError.
         """
@@ -69,7 +69,7 @@ class Segment:
     def critical(self, x: float) -> np.ndarray:
         """Return y (n + 1,) at the fraction of a limit point. Raises SegmentLostError.
 
-        Interpolated where more than the load factor is critical and no equilibrium can be solved for.
+        It is interpolated if more than the load factor is critical, so that no equilibrium can be solved for.
         """
         if x in self.found:
             return self.found[x].y
@@ -77,10 +77,10 @@ class Segment:
         return np.asarray(interpolation_weights(fractions, x) @ [self.at(at).y for at in fractions.tolist()])
 
     def balanced(self, y: np.ndarray, modes: Sequence[np.ndarray]) -> np.ndarray:
-        """Return an interpolated y (n + 1,), balanced better across its orthonormal critical modes (k, n + 1).
+        """Return an interpolated y (n + 1,), better balanced in directions orthogonal to its critical modes (k, n + 1).
 
-        What the tangent, nearly singular, says along the modes is nothing but round-off. A step beyond the distance of
-        the points it is interpolated between tells of another mode.
+        Along the orthonormal modes the nearly singular tangent gives round-off only. A step longer than the distance of
+        the points used for the interpolation indicates another mode.
         """
         line = self.line
         best, least = y, np.inf
@@ -102,7 +102,7 @@ class Segment:
 
     def at_load(self, load_factor: float) -> PathPoint:
         """Return the point with a load factor that lies between those of the ends. Raises SegmentLostError."""
-        from scipy.optimize import brentq  # slow to import, and seldom needed
+        from scipy.optimize import brentq  # slow to import and rarely needed
 
         ends = (self.before.y[-1], self.after.y[-1], *(slope[-1] for slope in self.slopes))
         x = brentq(lambda x: _cubic(x, *ends) - load_factor, 0.0, 1.0, xtol=1e-15)
@@ -113,7 +113,7 @@ class Segment:
         return point
 
     def _stresses(self, x: float) -> tuple[np.ndarray, ...] | None:
-        """Return the cubic of the stress resultants; the slopes at the ends are those along the path."""
+        """Return the stress resultants from a cubic whose slopes at the ends are those along the path."""
         zeros = np.zeros(len(self.chord))
         now = [self.line.stresses(point.y, zeros) for point in (self.before, self.after)]
         ahead = [
@@ -129,7 +129,7 @@ class Segment:
     def limit_points(self) -> list[float]:
         """Return the fractions x where the load factor has an extremum, in order. Raises SegmentLostError.
 
-        Where another path crosses at an extremum, it is a bifurcation: its fraction goes to `turned`.
+        An extremum at which another path crosses is a bifurcation: its fraction is added to `turned`.
         """
         stops = [0.0, 1.0]
         hidden = self._hidden_extremum()
@@ -151,7 +151,7 @@ class Segment:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether the tangent is symmetric; only then the number of negative pivots is that of eigenvalues."""
+        """Whether the tangent is symmetric; only then it has as many negative eigenvalues as negative pivots."""
         if self.line.system.symmetric:
             return True
         weights, factors = self.line.weights[self.line.system.free_dofs], self.before.factors
@@ -160,15 +160,15 @@ class Segment:
         return bool(abs(one - other) < _EVEN * max(abs(one), abs(other)))
 
     def change(self, start: float, end: float) -> int:
-        """Return how many eigenvalues of the tangent more are negative at one fraction than at another.
+        """Return how many more eigenvalues of the tangent are negative at `end` than at `start`.
 
-        Of a tangent that is not symmetric pivots tell the sign of the determinant only: 1 if it differs.
+        For an unsymmetric tangent pivots give the sign of the determinant only: 1 if it differs, else 0.
         """
         change = self.at(end).negative_pivots - self.at(start).negative_pivots
         return change if self.symmetric else change % 2
 
     def beside(self, low: float, high: float, distance: float, start: float, end: float) -> np.ndarray:
-        """Return fractions in [start, end] that keep a distance from [low, high], two on each side if there is room."""
+        """Return fractions in [start, end] at a distance from [low, high], two on each side if there is space."""
         steps = distance * np.arange(1.0, 5.0)
         left, right = low - steps, high + steps
         left, right = left[left >= start], right[right <= end]
@@ -176,12 +176,12 @@ class Segment:
         return np.sort(np.append(left[:on_left], right[: max(2, 4 - len(left))]))
 
     def _extremum(self, start: float, end: float) -> tuple[float, bool]:
-        """Return the fraction between two others at which the load factor is extreme, and whether a path crosses there.
+        """Return the fraction of the extremum of the load factor between two others, and whether a path crosses there.
 
-        A limit point changes the sign of one pivot. Where none changes, stiffness vanishes on both sides of the point
-        as on a branch that comes back to the path it left: equilibria beside it are found, at it they are not.
+        A limit point changes the sign of one pivot. If none changes, another path crosses, as when a branch returns to
+        the path that it left: equilibria can be computed beside the point, but not at it.
         """
-        from scipy.optimize import brentq  # slow to import, and seldom needed
+        from scipy.optimize import brentq  # slow to import and rarely needed
 
         if abs(self.change(start, end)) != 1:
             x, samples = self._extremum_between(start, end)
@@ -195,7 +195,7 @@ class Segment:
         return x, False
 
     def _extremum_between(self, start: float, end: float) -> tuple[float, np.ndarray]:
-        """Return the fraction where the slope of the load factor vanishes, from fractions at a distance, and those."""
+        """Return the fraction of zero slope of the load factor, interpolated from samples, and their fractions."""
         samples = np.array([start, end])
         x = _zero([self.at(at).tangent[-1] for at in samples], samples)
         for _ in range(_TRIALS):
@@ -208,7 +208,7 @@ class Segment:
         raise SegmentLostError("the load factor has an extremum that was not located")
 
     def _hidden_extremum(self) -> float | None:
-        """Return where the slope of the load factor may have changed its sign twice, after the cubic."""
+        """Return where, by the cubic, the slope of the load factor may have changed its sign twice, else None."""
         left, right = self.slopes[0][-1], self.slopes[1][-1]
         rise = self.chord[-1]
         curvature = 6.0 * (left + right - 2.0 * rise)
@@ -228,12 +228,12 @@ def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:
 
 
 def interpolation_weights(at: np.ndarray, x: float | np.ndarray) -> np.ndarray:
-    """Return the weights (..., k) of the values at `at` (k,) that make up the values at x (...) of their polynomial."""
+    """Return the weights (..., k) of values at `at` (k,) that give their interpolation polynomial at x (...)."""
     itself = np.eye(len(at), dtype=bool)
     above = np.where(itself, 1.0, np.asarray(x)[..., None, None] - at)
     return np.asarray(np.prod(above / np.where(itself, 1.0, at[:, None] - at), axis=-1))
 
 
 def _zero(values: list[float], at: np.ndarray) -> float:
-    """Return where the inverse of the polynomial through values at `at` is zero."""
+    """Return where values at `at` vanish, by inverse polynomial interpolation."""
     return float(interpolation_weights(np.array(values), 0.0) @ at)

@@ -1,4 +1,4 @@
-"""Bifurcations that lie close together, interpolated between samples around them and proved by counts of pivots."""
+"""Bifurcations close together, interpolated between samples around them and verified by counts of pivots."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -14,12 +14,12 @@ from beamfem.solve.continuation.condensed import Condensed
 from beamfem.solve.continuation.continuation import Continuation
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights
 
-_IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
-_LEFT = 4.0  # how much more than what is left unbalanced may have bent it
-_RESOLVED = 1e-2  # of the distance of samples: bifurcations that are closer may be one
-_ONE = 1e-7  # of the distance of samples: bifurcations that are closer are one, whatever counts say
-_WIDTH = 1e-3  # of the distance of samples: for slopes of interpolated values
-_ALONG = 1e-3  # of a path: what may lie outside of the modes it goes along
+_IMPERFECT = 1e-9  # deviation of a path that still counts as a bifurcation: lengths of the model, radians
+_LEFT = 4.0  # factor on the deviation that unbalanced forces can explain
+_RESOLVED = 1e-2  # of the distance of samples: closer bifurcations may be one
+_ONE = 1e-7  # of the distance of samples: closer bifurcations are one, whatever the counts say
+_WIDTH = 1e-3  # of the distance of samples: step of differences of interpolated values
+_ALONG = 1e-3  # of a tangent: the part that may lie outside the span of the modes
 _BESIDE = 5e-3  # of a segment: samples around a turning point
 
 
@@ -37,7 +37,7 @@ class Crossing:
 class Samples:
     """Fractions (s,) of a segment around bifurcations, the tangents condensed there, and one fraction before them.
 
-    change: how many eigenvalues of the tangent more are negative behind them.
+    change: how many more eigenvalues of the tangent are negative beyond them.
     """
 
     segment: Segment
@@ -71,8 +71,8 @@ class Samples:
 def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
     """Return the bifurcations at fractions (k,), ascending, where condensed tangents are singular.
 
-    Between any two of them the count of negative pivots must have changed by as many as lie before; where they are too
-    close for that, they are one place with as many modes. Raises SegmentLostError.
+    Between any two of them the count of negative pivots must have changed by the number of those before; if they are
+    too close for that, they are taken as one point with as many modes. Raises SegmentLostError.
     """
     groups = [[float(roots[0])]]
     for number, (left, right) in enumerate(pairwise(roots.tolist()), 1):
@@ -84,9 +84,9 @@ def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
 
 
 def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
-    """Return whether the count between two fractions shows that so many eigenvalues have changed their sign before.
+    """Return whether the count between two fractions confirms that `passed` eigenvalues changed their sign before.
 
-    False if it does not because they are too close to be told apart. Raises SegmentLostError.
+    False if it does not because the fractions are too close to be distinguished. Raises SegmentLostError.
     """
     x, apart = 0.5 * (left + right), right - left
     if apart < _ONE * samples.distance:
@@ -109,7 +109,7 @@ def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
     lost = vectors[:, np.argsort(np.abs(values), kind="stable")[:count]]
     width = _WIDTH * samples.distance
     slope = (samples.stiffness(x + width) - samples.stiffness(x - width)) / (2.0 * width)
-    # modes that become soft together differ in how fast they do
+    # modes that lose their stiffness together do so at different rates
     rates, mixed = np.linalg.eigh(lost.T @ slope @ lost)
     modes = _orthonormal(line, (lost @ mixed).T @ samples.at(x, samples.shapes))
     y, tangent = samples.at(x, samples.y), samples.at(x, samples.tangents)
@@ -120,7 +120,7 @@ def _at_one_place(samples: Samples, x: float, count: int) -> list[Crossing]:
 
 
 def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.ndarray]:
-    """Return modes (k, n + 1) of length 1, orthogonal to those before, their largest coordinates positive."""
+    """Return modes (k, n + 1) of length 1, each orthogonal to those before it, with positive largest coordinates."""
     result: list[np.ndarray] = []
     for mode in modes:
         for other in result:
@@ -131,9 +131,9 @@ def _orthonormal(line: Continuation, modes: Iterable[np.ndarray]) -> list[np.nda
 
 
 def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float) -> None:
-    """Raise SegmentLostError if the way of a path along the mode is a hyperbola: it bends aside, it is not crossed.
+    """Raise SegmentLostError if the path bends aside along the mode, on a hyperbola, instead of being crossed.
 
-    rate: of the stiffness of the mode over the fraction. Forces that were left unbalanced bend the path aside as well.
+    rate: derivative of the stiffness of the mode with respect to the fraction. Unbalanced forces bend the path as well.
     """
     line = samples.segment.line
     fractions = (samples.fractions - x) / samples.distance
@@ -147,9 +147,9 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
 
 
 def turning(segment: Segment, x: float) -> Crossing:
-    """Return the bifurcation at a fraction where the load factor turns because another path crosses.
+    """Return the bifurcation at a fraction where the load factor has an extremum because another path crosses.
 
-    There the path goes along the mode. Raises SegmentLostError.
+    There the path is tangential to the mode. Raises SegmentLostError.
     """
     line, fractions = segment.line, segment.beside(x, x, _BESIDE, 0.0, 1.0)
     weights = interpolation_weights(fractions, x)
@@ -160,16 +160,16 @@ def turning(segment: Segment, x: float) -> Crossing:
     largest = mode[np.argmax(np.abs(mode) / line.scale)]
     mode /= np.copysign(line.length(mode), largest)
     y = segment.balanced(weights @ [point.y for point in points], [mode])
-    # a limit point beside a bifurcation: a second mode is as soft, and says as little
+    # a limit point near a bifurcation: a second mode is as soft, and as unreliable
     with suppress(LinAlgError):
         y = segment.balanced(y, list(line.softest_modes(line.solve(y, None)[2], 2)))
     return Crossing(x, y, tangent, mode)
 
 
 def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Crossing]:
-    """Return the bifurcations around a limit point at a fraction x, of which one or one mode is the limit point itself.
+    """Return the bifurcations around a limit point at a fraction x without the one, or the mode, of the limit point.
 
-    There the path goes along the mode. Raises SegmentLostError.
+    There the path is tangential to the mode. Raises SegmentLostError.
     """
     line = segment.line
     fractions = segment.beside(x, x, _BESIDE, 0.0, 1.0)

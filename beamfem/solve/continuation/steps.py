@@ -1,4 +1,4 @@
-"""Steps along an equilibrium path: predicted, corrected, refused or accepted, and how long the next one is."""
+"""Steps along an equilibrium path: prediction, correction, acceptance or rejection, and the length of the next one."""
 
 from dataclasses import dataclass
 
@@ -11,25 +11,26 @@ from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
 
 _SMALLEST = 1e-8
 _LARGEST = 0.5
-_LEAST_SHARE = 0.1  # of a movement that is not translation: of less, that much is taken to bound it
-_LARGEST_GROWTH = 0.5  # of the load factor in a step, where it is large
-_WANTED_TURN = 0.2  # [rad] of the path's tangent in a step
+_LEAST_SHARE = 0.1  # of the whole movement: the least share that counts as deformation when a step is bounded
+_LARGEST_GROWTH = 0.5  # of a large load factor, in one step
+_WANTED_TURN = 0.2  # [rad] by which the tangent of the path should turn in a step
 _LARGEST_TURN = 0.5
 _LARGEST_PRESCRIBED_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
-# An arc deviates from its tangent by half its turn, by a third to two thirds where its curvature changes linearly. An
-# equilibrium that is further away, as a fraction of the step, is on another path, or the path bends within the step.
+# An arc deviates from its tangent by half the angle that the tangent turns, or by a third to two thirds of it if the
+# curvature varies linearly. An equilibrium that is further away, as a fraction of the step, is on another path, or the
+# path bends within the step.
 _ARC = 0.75
 _BESIDE = 0.03
-_ANOTHER = 1e-4  # of the model: another path is no nearer; beside limit points the tangent itself has an error
-_FARTHEST = 2.0  # of the step: an iterate that goes further will not come back to less
+_ANOTHER = 1e-4  # of the model: the least distance of another path; near limit points the tangent itself has an error
+_FARTHEST = 2.0  # of the step: iterates further away do not come back
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted step: the segment, the fractions at its limit points, its bifurcations, length of the next step."""
+    """An accepted step: the segment, the fractions of its limit points, its bifurcations, length of the next step."""
 
     segment: Segment
     limits: list[float]
@@ -40,7 +41,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Refused:
-    """A step that was not accepted: why, and after how many iterations."""
+    """A rejected step: the reason, and the number of iterations."""
 
     reason: str
     iterations: int
@@ -49,9 +50,9 @@ class Refused:
 def longest_step(line: Continuation, point: PathPoint) -> float:
     """Return the longest step from a point.
 
-    It bounds the movement, the change of the load factor and the turn of a support, of which gradients elsewhere on the
-    beam cannot tell a full one from none. A structure on soft springs that drifts as a whole may go as far as its load
-    grows: translations are no other path, however long.
+    It bounds the movement, the change of the load factor and the rotation of a support, since gradients elsewhere on
+    the beam cannot distinguish a full turn from none. A structure on soft springs that drifts as a whole is bounded by
+    the load only: a translation, however long, does not lead to another path.
     """
     load_fraction = abs(float(point.tangent[-1])) / line.load_scale
     moving = np.sqrt(max(1.0 - load_fraction**2, 0.0)) * _deforming(line, point.tangent)
@@ -64,7 +65,7 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
 
 
 def _deforming(line: Continuation, tangent: np.ndarray) -> float:
-    """Return how much of the movement along a tangent bounds a step: all, but where nearly all of it is translation."""
+    """Return the share of the movement along a tangent that bounds a step: 1 unless nearly all of it is translation."""
     system = line.system
     change = tangent[:-1] / system.scale
     beside = np.max(np.abs(change[~system.positions]), initial=0.0)
@@ -75,12 +76,12 @@ def _deforming(line: Continuation, tangent: np.ndarray) -> float:
 
 
 def too_small(line: Continuation, point: PathPoint, size: float) -> bool:
-    """Return whether a step would be lost in the digits of the point."""
+    """Return whether a step is so small that round-off of the point hides it."""
     return size < _SMALLEST * max(1.0, abs(point.load_factor) / line.load_scale)
 
 
 def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refused:
-    """Return the step of a length from a point with what lies in it, or why it is refused."""
+    """Return the step of a given length from a point with its critical points, or the reason of its rejection."""
     change = size * point.tangent
     farthest = _FARTHEST * size
     start, stresses, plane = point.y + change, line.stresses(point.y, change), line.plane(point.tangent)
@@ -113,15 +114,15 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
 
 
 def leaves_arc(deviation: float, turn: float) -> bool:
-    """Return whether a step deviates from a tangent [rad] by more than a path does whose tangent turns so far [rad]."""
+    """Return whether a step deviates from a tangent [rad] by more than a path whose tangent turns by `turn` [rad]."""
     return deviation > _ARC * turn + _BESIDE
 
 
 def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:
-    """Return whether the correction went through states of another count of negative pivots than those of both ends.
+    """Return whether the correction passed states with a count of negative pivots outside that of both ends.
 
-    So it does from one side of an imperfect bifurcation to the branch on the other side. Where loads follow, only the
-    sign of the determinant counts, which an odd number of negative pivots makes negative.
+    This happens on the way from one side of an imperfect bifurcation to the branch on the other side. With follower
+    loads only the sign of the determinant counts, which is negative for an odd number of negative pivots.
     """
     counts = [end.negative_pivots for end in ends]
     fewest, most = corrected.negative_pivots

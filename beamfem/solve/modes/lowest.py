@@ -1,4 +1,4 @@
-"""The lowest eigenpairs of K phi = lambda M phi: none is left out, and slender beams keep their digits."""
+"""The lowest eigenpairs of K phi = lambda M phi, complete and accurate for slender beams."""
 
 import numpy as np
 
@@ -11,20 +11,20 @@ from beamfem.linalg.tangent import Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import Pencil
 
-_CLUSTER = 1e-9  # eigenvalues whose relative distance is below this cannot be counted apart
+_CLUSTER = 1e-9  # eigenvalues with a smaller relative distance cannot be counted separately
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
-_SPREAD = 1e6  # of the sizes of eigenvalues that are found together from their stiffness
+_SPREAD = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
 _SEARCHES = 8
-WRONG = 1e-5  # of vectors: what the round-off of the tangent may do to them
-_SOLVES = 2  # for vectors that round-off is felt in: each leaves some hundredth of what is wrong of them
+WRONG = 1e-5  # of vectors: largest acceptable error by round-off of the tangent
+_SOLVES = 2  # for vectors with noticeable round-off: each reduces their error to about a hundredth
 
 
 def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | None = None) -> Pairs:
     """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
 
-    rigid (unknown, r): M-orthonormal vectors whose lambda is zero, which the result does not hold; shift: below all,
-    where one is known. Those below a gap behind the last are counted by the pivots there. Raises ConvergenceError if
-    some were missed.
+    rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain; shift: below all
+    eigenvalues, if one is known. The eigenvalues below a gap after the last are counted by the pivots there. Raises
+    ConvergenceError if some were missed.
     """
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
     if count == 0:
@@ -61,10 +61,10 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
 
 
 def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: float | None) -> Pairs:
-    """Return the vectors (unknown, m) of values far above the lowest after further solves, at a shift below them.
+    """Return the vectors (unknown, m) of eigenvalues far above the lowest after further solves, at a shift below them.
 
-    The factors that found them bring the round-off of the lowest, which for them is as large as the values lie apart.
-    start: shift below all where the round-off of the tangent is felt, so that the lowest are solved for as well.
+    The factors that found them carry the round-off of the lowest, which grows with the ratio of the eigenvalues.
+    start: shift below all if the round-off of the tangent is noticeable, so that the lowest are solved for as well.
     """
     first, *others = _alike(squares)
     sharp = vectors[:, first]
@@ -93,9 +93,10 @@ def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarr
 
 
 def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correction: np.ndarray) -> Pairs:
-    """Return eigenpairs anew from the stiffness of their vectors, which has not the round-off of assembled tangents.
+    """Return eigenpairs recomputed from the stiffness of their vectors, free of the round-off of assembled tangents.
 
-    Vectors of similar size are taken together (Rayleigh and Ritz), as they may be mixed where values are close.
+    Vectors with eigenvalues of similar size are treated together (Rayleigh-Ritz), as they may be mixed if these are
+    close.
     """
     modes = np.zeros((len(squares), len(pencil.p)))
     modes[:, pencil.system.free_dofs] = vectors.T
@@ -107,14 +108,14 @@ def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correctio
             values, mixed = eigh(stiffness[part, part], mass[part, part])
         except LinAlgError:
             raise ConvergenceError(
-                "the tangent of so slender a model has no digits left, and modes cannot be told from one another"
+                "the tangent of such a slender model has no reliable digits, so that modes cannot be distinguished"
             ) from None
         parts.append((values, vectors[:, part] @ mixed))
     return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([found for _, found in parts]))
 
 
 def _alike(squares: np.ndarray) -> list[slice]:
-    """Return parts of ascending values in which sizes do not spread too far, cut at gaps."""
+    """Return parts of ascending eigenvalues, cut at gaps, whose ratio is bounded."""
     first, result = 0, []
     while first < len(squares):
         far = np.flatnonzero(squares[first:] > _SPREAD * np.abs(squares[: first + 1]).max())

@@ -1,9 +1,9 @@
 """The stiffness of modes, free of the round-off of an assembled tangent.
 
-Entries of the tangent are as large as E A / l times squared slopes; of a soft mode of a slender beam their sum is so
-much smaller that it drowns in their round-off. Strains of the mode first, then their energy, lose nothing. Likewise
-stresses of a state carry the round-off of its positions, unless the correction that would balance them, too small to
-be added to the positions, is added to their strains.
+Entries of the tangent are as large as E A / l times squared slopes; for a soft mode of a slender beam their sum is so
+much smaller that it is lost in their round-off. Computing the strains of the mode first, and then their energy, avoids
+this. Likewise, stresses of a state carry the round-off of its positions, unless the correction that would balance them,
+which is too small to be added to the positions, is added to their strains.
 """
 
 import numpy as np
@@ -20,8 +20,8 @@ def stiffness_of_modes(
 ) -> np.ndarray:
     """Return the symmetric part (m, m) of modes K modes^T for changes (m, n) of the coordinates.
 
-    K: tangent in the state p (n,), sum B^T C B over the quadrature points and what stresses, springs and loads add;
-    correction (n,): what is still missing of the state.
+    K: tangent in the state p (n,), sum B^T C B over the quadrature points plus the contributions of stresses, springs
+    and loads; correction (n,): the remaining correction of the state.
     """
     zeros, count = np.zeros(len(p)), len(modes)
     result = np.zeros((count, count))
@@ -41,14 +41,14 @@ def stiffness_of_modes(
 
 
 def stresses_of(system: System, p: np.ndarray, correction: np.ndarray, load_factor: float) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants of a state, of each block (ne, nq, ns); in the reference only imposed ones."""
+    """Return the stress resultants of a state in each block (ne, nq, ns); in the reference only imposed ones."""
     if np.array_equal(p, system.reference) and not system.imposing(load_factor).any():
         return tuple(np.zeros_like(stresses) for stresses in system.assembler().stresses)
     return predicted_stresses(system, p, correction, load_factor)
 
 
 def weak_stiffness(system: System, p: np.ndarray, load_factor: float, stresses: tuple[np.ndarray, ...]) -> csr_array:
-    """Return the tangent (unknown, unknown) without sum B^T C B: what stresses, springs and loads add."""
+    """Return the tangent (unknown, unknown) without sum B^T C B: the contributions of stresses, springs and loads."""
     zeros = np.zeros(len(p))
     weak = system.without_stiffness
     return linearise(system, p, zeros, zeros, load_factor, STATICS, stresses, weak)[1].sparse(UNROTATED)

@@ -36,11 +36,28 @@ _SPARE = 4  # eigenvalues found beyond those asked for
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes of small vibration about `state`: p(t) = p + Re(phi exp(s t)), s = growth + 2 pi i frequency.
+    """Modes of small vibration about a state: p(t) = p + Re(phi exp(s t)), s = growth + 2 pi i frequency.
 
-    frequencies (count,) [Hz]: first the rigid ones, exactly 0, then ascending; modes (count, n): shapes phi over all
-    coordinates, phi^T M phi = 1, complex only where follower loads make the tangent unsymmetric; growth (count,) [1/s]:
-    0 if the state is stable, > 0 for divergence (frequency 0) and flutter; rigid: for each rigid mode what it moves.
+    Parameters
+    ----------
+    model : Model
+        The model.
+    state : State
+        The state to vibrate about.
+    frequencies : array, [Hz], (count,)
+        Frequencies, first the rigid ones, exactly 0, then ascending.
+    growth : array, [1/s], (count,)
+        0 if the state is stable, > 0 for divergence (frequency 0) and flutter.
+    modes : array, (count, n)
+        Shapes phi over all coordinates, phi^T M phi = 1, complex only if follower loads make the tangent unsymmetric.
+    rigid : tuple of str
+        For each rigid mode what it moves.
+
+    Examples
+    --------
+    >>> modes = bf.solve_modes(model, count=3)
+    >>> modes.frequencies.round(1)
+    array([ 20.8, 129.1, 355.2])
     """
 
     model: Model
@@ -67,21 +84,44 @@ class Modes:
 
     @property
     def status(self) -> Status:
-        """UNSTABLE where a mode grows, else COMPLETED: a solve that misses modes raises."""
+        """UNSTABLE if a mode grows, else COMPLETED; a solve that misses modes raises an error."""
         return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the elements say against the digits of these frequencies, in sentences; empty if nothing."""
+        """Warnings on the accuracy of these frequencies due to the elements, in sentences; empty if there are none."""
         return frequency_warnings(self.state, self.modes[len(self.rigid) :])
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
-        """Return one period of a mode as a Solution to draw or export; of a rigid one, a second of its motion.
+        """Return one period of a mode as a Solution to draw or export.
 
-        Of a divergence, the time in which it grows by e.
+        For a rigid mode it is one second of its motion, for a divergence the time in which it grows by the factor e. It
+        is exact for small amplitudes.
 
-        mode: its row; amplitude [m] of the largest displacement of a node, by default a tenth of the longest beam.
-        Exact while the amplitude is small.
+        Parameters
+        ----------
+        mode : int, default 0
+            Row of the mode.
+        amplitude : float, [m], optional
+            Largest displacement of a node, by default a tenth of the longest beam.
+        frames : int, default 25
+            Number of rows.
+
+        Returns
+        -------
+        Solution
+            The motion.
+
+        Raises
+        ------
+        InputError
+            For a mode that does not exist, or less than two frames.
+
+        Examples
+        --------
+        >>> motion = bf.solve_modes(model, count=2).solution(mode=1, amplitude=0.05)
+        >>> len(motion)
+        25
         """
         mode = number_below("mode", mode, len(self))
         if whole_number("frames", frames) < 2:
@@ -104,26 +144,91 @@ class Modes:
         return Solution(self.model, False, at, self.state.p + p, v, a, statistics, loaded=loaded)
 
     def to_pandas(self) -> Any:
-        """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a pandas.DataFrame.
+        """Return frequency [Hz], growth [1/s] and rigid motion of the modes as a table.
 
-        Raises MissingPackageError.
+        Returns
+        -------
+        pandas.DataFrame
+            One row per mode.
+
+        Raises
+        ------
+        MissingPackageError
+            Without pandas.
+
+        Examples
+        --------
+        >>> list(bf.solve_modes(model, count=2).to_pandas().columns)
+        ['frequency', 'growth', 'rigid']
         """
         rigid = [*self.rigid, *[""] * (len(self) - len(self.rigid))]
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
-        """Draw the modes, each with its frequency; return the figure."""
+        """Draw the modes, each with its frequency.
+
+        Dark: the mode at its largest; pale: half a period later; dashed: the reference.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+        **options
+            most : largest number of modes to draw.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            If there are no modes to draw.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> figure = bf.solve_modes(model, count=2).plot("modes.png")
+        """
         return offered(Modes.plot)(self, path, **options)
 
 
 def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
-    """Return the `count` lowest modes of K phi = omega^2 M phi, those of rigid motions included.
+    """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 
-    about: the static equilibrium to vibrate about, whose loads and stresses then count (prestress, gravity): a state,
-    or a solution for its last state; it may come from a model with other supports. By default the reference at load
-    factor 0. K: tangent stiffness with the loads at the state's load factor, M: mass, both there.
-    Raises InputError; ConvergenceError if modes were missed.
+    K is the tangent stiffness with the loads at the load factor of the state, and M the mass matrix, both in that
+    state.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads.
+    count : int, default 10
+        Number of modes.
+    about : State or Solution, optional
+        Static equilibrium to vibrate about, whose loads and stresses are then taken into account (prestress, gravity):
+        a state, or a solution for its last state; it may come from a model with other supports. By default the
+        reference at load factor 0.
+
+    Returns
+    -------
+    Modes
+        Frequencies and mode shapes.
+
+    Raises
+    ------
+    InputError
+        For an invalid argument, or a state that is not in equilibrium.
+    ConvergenceError
+        If modes were missed.
+
+    Examples
+    --------
+    >>> bf.solve_modes(model, count=2).frequencies.round(2)
+    array([ 20.85, 129.12])
     """
     whole_number("count", count)
     system = system_of(model, static=True)
@@ -138,7 +243,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if left > 0.0:
         raise InputError(
             f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
-            "is left over. Give about= a state of solve_static with the same loads"
+            "is unbalanced. Give about= a state of solve_static with the same loads"
         )
     if count > pencil.size:
         raise InputError(f"count is {count}, but supports leave this model only {pencil.size} modes")
@@ -158,7 +263,7 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
 
 
 def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
-    """Return omega^2 (m,) complex, and vectors (unknown, m), of a tangent that is not symmetric; see `lowest_pairs`."""
+    """Return complex omega^2 (m,) and vectors (unknown, m) for an unsymmetric tangent; see `lowest_pairs`."""
     if count == 0:
         return nothing_known(pencil.size)
     shift = pencil.shift(rigid.shape[1])
@@ -181,7 +286,7 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
 def _rates(squares: np.ndarray) -> np.ndarray:
     """Return s = growth + i omega (m,) with s^2 = -omega^2 and omega >= 0.
 
-    Of a conjugate pair of omega^2, one is the motion that grows and the other the one that decays.
+    Of a conjugate pair of omega^2, one gives the growing motion and the other the decaying one.
     """
     squares = np.asarray(squares, dtype=complex)
     real = np.abs(squares.imag) <= _REAL * np.abs(squares)

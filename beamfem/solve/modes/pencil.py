@@ -12,14 +12,14 @@ from beamfem.assembly.round_off import LAST_DIGITS, lost_digits
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
 
-_RANGE = 80.0  # logarithm of how far eigenvalues may lie apart
-_AWAY = 0.75  # of a shift: no eigenvalue may be nearer to it
+_RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
+_AWAY = 0.75  # of a shift: least distance of an eigenvalue from it
 _ASYMMETRY = 1e-12
-_FELT = 1e-4  # of the work of random forces: what rounded stiffness may be before it is looked at closely
+_FELT = 1e-4  # of the work of random forces: share of the round-off of the stiffness above which it is examined
 
 
 def is_symmetric(matrix: csr_array) -> bool:
-    """Return whether a tangent is symmetric to round-off, which the diagonal measures."""
+    """Return whether a tangent is symmetric up to round-off relative to its diagonal."""
     size = np.sqrt(np.abs(matrix.diagonal()))
     difference = (matrix - matrix.T).tocoo()
     scale = size[difference.row] * size[difference.col]
@@ -36,7 +36,7 @@ class Pencil:
 
     @cached_property
     def unbalanced(self) -> np.ndarray:
-        """Residual (unknown,) that Newton's method has left."""
+        """Residual (unknown,) of the state."""
         zeros = np.zeros(len(self.p))
         return residual(self.system, self.p, zeros, zeros, self.load_factor)[self.system.free_dofs]
 
@@ -55,10 +55,9 @@ class Pencil:
 
     @cached_property
     def balanced_stresses(self) -> Stresses | None:
-        """The stress resultants (ne, nq, ns) of each block that balance the loads, as rounded strains may not.
+        """The stress resultants (ne, nq, ns) of each block that balance the loads, which rounded strains may not do.
 
-        None in the reference, where all residuals are round-off, and in states that their stiffness does not
-        stabilise: no correction balances those.
+        None in the reference, where all residuals are round-off, and in unstable states, which no correction balances.
         """
         if np.array_equal(self.p, self.system.reference):
             return None
@@ -85,7 +84,7 @@ class Pencil:
 
     @cached_property
     def size(self) -> int:
-        """How many modes there are: inclined rollers hold one of their two coordinates each."""
+        """Number of modes; each inclined roller constrains one of two coordinates."""
         return self.mass.shape[0] - len(self.system.rotated[0])
 
     def below(self, value: float) -> int:
@@ -93,10 +92,10 @@ class Pencil:
         return self.shifted(value).factorised(self.system.rotated).negative_pivots
 
     def lost(self, shift: float, factors: Factorised) -> float:
-        """Return the relative error of a solution by the plain K - shift M, 0 if it cannot be felt.
+        """Return the relative error of a solution with the plain K - shift M, 0 if it is negligible.
 
-        factors: of K - shift M. Where random inertia forces move what is so soft that the last digits of the stiffness
-        count, the tangent with stress resultants as unknowns tells.
+        factors: of K - shift M. If random inertia forces move parts so soft that the last digits of the stiffness
+        count, the error is found by comparison with the tangent that has stress resultants as unknowns.
         """
         if MIXED in self.system.proven or self.system.connectors.items:
             return 0.0
@@ -108,16 +107,16 @@ class Pencil:
         return lost_digits(self.system, self.p, self.load_factor, (1.0, 0.0, -shift))
 
     def exact(self, shift: float) -> Tangent:
-        """Return K - shift M with stress resultants as unknowns, which keeps the digits of soft parts."""
+        """Return K - shift M with stress resultants as unknowns, which keeps the accuracy of soft parts."""
         if MIXED in self.system.proven:
             return self.shifted(shift)
         plain, coefficients = self.shifted(shift), (1.0, 0.0, -shift)
         return with_stresses(self.system, self._at_rest, self.load_factor, coefficients, self.balanced_stresses, plain)
 
     def shift(self, rigid: int) -> float:
-        """Return a shift [1/s^2] below all eigenvalues, of the size of the one nearest to zero that is not rigid.
+        """Return a shift [1/s^2] below all eigenvalues, of the magnitude of the elastic one nearest to zero.
 
-        rigid: how many are zero; without any, zero itself is such a shift of a stable state.
+        rigid: number of zero eigenvalues; without any, zero itself is such a shift for a stable state.
         """
         if rigid == 0 and self.symmetric and self.below(0.0) == 0:
             return 0.0
@@ -136,7 +135,8 @@ class Pencil:
     def clear_of(self, shift: float) -> bool:
         """Return whether a negative shift is below all eigenvalues of a symmetric pencil, and away from them.
 
-        What is at an eigenvalue is below it or above by round-off, and its factors lose the others: stiffness is odd in
-        the load about a critical point, so that eigenvalues on one side of it are where a shift for the other is.
+        Near an eigenvalue round-off decides whether a shift is below it, and its factors lose the other eigenvalues.
+        This happens because the stiffness is odd in the load about a critical point, so that eigenvalues on one side of
+        it coincide with a shift for the other side.
         """
         return self.below(_AWAY * shift) == 0

@@ -1,4 +1,4 @@
-"""Rigid motions of a model or its parts: which meet no resistance, sorted, and said in words."""
+"""Rigid motions of a model or its parts: those without resistance, sorted and described in words."""
 
 import numpy as np
 
@@ -13,14 +13,14 @@ from beamfem.solve.start.body_motions import Conditions, bodies_of, mechanisms
 from beamfem.solve.start.mechanisms import describe
 
 _SMALL = 1e-5  # of a motion
-_UNBALANCED = 1e-8  # of the largest force: what an equilibrium may leave, and a turn of it change
+_UNBALANCED = 1e-8  # of the largest force: acceptable residual of an equilibrium, and its change by a rotation
 
 
 def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the rigid motions (m, n) without resistance about the state, M-orthonormal, and what each moves, in words.
 
-    They are those of the bodies that supports, springs and joints leave free, as far as no force arises from them:
-    a turn of a pendulum is resisted by its weight, and a turn of a body that nothing loads by nothing.
+    These are motions of the bodies that supports, springs and joints do not constrain and that cause no force: the
+    rotation of a pendulum is resisted by its weight, that of an unloaded body is not resisted.
     """
     system, p = pencil.system, pencil.p
     conditions = Conditions(system, bodies_of(system.model), p)
@@ -40,7 +40,7 @@ def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
 
 
 def _negligible_force(pencil: Pencil) -> float:
-    """Return the force [N] that a unit turn of the state may change by for its round-off and what Newton leaves."""
+    """Return the force [N] that a unit rotation of the state may cause by round-off and by the residual of Newton."""
     system, p, still = pencil.system, pencil.p, np.zeros_like(pencil.p)
     forces = [*system.point_values(pencil.load_factor), residual(system, p, still, still, pencil.load_factor)]
     forces += [stresses[..., 0] for stresses in stresses_of(system, p, still, pencil.load_factor)]
@@ -51,7 +51,7 @@ def _negligible_force(pencil: Pencil) -> float:
 def sort_rigid(pencil: Pencil, shapes: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return an M-orthonormal basis (m, n) of the span of rigid shapes (m, n), and what each moves, in words.
 
-    Translations of the whole model come first, then its turn, then what its parts do against each other.
+    Translations of the whole model come first, then its rotation, then relative motions of its parts.
     """
     basis = np.empty((0, len(pencil.p)))
     for candidate in np.vstack([_whole(pencil, shapes), shapes]):
@@ -91,7 +91,7 @@ def _whole(pencil: Pencil, shapes: np.ndarray) -> np.ndarray:
 
 
 def _words(pencil: Pencil, shape: np.ndarray) -> str:
-    """Say what a rigid shape (n,) moves: the whole model, or each beam in turn."""
+    """Return in words what a rigid shape (n,) moves: the whole model, or each beam."""
     motions = []
     for positions, moved in nodal_motion(pencil.system.model, pencil.p, shape):
         centre = positions.mean(axis=0)

@@ -1,4 +1,4 @@
-"""Time steps of models whose tangent is a narrow band: many in one compiled call."""
+"""Time steps of models whose tangent is a narrow band; one compiled call takes many steps."""
 
 import numpy as np
 
@@ -13,9 +13,9 @@ Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 
 
 class BandMotion:
-    """Marches through time steps; keeps tangent and differences of the acceleration from one call to the next.
+    """Marches through time steps; keeps tangent and differences of the acceleration between calls.
 
-    space: which it has for itself; rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction
+    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction
     relative to the scale of a coordinate, largest number of iterations; statistics (10,): see `kernels.march.march`.
     """
 
@@ -33,8 +33,8 @@ class BandMotion:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
         prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s]; saving: rows
-        (steps, 3, n), number of the first step, and how many steps make a row; then x and y (m, 2) of vectors whose
-        turning is counted, how far they have turned (m,) [rad] and that of the rows (steps, m).
+        (steps, 3, n), number of the first step, and number of steps per row; then x and y (m, 2) of vectors whose
+        rotation is counted, their rotation (m,) [rad] and that of the rows (steps, m).
         """
         saved, first, every, counted, turned_by, saved_turns = saving
         space = self._space
@@ -80,9 +80,9 @@ class BandMotion:
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:
-    """Body forces (steps, beams, 4), point values of each block (steps, nl, 3), factors (steps, k) of imposed strains.
+    """Return body forces (steps, beams, 4), point values of each block (steps, nl, 3), factors (steps, k) of strains.
 
-    One row where nothing varies.
+    The last are those of imposed strains. There is one row only if nothing varies.
     """
     if not system.varying:
         times = times[:1]

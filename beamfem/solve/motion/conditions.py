@@ -1,4 +1,4 @@
-"""Motions under conditions: what a start must satisfy, and accelerations and multipliers that keep it so."""
+"""Motions with constraint conditions: consistency of the start, and initial accelerations and multipliers."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -14,26 +14,29 @@ from beamfem.linalg.tangent import UNROTATED, SparseTangent
 from beamfem.solve.start.multipliers import dependent
 
 _MET = 1e-8  # of the model, or of the largest velocity
-_SHORT = 1e-4  # of the model: how far a difference along the motion reaches
+_SHORT = 1e-4  # of the model: step of a difference along the motion
 
 
 def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -> None:
-    """Raise InputError if the start p, p' (n,) of a motion does not meet the conditions of connectors."""
+    """Raise InputError if the start p, p' (n,) of a motion does not satisfy the conditions of connectors."""
     gaps, rates = system.connectors.conditions(p, v)
     fastest = float(np.max(np.abs(v) * np.where(system.positions, 1.0, system.extent), initial=0.0))
     fastest += system.extent / duration
     for item in system.connectors.items:
         if follows_time(item)[1]:
             raise InputError(
-                f"conditions of {item.name} depend on time, which simulate does not take; let a Prescribed support move"
+                f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
+                "move"
             )
         own = item.own - system.model.coordinates
         if np.any(np.abs(gaps[own]) > _MET * system.extent):
-            raise InputError(f"the start of the motion does not meet what {item.name} asks for: {gaps[own]} is left")
+            raise InputError(
+                f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[own]}"
+            )
         if np.any(np.abs(rates[own]) > _MET * fastest):
             raise InputError(
-                f"the initial velocity does not meet what {item.name} asks for: its conditions change by {rates[own]} "
-                "per second. Give all that it connects velocities that go together, such as one RigidVelocity"
+                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[own]} "
+                "per second. Give all that it connects compatible velocities, such as one RigidVelocity"
             )
 
 

@@ -37,12 +37,43 @@ def simulate(
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,
 ) -> Solution:
-    """Return the motion over `duration` [s] with a fixed `step` [s]; the last step ends at or just after it.
+    """Integrate the equations of motion over time with a fixed step.
 
-    integrator: GeneralizedAlpha() by default, or a user-defined `Integrator`; start: a state to start from, such as the
-    last one of a static solution; velocity: initial velocity field; save_every: keep every n-th state and the last one.
-    Raises InputError before the solve, ConvergenceError (with all states so far) if a step does not converge. Any other
-    exception during the solve, such as KeyboardInterrupt, carries the states so far as its `solution` too.
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads.
+    duration : float, [s]
+        Time to simulate; the last step ends at or just after it.
+    step : float, [s]
+        Time step.
+    integrator : GeneralizedAlpha or Integrator, optional
+        Time integration method, by default `GeneralizedAlpha()`; an `Integrator` is a user-defined one.
+    start : State, optional
+        State to start from, such as the last one of a static solution; by default the reference at rest.
+    velocity : RigidVelocity or callable, optional
+        Initial velocity field.
+    save_every : int, default 1
+        Keep every n-th state and the last one.
+
+    Returns
+    -------
+    Solution
+        One row for each saved time.
+
+    Raises
+    ------
+    InputError
+        Before the solve, for invalid arguments.
+    ConvergenceError
+        If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
+        KeyboardInterrupt, carries the states so far as its `solution` too.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001)
+    >>> round(float(motion.displacement(beam.end)[-1, 1]), 4)
+    -0.0569
     """
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
@@ -107,7 +138,7 @@ def _solution(
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:
-        ended += f"; the {name} varies within steps, which is lost"
+        ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
     summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
     p, v, a = states.swapaxes(0, 1)

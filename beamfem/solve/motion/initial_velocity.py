@@ -45,7 +45,7 @@ def start_velocity(
 
 
 def _of_field(system: System, velocity: Callable[[np.ndarray], np.ndarray], p: np.ndarray) -> np.ndarray:
-    """Rates (n,) of a velocity field from the state p; a shared coordinate takes the mean of what its beams say."""
+    """Return the rates (n,) of a velocity field at the state p; a shared coordinate takes the mean of its beams."""
     total, times = np.zeros(len(p)), np.zeros(len(p))
     for mesh in system.model.meshes:
         values = np.array([vector("velocity", called("velocity", velocity, x)) for x in mesh.position])
@@ -70,10 +70,10 @@ def _of_field(system: System, velocity: Callable[[np.ndarray], np.ndarray], p: n
 
 
 def _along(mesh: BeamMesh, velocity: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Derivative (nodes, 2) [1/s] of a velocity field along the beam, at the ends of its elements.
+    """Return the derivative (nodes, 2) [1/s] of a velocity field along the beam, at the ends of its elements.
 
-    By differences of fourth order inside each element, so that the field is asked on the beam only; where two elements
-    meet in a node, the mean of both, across a corner each side has its own.
+    It is a difference of fourth order inside each element, so that the field is evaluated on the beam only; at a node
+    of two elements it is the mean of both, but at a corner each side has its own.
     """
     total, elements = np.zeros((mesh.nodes, 2)), np.zeros((mesh.nodes, 1))
     number = np.arange(mesh.elements)

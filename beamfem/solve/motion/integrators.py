@@ -10,10 +10,28 @@ from beamfem.validation import convert, finite
 
 @dataclass(frozen=True)
 class GeneralizedAlpha:
-    """Generalized-alpha method, second order, unconditionally stable for linear systems; Chung and Hulbert 1993.
+    """Generalized-alpha method, second order accurate, unconditionally stable for linear systems.
 
-    rho_inf in [0, 1] [-]: spectral radius at infinite frequency; 1 has no numerical damping, 0 removes the highest
-    frequencies in one step. Raises InputError.
+    Parameters
+    ----------
+    rho_inf : float, [-], default 0.9
+        Spectral radius at infinite frequency, from 0 to 1; 1 has no numerical damping, 0 removes the highest
+        frequencies in one step.
+
+    Raises
+    ------
+    InputError
+        For a value outside 0 to 1.
+
+    References
+    ----------
+    Chung and Hulbert 1993.
+
+    Examples
+    --------
+    >>> motion = bf.simulate(model, duration=0.02, step=0.001, integrator=bf.GeneralizedAlpha(rho_inf=0.8))
+    >>> len(motion)
+    21
     """
 
     rho_inf: float = 0.9

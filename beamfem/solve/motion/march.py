@@ -1,4 +1,4 @@
-"""The way through the time steps of a motion: stretches of equal steps, what is kept of them, and where one fails."""
+"""Marching through the time steps of a motion: stretches of equal steps, stored states, and failures."""
 
 import time as clock
 from collections.abc import Iterator
@@ -26,10 +26,10 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 
 @dataclass(frozen=True)
 class Record:
-    """Kept states (rows, 3, n) of every so many-th whole step, and of the last, which goes to the row after them.
+    """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
     statistics (9,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
-    the kept states.
+    the stored states.
     """
 
     states: np.ndarray
@@ -46,13 +46,13 @@ def new_statistics() -> np.ndarray:
 
 @dataclass
 class Last:
-    """The last whole step that was completed, whenever the work ends: its number, state (3, n) and turns (m,) [rad]."""
+    """The last whole step that was completed: its number, state (3, n) and rotations (m,) [rad]."""
 
     step: tuple[int, np.ndarray, np.ndarray]
     _spare: np.ndarray | None = None
 
     def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
-        """Take another step. One assignment sets it, so that an interruption finds it whole."""
+        """Take another step, by one assignment, so that it is complete after an interruption."""
         before, room = self.step[1], np.empty_like(state) if self._spare is None else self._spare
         room[:] = state
         self.step = done, room, turned.copy()
@@ -88,7 +88,7 @@ def march(
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration
     relaxed = damped and isinstance(integrator, GeneralizedAlpha) and integrator.rho_inf < 1.0
-    # an integrator of one's own may raise anything, and what it has reached before is kept
+    # a user-defined integrator may raise any exception; the states reached before are kept
     size = 1 if own else max(_FIRST_CHUNK // system.model.size, 1)
     turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
@@ -133,7 +133,7 @@ def march(
 
 
 def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
-    """Return the row (3, n) that was kept where a stretch begins, if one was."""
+    """Return the row (3, n) that was stored at the beginning of a stretch, if there is one."""
     return record.states[done // record.every] if part.begins_whole and done % record.every == 0 else None
 
 
@@ -141,7 +141,7 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 def _steps(
     system: System, integrator: GeneralizedAlpha | Integrator, part: Stretch, statistics: np.ndarray
 ) -> Iterator[BandMotion | SparseMotion | OwnSteps]:
-    """Lend what takes the steps of a stretch."""
+    """Provide the object that takes the steps of a stretch."""
     if not isinstance(integrator, GeneralizedAlpha):
         yield OwnSteps(system, integrator, part.loads_from, statistics)
         return
@@ -162,10 +162,10 @@ def _why(statistics: np.ndarray) -> str:
 
 
 def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
-    """Give p' what the auxiliary acceleration a still had to give at the end of a stretch; rule: of its steps.
+    """Add to p' the remaining contribution of the auxiliary acceleration a at the end of a stretch; rule: of its steps.
 
-    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. So it does across
-    stretches, and momentum is kept.
+    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. With this
+    correction the same holds across stretches, and momentum is conserved.
     """
     state[1] += rule[0] * (0.5 - rule[2]) * (state[3] - state[2])
 
@@ -182,9 +182,9 @@ def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarr
 def initial_acceleration(system: System, state: np.ndarray, time: float, step: float = 0.0) -> np.ndarray:
     """Return p'' (n,) that satisfies the equations of motion at the start; state: p, p', p'' of prescribed coordinates.
 
-    Multipliers among p are set as well. step [s]: (M + step D) p'' = what is unbalanced, the mean over a step that
-    damping D may leave little of: from p'' itself, which a creeping beam has for an instant only, the
-    generalized-alpha method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step it is the same.
+    Multipliers among p are set as well. With a step [s] it solves (M + step D) p'' = unbalanced forces, the mean over
+    a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the generalized-alpha
+    method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same.
     """
     p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
     free = system.free_dofs

@@ -1,4 +1,4 @@
-"""Time integrators of one's own: the equations that they step through, and their way into a motion."""
+"""User-defined time integrators: the equations that they solve, and marching with them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,8 +24,15 @@ from beamfem.validation import shown
 class EquationsOfMotion:
     """M(p) p'' + inertia of first order + elastic forces - loads = 0, for the unknown coordinates.
 
-    free (unknown,): their numbers among all coordinates; scale (unknown,): what a correction of each is measured by;
-    counted (1,): how often `solve` was asked, the iterations of the motion.
+    An `Integrator` receives it; `free` (unknown,) are the numbers of the unknown coordinates among all coordinates, and
+    `scale` (unknown,) is what a correction of each is measured by.
+
+    Parameters
+    ----------
+    system : System
+        The assembled model.
+    counted : array of int, (1,)
+        Number of calls of `solve`, the iterations of the motion.
     """
 
     system: System
@@ -40,7 +47,20 @@ class EquationsOfMotion:
         return self.system.scale[self.system.free_dofs]
 
     def residual(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
-        """Return the left side (unknown,) [N, N m] in a state p, v, a (n,) at a time [s]."""
+        """Return the left side of the equations in a state.
+
+        Parameters
+        ----------
+        p, v, a : array, (n,)
+            Coordinates and their rates.
+        time : float, [s]
+            Time.
+
+        Returns
+        -------
+        array, [N, N m], (unknown,)
+            The residual.
+        """
         return residual(self.system, p, v, a, time)[self.free]
 
     def tangent(
@@ -51,19 +71,64 @@ class EquationsOfMotion:
         time: float,
         weights: tuple[float, float, float],
     ) -> csr_array:
-        """Return the derivative (unknown, unknown) of the residual where p, v and a change by these weights."""
+        """Return the derivative of the residual if p, v and a change by given weights.
+
+        Parameters
+        ----------
+        p, v, a : array, (n,)
+            Coordinates and their rates.
+        time : float, [s]
+            Time.
+        weights : (float, float, float)
+            Changes of p, v and a.
+
+        Returns
+        -------
+        csr_array, (unknown, unknown)
+            The derivative.
+        """
         return linearise(self.system, p, v, a, time, weights)[1].sparse(UNROTATED)
 
     def energy(self, p: np.ndarray, time: float) -> float:
-        """Return the strain energy and the potential of loads, springs and foundations [J]; see `results.energies`."""
+        """Return the strain energy and the potential of loads, springs and foundations, see `results.energies`.
+
+        Parameters
+        ----------
+        p : array, (n,)
+            Coordinates.
+        time : float, [s]
+            Time.
+
+        Returns
+        -------
+        float, [J]
+            Their sum.
+        """
         rest, at = np.zeros((1, len(p))), np.array([time])
         energy = Solution(self.system.model, False, at, p[None], rest, rest, Statistics(0, 0, 0, "")).energy()
         return float(energy.strain[0] + energy.potential[0])
 
     def solve(self, blocks: Sequence[Sequence[csr_array]], right: np.ndarray) -> np.ndarray:
-        """Return x (s, unknown) of a system of s x s tangents and right sides (s, unknown).
+        """Solve a linear system of s x s tangents.
 
-        Nothing moves along the normals of inclined rollers. Raises ConvergenceError if it is singular.
+        The solution has no components along the normals of inclined rollers.
+
+        Parameters
+        ----------
+        blocks : sequence of sequence of csr_array, (s, s)
+            The tangents.
+        right : array, (s, unknown)
+            Right sides.
+
+        Returns
+        -------
+        array, (s, unknown)
+            The solution.
+
+        Raises
+        ------
+        ConvergenceError
+            If the system is singular.
         """
         self.counted[0] += 1
         stages, unknown = right.shape
@@ -81,18 +146,35 @@ class EquationsOfMotion:
 
 
 class Integrator(Protocol):
-    """A time integrator of one's own, such as one with stages, or with forces between two states."""
+    """A user-defined time integrator, such as one with stages, or with forces between two states."""
 
     def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
-        """Return the state at a time `end` [s] after that at `begin.at`; prescribed coordinates rest.
+        """Return the state after a step; prescribed coordinates are at rest.
 
-        Raises ConvergenceError if it is not found.
+        Parameters
+        ----------
+        motion : EquationsOfMotion
+            Residual, tangent and solver of the model.
+        begin : State
+            State at the start of the step, at the time `begin.at`.
+        end : float, [s]
+            Time at the end of the step.
+
+        Returns
+        -------
+        State
+            State at `end`.
+
+        Raises
+        ------
+        ConvergenceError
+            If no state is found.
         """
         ...
 
 
 class OwnSteps:
-    """Marches with an integrator of one's own; why: it could not go on."""
+    """Marches with a user-defined integrator; why: the reason of a failure."""
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
         self.system, self.integrator, self.time = system, integrator, begin
@@ -135,11 +217,11 @@ class OwnSteps:
 
 
 def refuse_what_own_steps_lack(system: System) -> None:
-    """Raise InputError for models whose motions integrators of one's own do not take."""
+    """Raise InputError for models that user-defined integrators do not support."""
     moved = [item for item in system.prescribed if callable(item.value)]
     if moved:
         raise InputError(
-            f"{moved[0].point} is moved, which an integrator of one's own does not take: use GeneralizedAlpha, or let "
+            f"{moved[0].point} is moved, which user-defined integrators do not support: use GeneralizedAlpha, or let "
             "supports rest"
         )
     for law, _ in system.history.laws:
@@ -148,6 +230,6 @@ def refuse_what_own_steps_lack(system: System) -> None:
         )
     if len(system.connectors.multipliers):
         raise InputError(
-            "connectors with unknowns of their own are there, which an integrator of one's own does not take: use "
+            "the model has connectors with unknowns of their own, which user-defined integrators do not support: use "
             "GeneralizedAlpha"
         )

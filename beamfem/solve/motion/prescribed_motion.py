@@ -1,4 +1,4 @@
-"""Prescribed coordinates at the ends of time steps: values, velocities, and accelerations that keep the momentum."""
+"""Prescribed coordinates at the ends of time steps: values, velocities, and momentum-consistent accelerations."""
 
 from itertools import pairwise
 
@@ -9,8 +9,8 @@ from beamfem.errors import InputError
 from beamfem.model.sampled import Sampled
 
 _ORDER = 4  # of the filter
-_WIDTH = 0.02  # of a step, of the differences that give velocities
-# weights of the first derivative inside, and of the first and third at an end, where nothing is asked outside
+_WIDTH = 0.02  # of a step: width of the differences that give velocities
+# weights of the first derivative inside, and of the first and third at an end, from values inside only
 _INSIDE = np.array([-2, -1, 1, 2]), np.array([1, -8, 8, -1]) / 12.0
 _AT_END = np.arange(5), np.array([-25, 48, -36, 16, -3]) / 12.0, np.array([-5, 18, -24, 14, -3]) / 2.0
 
@@ -18,24 +18,25 @@ _AT_END = np.arange(5), np.array([-25, 48, -36, 16, -3]) / 12.0, np.array([-5, 1
 def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
     """Return values, velocities and accelerations (m + 1, 3, nh) of the prescribed coordinates at times (m + 1,) [s].
 
-    An acceleration is the mean of u'' under the hat that is 1 at the end of a step and 0 at those beside it: the change
-    of the mean velocity from the step before to the step after, over the mean of both steps. So its sum over the steps
-    is the change of the velocity, whatever u is between, and where u is smooth, the mean differs from u'' in second
-    order. At the first and last time it is the half of the hat that lies inside, corrected for u''' where u is smooth.
-    Values are u without what swings from step to step: stiff parts of a model would have to follow that, and ring.
-    Raises InputError for motions that are known by values only.
+    An acceleration is the mean of u'' weighted by the hat function that is 1 at the end of a step and 0 at the adjacent
+    ends: the change of the mean velocity from the step before to the step after, over the mean of both steps. Its sum
+    over the steps is therefore the change of the velocity, whatever u is in between, and for smooth u it differs from
+    u'' in second order. At the first and last time the half of the hat inside is taken, corrected for u''' if u is
+    smooth. Values are u without the part that alternates from step to step, which would make stiff parts of a model
+    oscillate. Raises InputError for motions that are known by values only.
     """
     if any(isinstance(item.value, Sampled) for item in system.prescribed):
         raise InputError(
             "a prescribed motion of this model was saved as values, which have no accelerations between them; "
-            "give the function again to run it on"
+            "give the function again to continue it"
         )
     values = np.zeros((len(ends), 3, len(system.prescribed)))
     if not any(callable(item.value) for item in system.prescribed):
         values[:, 0] = system.prescribed_values(0.0)
         return values
     steps = np.diff(ends)
-    moved = np.array([system.prescribed_changes(time) for time in ends])  # keeps more digits than positions far away
+    # more accurate than positions far from the origin
+    moved = np.array([system.prescribed_changes(time) for time in ends])
     values[:, 0] = system.reference[system.prescribed_dofs] + moved - _unresolved(moved, steps)
     mean = np.diff(moved, axis=0) / steps[:, None]
     width = _WIDTH * np.minimum(steps[:-1], steps[1:])
@@ -55,10 +56,10 @@ def prescribed_motion(system: System, ends: np.ndarray) -> np.ndarray:
 
 
 def _unresolved(moved: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Return the part of motions (m + 1, nh) that changes its sign from step to step, where steps (m,) are equal.
+    """Return the part of motions (m + 1, nh) that changes its sign from step to step, for equal steps (m,).
 
-    That is (-D / 4)^4 u with second differences D: 1 of what does so in every step, (w h / 2)^8 of an oscillation w.
-    A corner that jumps in velocity by dv is rounded by at most 0.08 h dv. Shapiro 1970.
+    It is (-D / 4)^4 u with second differences D (Shapiro 1970): the whole of an alternating motion, and (w h / 2)^8 of
+    an oscillation of angular frequency w. A corner with a velocity jump dv is rounded by at most 0.08 h dv.
     """
     result = np.zeros_like(moved)
     even = np.abs(np.diff(steps)) <= 1e-9 * steps[1:]
@@ -71,5 +72,5 @@ def _unresolved(moved: np.ndarray, steps: np.ndarray) -> np.ndarray:
 
 
 def _smaller(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the smaller of two estimates (nh,) of the same, 0 if they differ in sign: then u has kinks."""
+    """Return the smaller of two estimates (nh,), or 0 if they differ in sign, since u then has kinks."""
     return np.where(one * other > 0.0, np.sign(one) * np.minimum(np.abs(one), np.abs(other)), 0.0)

@@ -1,6 +1,6 @@
-"""Time steps of models whose tangent is no narrow band, or that remember: those of `kernels.march` one by one.
+"""Time steps of models whose tangent is not a narrow band, or with history: those of `kernels.march` one by one.
 
-A step is solved to the same tolerances. Only a factorisation is kept longer, for it costs as much as ten iterations.
+A step is solved to the same tolerances, but a factorisation is kept longer, since it costs as much as ten iterations.
 """
 
 import numpy as np
@@ -21,13 +21,13 @@ from beamfem.kernels.motion_steps import (
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
 
-# Simplified Newton iterations: how many a step may take before Newton's own method starts it anew; after how many of
-# them, or above which rate of convergence, the next step gets a new tangent.
+# Simplified Newton iterations: the number after which a step starts again with the full Newton method; the number, and
+# the rate of convergence, above which the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 24, 16, 0.5
 
 
 class SparseMotion:
-    """Marches through time steps; keeps the factors of its tangent from one call to the next.
+    """Marches through time steps; keeps the factors of its tangent between calls.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
     coordinate, largest number of iterations; statistics (9,): see `kernels.march.march`.
@@ -73,16 +73,17 @@ class SparseMotion:
         return len(times)
 
     def _solve(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
-        """Iterate for the end of a step: with the last tangent, a new one, and then one of each iterate.
+        """Iterate for the end of a step: with the last tangent, with a new one, and then with one for each iterate.
 
-        These start from the acceleration of before or from the positions of before, first from what was nearer.
+        The iteration starts from the previous acceleration or the previous positions, first from those that were
+        nearer.
         """
         order = float(self.statistics[6])
         kept = self.statistics[4] >= 0.0 and self._factors is not None
         if kept and self._iterate(state, before, prescribed, time, order, full=False, fresh=False):
             return True
         solved = self._iterate(state, before, prescribed, time, order, full=False, fresh=True)
-        near = -1.0 if order < 0.0 or self.statistics[7] == 0.0 else 0.0  # of the first step nothing is known
+        near = -1.0 if order < 0.0 or self.statistics[7] == 0.0 else 0.0  # nothing is known before the first step
         return solved or any(
             self._iterate(state, before, prescribed, time, low, full=True, fresh=True) for low in (near, -1.0 - near)
         )
@@ -97,7 +98,7 @@ class SparseMotion:
         full: bool,
         fresh: bool,
     ) -> bool:
-        """Iterate, full: each with its own tangent; tell whether the error is small enough.
+        """Iterate and return whether the error is small enough; full: a new tangent for each iterate.
 
         order: of the extrapolation of the acceleration, see `motion_steps.predict`.
         """
@@ -126,7 +127,7 @@ class SparseMotion:
                 size,
                 correct(self._size, len(free), -1, state, right, free, scale, self._weights, self._change),
             )
-            state[1:, self._multipliers] = 0.0  # they have no rates
+            state[1:, self._multipliers] = 0.0  # multipliers have no rates
             iteration += 1
             statistics[0] += 1
             statistics[2] = size
@@ -152,7 +153,7 @@ class SparseMotion:
                 and (full or first_size > FAR)
                 and not self.system.assembler().smallest_jacobian(state[0]) > 0.0
             ):
-                judged = -1  # inside out: no motion leads there
+                judged = -1  # turned inside out, which no motion can reach
             done, fresh, rate = judged == 1, judged == 2, float(self._number[0])
             if not fresh and (judged < 0 or (not full and iteration > 1 and rate >= 0.5)):
                 break
@@ -163,13 +164,13 @@ class SparseMotion:
     def _correction(
         self, state: np.ndarray, time: float, renew: bool, stresses: tuple[np.ndarray, ...] | None
     ) -> np.ndarray:
-        """Return the correction (unknown,) of p, with a new tangent or that of before. Raises LinAlgError.
+        """Return the correction (unknown,) of p, with a new tangent or the previous one. Raises LinAlgError.
 
-        stresses: of a new tangent, see `linearise`.
+        stresses: for a new tangent, see `linearise`.
         """
         p, v, a, _ = state
         if renew or self._factors is None:
-            self._factors = None  # room for the new ones
+            self._factors = None  # frees their memory before the new ones are made
             unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self._dt)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1

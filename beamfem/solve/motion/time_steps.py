@@ -1,4 +1,4 @@
-"""Where the time steps of a motion end: at multiples of the step, and at the kinks that its loads declare."""
+"""Ends of the time steps of a motion: multiples of the step, and the kinks that its loads declare."""
 
 from dataclasses import dataclass
 
@@ -6,20 +6,20 @@ import numpy as np
 
 from beamfem.solve.motion.unresolved import Course
 
-_NEAR = 1e-4  # of a step: a kink so near to the end of a step is at it
-SIDE = 1e-9  # of a step: how far from a kink a load is taken on either side of it
-_JUMP = 1e-6  # of the values of a load: a larger difference over a kink is a jump
-_STRAIGHT = 1e-4  # of the values of a load: how well steps follow one in a step that is divided for it
+_NEAR = 1e-4  # of a step: a kink this close to the end of a step is taken to be there
+SIDE = 1e-9  # of a step: distance from a kink at which a load is evaluated on either side of it
+_JUMP = 1e-6  # of the values of a load: a larger difference across a kink is a jump
+_STRAIGHT = 1e-4  # of the values of a load: accuracy with which divided steps follow it
 _MOST_PARTS = 128
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """Equal steps one after the other.
+    """A sequence of equal steps.
 
-    times (m + 1,) [s]: from where it begins; step [s]; begins_whole, ends_whole, whole: whether it begins, it ends, and
-    all its steps end at multiples of the step that was asked for; loads_from, loads_to [s]: when the loads at its
-    beginning and at its end are taken, on their own sides of a jump.
+    times (m + 1,) [s]: its beginning and the ends of its steps; step [s]; begins_whole, ends_whole, whole: whether its
+    beginning, its end, and the ends of all its steps are multiples of the requested step; loads_from, loads_to [s]:
+    times at which the loads at its beginning and end are evaluated, inside of a jump.
     """
 
     times: np.ndarray
@@ -34,7 +34,7 @@ class Stretch:
 def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]:
     """Return the steps between the times of a grid (steps + 1,) [s], divided at the kinks of amplitudes.
 
-    A part in which such an amplitude is no straight line is divided further.
+    A part in which such an amplitude is not linear is divided further.
     """
     step, end_time = float(grid[1]), float(grid[-1])
     declaring = [course for course in amplitudes if course.kinks]
@@ -81,12 +81,12 @@ def _apart(kinks: np.ndarray, near: float, end_time: float) -> np.ndarray:
 
 
 def _jump(course: Course, kink: float, side: float, end_time: float) -> float:
-    """Return how far a load is apart on both sides of a kink; nothing is asked before or after the motion."""
+    """Return the jump of a load across a kink; it is not evaluated before or after the motion."""
     return abs(course.at(min(kink + side, end_time)) - course.at(max(kink - side, 0.0)))
 
 
 def _parts(declaring: list[Course], sizes: list[float], begin: float, end: float) -> int:
-    """Return into how many equal steps the time between two kinks is divided."""
+    """Return the number of equal steps into which the time between two kinks is divided."""
     inset, parts = SIDE * (end - begin), 1
     for course, size in zip(declaring, sizes, strict=True):
         if size > 0.0:

@@ -1,4 +1,4 @@
-"""What acts in time, and whether the steps resolve it."""
+"""Functions of time that act on a model, and whether the steps resolve them."""
 
 import warnings
 from collections.abc import Callable
@@ -13,13 +13,14 @@ from beamfem.model.model import Model
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
 
-_SHARES = np.array([0.21, 0.48, 0.77])  # of a step, where it is looked at; unequal, so that few oscillations hide
-_BULGE = 0.1  # of what a course is measured by; what is resolved by seven steps a period stays below
+# of a step, at which a course is evaluated; unequal, so that few oscillations are missed
+_SHARES = np.array([0.21, 0.48, 0.77])
+_BULGE = 0.1  # of the scale of a course; an oscillation with seven steps per period stays below
 
 
 @dataclass(frozen=True)
 class Course:
-    """A function of time that acts on a model, what it is in words, and whether it is an amplitude or a motion."""
+    """A function of time that acts on a model, its description, and whether it is an amplitude or a motion."""
 
     name: str
     function: Callable[[float], float]
@@ -35,10 +36,10 @@ class Course:
         return function_value(self.name, self.function, time)
 
     def look(self, times: np.ndarray, side: float) -> tuple[np.ndarray, float]:
-        """Tell of each step between times (m + 1,) [s] whether it varies more within than between its ends.
+        """Return for each step (m,) between times (m + 1,) [s] whether it varies more within it than between its ends.
 
-        Return that (m,) and what it is measured by, the largest value of an amplitude or the range of a motion.
-        side [s]: how far inside a step the value at its end is taken where kinks are declared, at which it may jump.
+        Also return its scale, the largest value of an amplitude or the range of a motion. side [s]: distance from the
+        ends of a step at which it is evaluated if it declares kinks, at which it may jump.
         """
         inset = side if self.kinks else 0.0
         low = high = self._values(times)
@@ -53,17 +54,17 @@ class Course:
         return np.maximum(above, below) > _BULGE * size, size
 
     def _values(self, times: np.ndarray) -> np.ndarray:
-        """Return its values at times (n,) [s], without the care for each that `at` takes unless one asks for it."""
+        """Return its values at times (n,) [s], without the checks of `at` unless one fails."""
         try:
             values = np.array([self.function(time) for time in times.tolist()], dtype=float)
-        except Exception:  # `at` tells which value it was
+        except Exception:  # `at` reports which value it was
             values = np.full(len(times), np.nan)
         if values.shape == times.shape and np.isfinite(values).all():
             return values
         return np.array([self.at(time) for time in times.tolist()])
 
     def bend(self, begin: float, end: float) -> float:
-        """Return how far it leaves the straight line between two times [s]."""
+        """Return its largest deviation from the straight line between two times [s]."""
         low, high = self.at(begin), self.at(end)
         return max(abs(self.at(begin + s * (end - begin)) - (1.0 - s) * low - s * high) for s in _SHARES.tolist())
 
@@ -73,7 +74,7 @@ def courses(system: System) -> list[Course]:
     model = system.model
     found: dict[int, Course] = {}
     for load in model.loads:
-        amplitude = load.amplitude  # a method is another object each time
+        amplitude = load.amplitude  # a method is a new object at each access
         if amplitude is not None:
             found.setdefault(id(amplitude), Course(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
@@ -93,7 +94,7 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
             warnings.warn(
                 f"the {course.name} varies more within the step from {ends[first]:.6g} s to {ends[first + 1]:.6g} s "
                 f"than between its ends, where steps take it ({int(bulging.sum())} such steps): what happens in "
-                "between is lost. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
+                "between is not resolved. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
                 stacklevel=3,
             )
     return found

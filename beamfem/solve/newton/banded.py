@@ -1,4 +1,4 @@
-"""Newton's corrections of a model whose tangent is a band, in compiled code up to one that is small."""
+"""Newton's corrections of a model with a band tangent, in compiled code until one is small."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -41,7 +41,7 @@ class BandProblem:
         )
 
     def correct(self) -> Correction:
-        """Take corrections up to one that is small or stagnant. Raises LinAlgError if pivots are needed."""
+        """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
         space, found = self.space, self.space.found
         factorised = iterate(*space.addresses)
         space.assembler.raise_errors()
@@ -56,7 +56,7 @@ class BandProblem:
         return self.space.p.copy()
 
     def balance(self) -> Balance:
-        """Return what is left of the balance in the state reached."""
+        """Return the balance of forces in the state reached."""
         space, found = self.space, self.space.found
         force = max(found[4], self.load)
         return Balance(space.p, space.residual, found[3], force, found[5] <= 0.0)
@@ -66,7 +66,7 @@ class BandProblem:
         return float(self.space.found[7]), int(self.space.found[8])
 
     def count_after_linear(self) -> int:
-        """Return the negative pivots at the start with the stresses of a linear step; what was reached is lost."""
+        """Return the negative pivots at the start with the stresses of a linear step; overwrites the state reached."""
         space = self.space
         space.step[:] = space.linear - self.start
         space.p[:] = self.start
@@ -75,5 +75,5 @@ class BandProblem:
         return count
 
     def give_back(self) -> None:
-        """Let the next solve have the space."""
+        """Release the workspace for the next solve."""
         self.space.give_back(self.system)

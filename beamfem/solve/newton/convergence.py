@@ -1,4 +1,4 @@
-"""When an iteration has come to its end: small corrections, a small residual, or nothing but round-off left of it."""
+"""Convergence of an iteration: small corrections, and a residual that is small or at the round-off floor."""
 
 import math
 from dataclasses import dataclass
@@ -10,16 +10,16 @@ from beamfem.assembly.round_off import MOST_DIGITS, load_size, row_floors
 from beamfem.assembly.system import System
 from beamfem.solve.newton.iteration import Newton, Termination
 
-STAGNANT = 1e-6  # corrections below this that no longer shrink are round-off, if the residual says so too
-_SURE = 1e-9  # of the movement: a correction this small changes nothing that is asked for
-LARGEST = 1e3  # of the model; larger corrections lead nowhere
+STAGNANT = 1e-6  # corrections below this that no longer decrease are round-off, if the residual agrees
+_SURE = 1e-9  # of the movement: smaller corrections do not change the results
+LARGEST = 1e3  # of the model; larger corrections mean divergence
 
 
 @dataclass(frozen=True)
 class Correction:
-    """A correction: its number, its size and that of the one before, and the negative pivots of its tangent.
+    """A correction: its number, its size and that of the previous one, and the negative pivots of its tangent.
 
-    Sizes are relative: of the model for positions, else absolute.
+    Sizes are relative to the model for positions, and absolute otherwise.
     """
 
     number: int
@@ -41,10 +41,10 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """What is left of the balance in a state p (n,): residual (n,), its largest of the unknown, and the largest force.
+    """Balance of forces in a state p (n,): residual (n,), its largest unconstrained component, and the largest force.
 
-    Forces are multiplied by what their coordinate is measured by, so that they compare with moments [N m]. inverted:
-    whether the beam is turned inside out somewhere, which elastic forces that are polynomials do not prevent.
+    Forces are multiplied by the scale of their coordinate, so that they compare with moments [N m]. inverted: whether
+    the beam is turned inside out somewhere, which polynomial elastic forces do not prevent.
     """
 
     p: np.ndarray
@@ -55,7 +55,7 @@ class Balance:
 
     @property
     def digits(self) -> float:
-        """How many digits of the largest force every row leaves."""
+        """Number of digits of the largest force above the round-off of every row."""
         return min(math.log10(self.force / self.largest), MOST_DIGITS) if self.largest > 0.0 else MOST_DIGITS
 
 
@@ -68,7 +68,7 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
 
 def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray, jacobian: float) -> Balance:
     """Return the balance of a state whose residual (n,) and smallest r0' x d are known."""
-    # the largest load counts where nothing reacts
+    # without reactions the largest load counts
     load = load_size(system, system.loads_at(load_factor))
     largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
     force = float(np.max(np.abs(unbalanced) * system.scale, initial=0.0))
@@ -76,10 +76,10 @@ def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: 
 
 
 def check_convergence(system: System, balance: Balance, newton: Newton, correction: Correction) -> Termination | None:
-    """Say how an iteration ended whose corrections are small or no longer shrink; None if it shall go on.
+    """Return how an iteration ended whose corrections are small or no longer decrease; None if it is to continue.
 
-    Where the residual is above the tolerance, each row must have come to its own floor, and what the next correction
-    would be must be lost in the digits of the movement.
+    If the residual is above the tolerance, each row must have reached its round-off floor, and the next correction must
+    be below the round-off of the movement.
     """
     if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
         ended = Termination.CONVERGED
@@ -93,7 +93,7 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
 
 
 def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
-    """Return whether a further correction, if they shrink as before, is small against the movement or below a digit."""
+    """Return whether the next correction, at the present rate, is small relative to the movement or below round-off."""
     if correction.stagnates:
         return True
     size, before = correction.size, correction.before

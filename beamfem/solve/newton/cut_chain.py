@@ -1,4 +1,4 @@
-"""One long chain as two halves with numbers of their own, so that two threads can work on them."""
+"""One long chain cut into two halves with their own numbering, so that two threads can work on them."""
 
 import os
 from dataclasses import dataclass
@@ -12,16 +12,16 @@ from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Springs
 
-_LONG = 20_000  # elements; below, two threads gain little
+_LONG = 20_000  # elements; in shorter chains two threads gain little
 
 
 @dataclass(frozen=True, eq=False)
 class Substructure:
-    """The elements on one side of the cut: what they are made of, their state and space for a step.
+    """The elements on one side of the cut: their data, their state and the workspace of a step.
 
-    place: its coordinates among those of the chain; free: the unknown ones of its own in the order of elimination, from
-    the far end to the node at the cut, whose own stand last, from `inner` on; equations: its own, under its loads; rows
-    (unknown, width): its band.
+    place: its coordinates among those of the chain; free: its unknown coordinates in the order of elimination, from the
+    far end to the node at the cut, whose coordinates come last, from `inner` on; equations: those of this half, under
+    its loads; rows (unknown, width): its band.
     """
 
     place: slice
@@ -42,12 +42,12 @@ class Substructure:
 
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
-    """Return whether a model is one chain of so many elements, with two cores to work on it."""
+    """Return whether a model is one chain of at least `elements` elements and two cores are available."""
     return is_chain(system) and len(system.blocks[0].node) >= elements and usable_cores() > 1
 
 
 def usable_cores() -> int:
-    """Return how many cores this process may use; as in linear algebra, no more than OMP_NUM_THREADS."""
+    """Return the number of cores this process may use, at most OMP_NUM_THREADS as in linear algebra."""
     allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     limit = os.environ.get("OMP_NUM_THREADS", "")
     return min(allowed, int(limit)) if limit.isdecimal() else allowed
@@ -56,14 +56,14 @@ def usable_cores() -> int:
 def substructures_of(system: System, start: np.ndarray, load_factor: float) -> tuple[Substructure, Substructure]:
     """Return the halves of a chain in the state `start` (n,), cut at the node nearest to the middle element."""
     (block,), size = system.blocks, len(start)
-    # at a corner of the curve two nodes stand at the same place
+    # at a corner of the curve two nodes coincide
     cuts = 1 + np.flatnonzero(block.node[1:, 0] == block.node[:-1, -1])
     cut = int(cuts[len(cuts) // 2])
     shared = block.dof[block.node[cut, 0]]
     shared = shared[shared >= 0]
     first, end = int(shared.min()), int(shared.max()) + 1
     unknown = int((system.unknowns.free[shared] >= 0).sum())
-    # springs of the shared node are those of the second half
+    # springs of the shared node belong to the second half
     sprung = system.springs.dof < first
     return (
         _half(system, start, load_factor, slice(0, cut), slice(0, end), sprung, unknown),

@@ -1,4 +1,4 @@
-"""How to iterate for an equilibrium, and how an iteration ended."""
+"""Options of the Newton iteration for an equilibrium, and how an iteration ended."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -28,12 +28,12 @@ class Termination(Enum):
 
 @dataclass(frozen=True)
 class NewtonResult:
-    """The last state (n,) of an iteration, how many iterations it took and why it ended.
+    """The last state (n,) of an iteration, the number of iterations and why it ended.
 
-    negative_pivots: how many of the last tangent; of a symmetric one, in how many ways the equilibrium is unstable;
-    digits: how many of the forces are sure at least; first: size of the first correction [-]; linear: the
-    negative pivots of the tangent at the start with the stresses of a linear step, -1 if it is singular, if the
-    second tangent had another count than asked for.
+    negative_pivots: of the last tangent; for a symmetric one, the number of unstable directions; digits: least number
+    of reliable digits of the forces; first: size of the first correction [-]; linear: if the count of the second
+    tangent differed from the one asked for, the negative pivots of the tangent at the start with the stresses of a
+    linear step, -1 if it is singular.
     """
 
     state: np.ndarray
@@ -47,12 +47,33 @@ class NewtonResult:
 
 @dataclass(frozen=True)
 class Newton:
-    """How to iterate.
+    """Tolerances and options of the Newton iteration.
 
-    tolerance: largest correction relative to the model's length or one radian [-]; residual_tolerance: largest residual
-    relative to the reactions and loads [-]; iterations: how many at most; independent_stresses: take the stress
-    resultants predicted by the last correction for the geometric tangent (Magisano, Leonetti and Garcea 2017).
-    Raises InputError.
+    Parameters
+    ----------
+    tolerance : float, [-], default 1e-10
+        Largest correction relative to the model's length or one radian.
+    residual_tolerance : float, [-], default 1e-9
+        Largest residual relative to the reactions and loads.
+    iterations : int, default 15
+        Largest number of iterations.
+    independent_stresses : bool, default True
+        Whether the geometric tangent takes the section forces that the last correction predicted.
+
+    Raises
+    ------
+    InputError
+        For an invalid value.
+
+    References
+    ----------
+    Magisano, Leonetti and Garcea 2017 (independent stresses).
+
+    Examples
+    --------
+    >>> solution = bf.solve_static(model, newton=bf.Newton(tolerance=1e-8, iterations=30))
+    >>> solution.status.name
+    'COMPLETED'
     """
 
     tolerance: float = 1e-10
@@ -72,7 +93,7 @@ class Newton:
 
 
 def require_newton(newton: Newton | None, default: Newton) -> Newton:
-    """Return what a user gives, or the default for None. Raises InputError for anything else."""
+    """Return the given Newton, or the default for None. Raises InputError for anything else."""
     if newton is None:
         return default
     if not isinstance(newton, Newton):

@@ -1,4 +1,4 @@
-"""What linearised stability expects of a load step."""
+"""Prediction of linearised stability for a load step."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -10,7 +10,7 @@ from beamfem.assembly.system import System
 def count_after(system: System, start: np.ndarray, step: np.ndarray, load_factor: float) -> int:
     """Return the negative pivots of the tangent in `start` (n,) with the stress resultants of a linear step (n,).
 
-    In the shape after the step, which may be absurd, the tangent has another count anyway. -1 if it is singular.
+    The shape after the step may be far off, so that the count of its tangent says nothing. -1 if it is singular.
     """
     try:
         return linearise_after(system, start, step, load_factor).factorised(system.rotated).negative_pivots

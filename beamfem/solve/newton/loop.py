@@ -11,11 +11,11 @@ from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
 
 
 class Problem(Protocol):
-    """Equations in some state, and how they are solved when they are linearised there."""
+    """Equations in a state, and the solution of their linearisation there."""
 
     system: System
     start: np.ndarray
-    counts_digits: bool  # whether the balance tells how many digits of the forces are sure
+    counts_digits: bool  # whether the balance gives the number of reliable digits of the forces
 
     @property
     def state(self) -> np.ndarray:
@@ -23,11 +23,11 @@ class Problem(Protocol):
         ...
 
     def correct(self) -> Correction:
-        """Take the next correction; or several, up to one that is small. Raises LinAlgError."""
+        """Take the next correction, or several until one is small. Raises LinAlgError."""
         ...
 
     def balance(self) -> Balance:
-        """Return what is left of the balance in the state reached."""
+        """Return the balance of forces in the state reached."""
         ...
 
     def after_first(self) -> tuple[float, int]:
@@ -37,16 +37,16 @@ class Problem(Protocol):
     def count_after_linear(self) -> int:
         """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
 
-        -1 if it is singular. It may be asked where the second tangent has another count, and once.
+        -1 if it is singular. It is called at most once, if the second tangent has another count.
         """
         ...
 
 
 def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> NewtonResult:
-    """Return where the iteration ends.
+    """Iterate and return the result.
 
-    keep: stop where the tangent has another count of negative pivots, from the third iteration on; of the second, which
-    takes the stresses of a linear step, the result only tells it.
+    keep: the count of negative pivots to keep; the iteration stops if the tangent has another one from the third
+    iteration on. The second tangent uses the stresses of a linear step, and the result only reports its count.
     """
     number = 0
     while number < newton.iterations:

@@ -23,8 +23,8 @@ def solve_equilibrium(
 ) -> NewtonResult:
     """Return the equilibrium at `load_factor` that is found from the state `start` (n,).
 
-    keep: stop where the tangent has another count of negative pivots, from the third iteration on; of the second, which
-    takes the stresses of a linear step, the result only tells it.
+    keep: the count of negative pivots to keep; the iteration stops if the tangent has another one from the third
+    iteration on. The second tangent uses the stresses of a linear step, and the result only reports its count.
     """
     mixed = MIXED in system.proven
     result = _with_digits(system, load_factor, newton, _solve(system, start, load_factor, newton, keep))
@@ -36,7 +36,7 @@ def solve_equilibrium(
 
 
 def _with_digits(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
-    """Return a result with the digits that are sure of its forces, and what its state lacked to balance them."""
+    """Return a result with the number of reliable digits of its forces and, if these are few, a corrected state."""
     if result.ended is Termination.CONVERGED and math.isnan(result.digits):
         return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Termination.ROUND_OFF:
@@ -50,7 +50,7 @@ def _with_digits(system: System, load_factor: float, newton: Newton, result: New
 
 
 def _solve(system: System, start: np.ndarray, load_factor: float, newton: Newton, keep: int | None) -> NewtonResult:
-    """Iterate as fast as the model allows, and with pivots where it does not."""
+    """Iterate with the fastest method that the model allows, and with pivoting if that fails."""
     step = PrescribedStep(system, start, load_factor)
     result = None
     if system.unknowns.pattern is None and MIXED not in system.proven:

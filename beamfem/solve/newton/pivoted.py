@@ -1,4 +1,4 @@
-"""Newton's corrections of any model: by a sparse matrix, by stress resultants as unknowns, or by a band with pivots."""
+"""Newton's corrections of any model: sparse matrix, stress resultants as unknowns, or band with pivoting."""
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class PivotedProblem:
         return Correction(self.number, self.size, before, factors.negative_pivots)
 
     def balance(self) -> Balance:
-        """Return what is left of the balance in the state reached."""
+        """Return the balance of forces in the state reached."""
         return balance_of(self.system, self.state, self.load_factor)
 
     def after_first(self) -> tuple[float, int]:

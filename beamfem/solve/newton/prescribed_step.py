@@ -1,4 +1,4 @@
-"""The step of prescribed coordinates at the begin of an iteration."""
+"""The step of prescribed coordinates at the beginning of an iteration."""
 
 from functools import cached_property
 

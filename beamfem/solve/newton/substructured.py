@@ -15,7 +15,7 @@ from beamfem.solve.newton.substructures import correct, joined, negative_pivots
 
 
 class SubstructuredProblem:
-    """The equilibrium at a load factor, from the state `start` (n,); pool: one thread beside this one."""
+    """The equilibrium at a load factor, from the state `start` (n,); pool: provides a second thread."""
 
     counts_digits = True
 
@@ -33,7 +33,7 @@ class SubstructuredProblem:
         self.number, self.size, self.first, self.second = 0, np.inf, np.nan, 0
 
     def correct(self) -> Correction:
-        """Take the next correction. Raises LinAlgError if pivots are needed."""
+        """Take the next correction. Raises LinAlgError if pivoting is needed."""
         change = (self.step.step, self.step.force) if self.number == 0 else None
         before = self.size
         self.size, shared = correct(self.substructures, self.pool, self.newton.independent_stresses, change)
@@ -54,7 +54,7 @@ class SubstructuredProblem:
         return result
 
     def balance(self) -> Balance:
-        """Return what is left of the balance in the state reached."""
+        """Return the balance of forces in the state reached."""
         p, unbalanced, jacobian = joined(self.substructures, self.pool)
         return balance_with(self.system, p, self.load_factor, unbalanced, jacobian)
 
@@ -63,7 +63,7 @@ class SubstructuredProblem:
         return self.first, self.second
 
     def count_after_linear(self) -> int:
-        """Return the negative pivots at the start with the stresses of a linear step, taken anew: -1 if singular."""
+        """Return the negative pivots at the start with the stresses of a linear step, repeated here; -1 if singular."""
         zeros = np.zeros(len(self.start))
         unbalanced, tangent = linearise(self.system, self.start, zeros, zeros, self.load_factor, STATICS)
         step, free = self.step.step.copy(), self.system.free_dofs

@@ -1,6 +1,6 @@
 """Newton's steps of a chain cut in two, on two threads, by substructuring.
 
-Each half eliminates its own unknowns; what is left for those of the shared node, a few rows, is added up and solved.
+Each half eliminates its own unknowns; the few remaining equations of the shared node are added up and solved.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from beamfem.solve.newton.cut_chain import Substructure
 _NOTHING = np.empty(0)
 T = TypeVar("T")
 
-# a step (n,) of the prescribed coordinates and what it changes in the residual (n,), on the first step only
+# a step (n,) of the prescribed coordinates and the change of the residual (n,) that it causes, in the first step only
 Change = tuple[np.ndarray, np.ndarray] | None
 
 
@@ -27,12 +27,12 @@ def correct(
 ) -> tuple[float, np.ndarray]:
     """Take one step of Newton's method; return its relative size and the pivots of the shared unknowns (s,).
 
-    predicts: take stresses predicted by the step before for the geometric tangent. Raises LinAlgError if pivots are
-    needed.
+    predicts: use the stresses predicted by the previous step in the geometric tangent. Raises LinAlgError if pivoting
+    is needed.
     """
     predicted = predicts and change is None
     left = _both(pool, lambda half: _eliminate(half, predicted, change), substructures)
-    # in the second half the shared unknowns stand in reversed order
+    # in the second half the shared unknowns are in reverse order
     schur, right, diagonal = (a + np.flip(b) for a, b in zip(*left, strict=True))
     if change is not None:
         right -= change[1][substructures[0].free[substructures[0].inner :]]
@@ -48,8 +48,8 @@ def correct(
 
 
 def negative_pivots(substructures: tuple[Substructure, Substructure], shared: np.ndarray) -> int:
-    """Return how many pivots of the last step were negative; shared: those of the shared unknowns."""
-    # the factorisation keeps the inverse of each pivot on the diagonal
+    """Return the number of negative pivots of the last step; shared: pivots of the shared unknowns."""
+    # the factorisation stores the inverse of each pivot on the diagonal
     of_all = (shared, *(half.rows[: half.inner, half.rows.shape[1] // 2] for half in substructures))
     return sum(int((values < 0.0).sum()) for values in of_all)
 
@@ -57,13 +57,13 @@ def negative_pivots(substructures: tuple[Substructure, Substructure], shared: np
 def _both(
     pool: Executor, call: Callable[[Substructure], T], substructures: tuple[Substructure, Substructure]
 ) -> tuple[T, T]:
-    """Return what a call gives for each half; this thread does one of them."""
+    """Return the results of a call for both halves; this thread computes one of them."""
     other = pool.submit(call, substructures[1])
     return call(substructures[0]), other.result()
 
 
 def _eliminate(half: Substructure, predicted: bool, change: Change) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what is left for the shared unknowns (s,): matrix (s, s), right-hand side and the diagonal before."""
+    """Return the condensed equations of the shared unknowns (s,): matrix (s, s), right-hand side, original diagonal."""
     rows, right, inner, middle = half.rows, half.right, half.inner, half.rows.shape[1] // 2
     half.balance(predicted, rows.reshape(-1))
     np.negative(np.take(half.residual, half.free, out=right, mode="clip"), out=right)
@@ -78,7 +78,7 @@ def _eliminate(half: Substructure, predicted: bool, change: Change) -> tuple[np.
 
 
 def _advance(half: Substructure, predicts: bool, change: Change) -> float:
-    """Take the step, whose shared unknowns are known; return its relative size."""
+    """Take the step by back substitution from the shared unknowns; return its relative size."""
     middle = half.rows.shape[1] // 2
     band(middle).solve_upper(half.inner, len(half.right), middle, half.rows, half.right)
     half.step[:] = 0.0 if change is None else change[0][half.place]

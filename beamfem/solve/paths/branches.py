@@ -1,4 +1,4 @@
-"""From a bifurcation onto the branch that crosses there."""
+"""Switching from a path to the branch that crosses at a bifurcation."""
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -6,19 +6,19 @@ from scipy.linalg import LinAlgError
 from beamfem.results.path import Bifurcation
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 
-_FIRST_MODE = 0.02  # how far along the mode the branch is looked for first: lengths of the model, radians
+_FIRST_MODE = 0.02  # distance along the mode of the first search: lengths of the model, radians
 _TRIES = 12
-_ALIKE = 0.1  # [rad]: ways that are the same, as branches bend
-_ALONG = 1e-3  # of a mode: what is left of it across a path that goes along it
+_ALIKE = 0.1  # [rad]: directions within this angle are the same, since branches bend
+_ALONG = 1e-3  # of a mode: a smaller component normal to the path means that the path is tangential to it
 
 
 def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathPoint | str:
     """Return a point of the branch close to a bifurcation, or why there is none.
 
-    It is the equilibrium in the plane across the mode at a small distance along it, which the path that was followed
-    to the bifurcation does not meet: the part of the mode along that path is taken out. Where several modes become soft
-    at once, branches leave along some of their combinations only. One that is met in the same direction at two
-    distances leaves here too, however far from the mode that is.
+    It is the equilibrium in the plane normal to the mode at a small distance along it. The component of the mode along
+    the path that was followed is removed, so that this path does not meet the plane. If several modes become soft at
+    once, branches leave along some of their combinations only; an equilibrium found in the same direction at two
+    distances is on a branch that starts here, however far it is from the mode.
     """
     start = np.append(bifurcation.p, bifurcation.at)
     try:
@@ -26,7 +26,7 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
     except LinAlgError:
         return "the tangent is singular"
     distance, reason = _FIRST_MODE, ""
-    others: list[np.ndarray] = []  # equilibria beside those that were looked for
+    others: list[np.ndarray] = []  # equilibria found away from the mode
     for _ in range(_TRIES):
         step = distance * way
         corrected = line.correct(start + step, line.stresses(start, step), way)
@@ -49,15 +49,15 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
 
 
 def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
-    """Return whether two changes of y (n + 1,) go the same way."""
+    """Return whether two changes of y (n + 1,) have the same direction."""
     apart = one / line.length(one) - other / line.length(other)
     return line.length(apart) < _ALIKE
 
 
 def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:
-    """Return the unit change of y (n + 1,) that is across the path, and like it keeps the balance to first order.
+    """Return the unit change of y (n + 1,) that is normal to the path and keeps the balance to first order.
 
-    Along the mode or, where the path itself goes along it, towards larger load factors. Raises LinAlgError.
+    It is along the mode or, if the path itself is, towards larger load factors. Raises LinAlgError.
     """
     along = bifurcation.tangent / line.length(bifurcation.tangent)
     mode = np.append(bifurcation.mode, 0.0)

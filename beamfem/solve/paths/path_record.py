@@ -1,4 +1,4 @@
-"""Results of a path so far, which are kept however the work ends."""
+"""Results of a path so far, kept even if the solve ends with an exception."""
 
 import numpy as np
 
@@ -16,12 +16,12 @@ from beamfem.solve.continuation.steps import Step
 class PathRecord:
     """Results so far; rows: points y (n + 1,), whether they are stable, and counted rotations (m,) [rad].
 
-    One call adds a row, so that an interruption finds a complete one.
+    One call adds a row, so that rows are complete after an interruption.
     """
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        # of other tangents the signs of pivots do not tell what is stable
+        # for unsymmetric tangents the signs of pivots do not determine stability
         self.symmetric = system_of(model, static=True).symmetric
         self.rows: list[tuple[np.ndarray, bool, np.ndarray]] = []
         self.limit_points: list[PathState] = []

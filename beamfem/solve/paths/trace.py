@@ -25,7 +25,7 @@ from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.validation import count, finite, function_of_one, optional, positive, shown
 
 _FIRST_STEP = 2e-3  # along the path, see Continuation
-_ITERATIONS = 15  # a shorter step is cheaper than more
+_ITERATIONS = 15  # a shorter step is cheaper than more iterations
 
 Until = float | Callable[[PathState], bool] | None
 
@@ -40,18 +40,55 @@ def trace_equilibrium(
     points: int = 500,
     newton: Newton | None = None,
 ) -> Path:
-    """Return the equilibria along the path from load factor 0, past limit points.
+    """Trace the equilibrium path from load factor 0, past limit points, or a branch from a bifurcation.
 
-    until: the final load factor, or a function of a state that returns True at the end of the path; without it the path
-    ends after `points` points. direction: 1 to start towards larger load factors, -1 towards negative ones, by default
-    towards `until`. start: a bifurcation of a path of this model; the crossing branch is followed to the side of its
-    mode (direction 1, the default) or to the other (-1); if the mode is along a branch that returns, it is followed
-    towards larger (1) or smaller (-1) load factors. step: load factor of the second point. Steps are cut and grown
-    according to the iterations and the curvature of the path.
-    Raises InputError and FreeMotionError before the solve; ConvergenceError, with the path so far as its `solution`, if
-    the path cannot be continued. Any other exception during the solve, such as one of `until` or KeyboardInterrupt,
-    carries `solution` too. Source: Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea
-    2017 (stresses).
+    Steps along the path are cut and enlarged according to the iterations and the curvature of the path.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads; loads with scale=True grow with the load factor.
+    until : float or callable, optional
+        Final load factor, or a function of a state that returns True at the end of the path; without it the path ends
+        after `points` points.
+    start : Bifurcation, optional
+        A bifurcation of a path of this model; the crossing branch is followed.
+    direction : {1, -1}, optional
+        1 to start towards larger load factors, -1 towards negative ones; by default towards `until`. From a
+        bifurcation: to the side of its mode (1, the default) or to the other side (-1); if the mode is along a branch
+        that returns, towards larger (1) or smaller (-1) load factors.
+    step : float, [-], optional
+        Load factor of the second point.
+    points : int, default 500
+        Largest number of points.
+    newton : Newton, optional
+        Tolerances of the iteration.
+
+    Returns
+    -------
+    Path
+        The equilibria, with limit points and bifurcations.
+
+    Raises
+    ------
+    InputError
+        Before the solve, for invalid arguments.
+    FreeMotionError
+        Before the solve, if the model can move without resistance.
+    ConvergenceError
+        If the path cannot be continued; its `solution` has the path so far. Any other exception during the solve, such
+        as one of `until` or KeyboardInterrupt, carries `solution` too.
+
+    References
+    ----------
+    Riks 1979; Wagner and Wriggers 1988 (bifurcations); Magisano, Leonetti and Garcea 2017 (stresses).
+
+    Examples
+    --------
+    >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e6, 0.0))])
+    >>> path = bf.trace_equilibrium(column, until=1.0)
+    >>> round(path.bifurcations[0].load_factor, 3)  # Euler: 539.7 kN
+    0.539
     """
     if callable(until):
         function_of_one("until", until, "a state of the path")
@@ -101,7 +138,7 @@ def trace_equilibrium(
             record.add_critical(line, taken, point)
             report(len(record.rows))
         else:
-            record.end("the path has come to where it shall end")
+            record.end("the path has reached the end that was asked for")
     return record.path()
 
 
@@ -154,7 +191,7 @@ def _step(
 ) -> tuple[Step, PathPoint | None]:
     """Return the longest accepted step from a point up to `size`, and the point on it with the load factor `end`.
 
-    Raises ConvergenceError, which names the most frequent reason for rejections: round-off decides for the shortest.
+    Raises ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
     """
     size = min(size, longest_step(line, point))
     reasons: list[str] = []
@@ -202,5 +239,5 @@ def _met(until: Until, state: PathState) -> bool:
         error.add_note(f"raised by `until`, for the state at load factor {state.load_factor:.6g}")
         raise
     if not isinstance(answer, bool | np.bool_):
-        raise InputError(f"until must give True or False for a state of the path, got {answer!r}")
+        raise InputError(f"until must return True or False for a state of the path, got {answer!r}")
     return bool(answer)

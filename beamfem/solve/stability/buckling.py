@@ -31,23 +31,45 @@ from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
-_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further mean nothing
+_LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further are meaningless
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
 _LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
-_UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
+_UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
 
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """Critical points of a loading path, in its order, load factors ascending.
+    """Critical points of a loading path, in the order of the path, with ascending load factors.
 
-    load_factors (m,): where the tangent is singular, m <= count; kinds (m,): "bifurcation", where another path crosses,
-    or "limit point", the largest load factor of the path, with which it ends; linearised (k,), k <= count: where it
-    would be singular if the path went on as it starts, K0 phi = -(lambda - lambda0) dK/dlambda phi; modes (m, n):
-    critical shapes over all coordinates, their largest displacement of a node 1; states (m, n): the equilibria at
-    `load_factors`; uncertainty (m,): relative error of a load factor by round-off and interpolation; ended: why
-    there are no more; status: STOPPED where the path was lost, or too long, before that could be known.
+    Parameters
+    ----------
+    model : Model
+        The model.
+    load_factors : array, [-], (m,)
+        Load factors at which the tangent stiffness is singular, m <= count.
+    kinds : tuple of str, (m,)
+        "bifurcation", where another path crosses, or "limit point", the largest load factor of the path, with which it
+        ends.
+    linearised : array, [-], (k,)
+        Load factors, k <= count, at which the tangent would be singular if the path went on as it starts,
+        K0 phi = -(lambda - lambda0) dK/dlambda phi.
+    modes : array, (m, n)
+        Critical shapes over all coordinates; the largest displacement of a node is 1.
+    states : array, (m, n)
+        Equilibria at `load_factors`.
+    uncertainty : array, [-], (m,)
+        Relative error of a load factor by round-off and interpolation.
+    ended : str
+        Why there are no more critical points.
+    status : Status
+        STOPPED if the path was lost, or too long, before that could be known.
+
+    Examples
+    --------
+    >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+    >>> bf.solve_buckling(column)
+    Buckling(bifurcation at load factor 539.15711; ended because the requested number, 1, was found)
     """
 
     model: Model
@@ -72,9 +94,30 @@ class Buckling:
         return len(self.load_factors)
 
     def solution(self, mode: int = 0, amplitude: float | None = None) -> Solution:
-        """Return the critical state and the same with a mode added, as a Solution to draw or export.
+        """Return the critical state and the same state with a mode added, as a Solution to draw or export.
 
-        mode: its row; amplitude [m] of the largest displacement, by default a tenth of the longest beam.
+        Parameters
+        ----------
+        mode : int, default 0
+            Row of the mode.
+        amplitude : float, [m], optional
+            Largest displacement, by default a tenth of the longest beam.
+
+        Returns
+        -------
+        Solution
+            Two rows: the critical state, and the state with the mode.
+
+        Raises
+        ------
+        InputError
+            If there is no critical point.
+
+        Examples
+        --------
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+        >>> len(bf.solve_buckling(column).solution(mode=0))
+        2
         """
         if len(self) == 0:
             raise InputError(f"there is no critical point: {self.ended}")
@@ -87,25 +130,98 @@ class Buckling:
         return Solution(self.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
 
     def to_pandas(self) -> Any:
-        """Return load factor, kind and uncertainty of the critical points as a pandas.DataFrame.
+        """Return load factor, kind and uncertainty of the critical points as a table.
 
-        Raises MissingPackageError.
+        Returns
+        -------
+        pandas.DataFrame
+            One row per critical point.
+
+        Raises
+        ------
+        MissingPackageError
+            Without pandas.
+
+        Examples
+        --------
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+        >>> list(bf.solve_buckling(column).to_pandas().columns)
+        ['load_factor', 'kind', 'uncertainty']
         """
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
-        """Draw the modes, each with its load factor; return the figure."""
+        """Draw the modes, each with its load factor.
+
+        Pale: the critical state; dark: the same state plus the mode; dashed: the reference.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+        **options
+            most : largest number of modes to draw.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            If there are no modes to draw.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+        >>> figure = bf.solve_buckling(column).plot("buckling.png")
+        """
         return offered(Buckling.plot)(self, path, **options)
 
 
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
-    """Return the first `count` points of the loading path at which the tangent is singular, or those that there are.
+    """Find the first points of the loading path at which the tangent stiffness is singular.
 
-    about: the stable equilibrium to start from, by default that at load factor 0. The true equilibria from there are
-    followed up to their largest load factor, and negative pivots of the tangent are counted: no change is left out.
-    Warns of results with less than four digits. Raises InputError if no load factor is critical, loads do nothing
-    or follow the beam; FreeMotionError; ConvergenceError, with the equilibria found, where the path was lost before.
+    The true equilibria are followed up to their largest load factor, and negative pivots of the tangent are counted, so
+    that no change of their number is missed. If there are fewer points than asked for, all of them are returned.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads; loads with scale=True grow with the load factor.
+    count : int, default 1
+        Number of critical points.
+    about : State or Solution, optional
+        Stable equilibrium to start from, a solution for its last state; by default the equilibrium at load factor 0.
+
+    Returns
+    -------
+    Buckling
+        Critical load factors and modes.
+
+    Raises
+    ------
+    InputError
+        If no load factor is critical, or the loads do nothing or follow the beam.
+    FreeMotionError
+        If the model can move without resistance.
+    ConvergenceError
+        If the path was lost before the first critical point; its `solution` has the equilibria found.
+
+    Warns
+    -----
+    RoundOffWarning
+        If a load factor has less than four reliable digits.
+
+    Examples
+    --------
+    >>> column = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (-1e3, 0.0))])
+    >>> float(bf.solve_buckling(column).load_factors[0].round(1))  # Euler: pi^2 E I / (4 L^2) = 539.7 kN
+    539.2
     """
     whole_number("count", count)
     system = system_of(model, static=True)
@@ -194,7 +310,7 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
             if point.kind == LIMIT_POINT:
                 return found[:count], "the path has its largest load factor there", Status.COMPLETED
         if len(found) >= count:
-            return found[:count], f"{count} are asked for", Status.COMPLETED
+            return found[:count], f"the requested number, {count}, was found", Status.COMPLETED
         if path.moved(here) > _LARGEST_MOVEMENT:
             return found, "the model has moved by more than its own length", Status.COMPLETED
         if here.load_factor > farthest:

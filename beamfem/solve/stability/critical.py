@@ -1,8 +1,8 @@
 """Where on a loading path the tangent is singular: bifurcations and limit points.
 
 No equilibrium is solved for at a critical point itself, where round-off leads off the path. The path, its load and the
-stiffness of the softest modes are interpolated between points that keep their distance on both sides; modes whose
-stiffness vanishes close together are interpolated as one subspace.
+stiffness of the softest modes are interpolated between points at a distance on both sides; modes whose stiffness
+vanishes close together are interpolated as one subspace.
 """
 
 from dataclasses import dataclass, replace
@@ -16,20 +16,20 @@ from beamfem.solve.stability.window import Window, Zero, on_path, smooth
 BIFURCATION = "bifurcation"
 LIMIT_POINT = "limit point"
 
-_INSIDE = 0.3  # of the radius: critical points further out are left to windows of their own
-_CLEAR = 1.2  # times the radius: where the nearest critical point outside may be
+_INSIDE = 0.3  # of the radius: critical points further out get windows of their own
+_CLEAR = 1.2  # times the radius: least distance of the nearest critical point outside
 _RADII = 0.2 * 0.3 ** np.arange(8)  # of the step in which a critical point lies
 _RECENTRED = 4
-_IMPERFECT = 1e-9  # how far a path may bend aside before a bifurcation: lengths of the model, radians
-_ROUND_OFF = 30.0  # times the force along a mode that is left: how far round-off may bend a path
-_SMOOTH = 0.03  # of a step: how far its inside may lie from where its ends foretell it
+_IMPERFECT = 1e-9  # deviation of a path that still counts as a bifurcation: lengths of the model, radians
+_ROUND_OFF = 30.0  # times the unbalanced force along a mode: deviation of a path that round-off can explain
+_SMOOTH = 0.03  # of a step: largest deviation of its interior from the prediction of its ends
 _EXACT = 1e-12  # of the load: no smaller window is tried
 
 
 @dataclass(frozen=True, eq=False)
 class Critical:
-    """A singular point of a loading path: what it is, its load factor and state p (n,), the mode (n,) that is not
-    resisted, and how far from it the load factor of a smaller or larger window is.
+    """A singular point of a loading path: its kind, its load factor and state p (n,), the mode (n,) without stiffness,
+    and the difference from the load factor found in a smaller or larger window.
     """
 
     kind: str
@@ -40,8 +40,8 @@ class Critical:
 
 
 def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> tuple[list[Critical], PathPoint]:
-    """Return the first critical points between two points of a path, those that lie close together, and a point behind
-    them up to which there are no others; none and `after` where nothing changes in between. Raises PathLostError.
+    """Return the first critical points between two points of a path, those close together, and a point beyond them up
+    to which there are no others; none and `after` if nothing changes in between. Raises PathLostError.
     """
     middle = _between(path, before, after)
     if Search(path, before, middle).changes:
@@ -57,9 +57,9 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
 
 
 def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoint:
-    """Return a point inside a step, where the load's slope differs most from those at the ends.
+    """Return a point inside a step, where the slope of the load differs most from those at the ends.
 
-    Raises PathLostError if the path is not the smooth one that the ends foretell: they lie on different paths.
+    Raises PathLostError if it is not on the smooth path predicted by the ends: these lie on different paths.
     """
     normal = path.normal(before, after)
     reach = path.line.dot(normal, after.y - before.y)
@@ -91,12 +91,12 @@ class Search:
 
     @property
     def changes(self) -> bool:
-        """Whether stability or the slope of the load is another at the end."""
+        """Whether stability or the sign of the slope of the load differs at the end."""
         turns = self.before.tangent[-1] * self.after.tangent[-1] < 0.0
         return turns or self.before.negative_pivots != self.after.negative_pivots
 
     def estimate(self) -> float:
-        """Return about where the first critical point lies."""
+        """Return an estimate of the position of the first critical point."""
         ends, places = (self.before, self.after), []
         unstable = sorted(point.negative_pivots for point in ends)
         if unstable[0] < unstable[1]:
@@ -108,9 +108,9 @@ class Search:
         return float(self.reach * min(places))
 
     def located(self, place: float) -> tuple[list[Critical], PathPoint, PathPoint]:
-        """Return the critical points next to a place and the ends of the window that they were found in.
+        """Return the critical points next to a place and the ends of the window in which they were found.
 
-        Windows shrink until what they find no longer settles. Raises PathLostError.
+        Windows shrink until the results no longer converge. Raises PathLostError.
         """
         best: tuple[list[Critical], PathPoint, PathPoint] | None = None
         before: list[Critical] = []
@@ -139,11 +139,11 @@ class Search:
                     break
             before = found
         if best is None:
-            raise PathLostError("critical points lie too close together to be told apart")
+            raise PathLostError("critical points are too close together to be distinguished")
         return best
 
     def _centred(self, place: float, radius: float) -> tuple[Window, list[Zero]]:
-        """Return the window about the critical point nearest to a place, and all that vanishes there."""
+        """Return the window about the critical point nearest to a place, and all zeros of stiffnesses in it."""
         for _ in range(_RECENTRED):
             if self.before is self.path.start:
                 radius = min(radius, 0.9 * place)
@@ -158,7 +158,7 @@ class Search:
         raise PathLostError("a change of stability was not found again")
 
     def _read(self, window: Window, zeros: list[Zero]) -> list[Critical]:
-        """Return what lies where the tangent is singular."""
+        """Return the critical points at the zeros."""
         turn = window.turn()
         limit = None if turn is None else min(zeros, key=lambda zero: abs(zero.at - turn))
         result = []
@@ -175,7 +175,7 @@ class Search:
     def _require_crossing(self, window: Window, zero: Zero, mode: np.ndarray) -> None:
         """Raise PathLostError if the path bends aside along the mode, on a hyperbola, instead of being crossed.
 
-        Round-off bends it as well: by the force that it leaves, over the stiffness of the mode.
+        Round-off bends it as well, by the unbalanced force over the stiffness of the mode.
         """
         system = self.path.system
         fractions = (window.at - zero.at) / window.radius

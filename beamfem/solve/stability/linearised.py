@@ -1,4 +1,4 @@
-"""Critical load factors as they would be if a loading path went on as it starts."""
+"""Critical load factors of the linearised loading path, as if it went on as it starts."""
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -13,8 +13,8 @@ from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import is_symmetric
 
-_CHANGE = 1e-3  # of the coordinates, over which the tangent's derivative is taken
-_NONE = 1e-10  # of the rate at which the coordinates change: rates this small are round-off
+_CHANGE = 1e-3  # of the coordinates: step of the difference that gives the derivative of the tangent
+_NONE = 1e-10  # of the rate of change of the coordinates: smaller rates are round-off
 _INDEPENDENT = 1e-8
 _SPARE = 2  # shapes found beyond those asked for
 
@@ -23,7 +23,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     """Return the `count` lowest critical lambda (m,) above a load factor of K0 phi = -(lambda - lambda0) K' phi.
 
     K0: tangent in the stable state p (n,); K' = dK/dlambda along slope = dp/dlambda (n,), a difference of fourth order.
-    m is smaller where loads soften the model in fewer ways. Raises InputError if loads are not conservative.
+    m < count if loads soften the model in fewer directions. Raises InputError if loads are not conservative.
     """
     moved = float(np.max(np.abs(slope) / system.scale))
     width = _CHANGE / moved
@@ -35,7 +35,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
         rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNROTATED)
     if not is_symmetric(csr_array(stiffness + width * rate)):
         raise InputError(
-            "some load turns with the beam and its work depends on the way: such loads can make a structure "
+            "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
         )
     factors = tangent.factorised(system.rotated)
@@ -55,7 +55,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
 def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    The tangent's inverse times -K' is not symmetric, but sums of large parts that cancel appear nowhere.
+    The inverse of the tangent times -K' is not symmetric, but it contains no sums of large terms that cancel.
     """
     n = rate.shape[0]
     wanted = count + _SPARE
@@ -73,7 +73,7 @@ def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
 
     values, x = first_that_works(dense, few, n, wanted + 1)
     x = x[:, np.argsort(-values.real, kind="stable")[: wanted + 1]]
-    # close values may come as a complex pair, whose real and imaginary parts span their shapes
+    # close eigenvalues may appear as a complex pair, whose real and imaginary parts span their shapes
     parts = np.column_stack([x.real, x.imag])
     basis, triangle, _ = qr(parts, mode="economic", pivoting=True)
     sizes = np.abs(np.diag(triangle))

@@ -1,4 +1,4 @@
-"""A loading path: its points, and how stiff the softest modes are there."""
+"""A loading path: its points, and the stiffness of the softest modes there."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,14 @@ from beamfem.solve.newton.iteration import Newton
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02
-_LARGEST_TURN = 0.3  # [rad] of the path's tangent in a step
+_LARGEST_TURN = 0.3  # [rad] by which the tangent of the path may turn in a step
 _LARGEST_CORRECTION = 0.3  # of a step
 _GROWTH = 3.0
-_REFUSALS = 12  # of steps from one point in which critical points cannot be told apart
+_REFUSALS = 12  # of steps from one point in which critical points cannot be distinguished
 
 
 class PathLostError(BeamfemError):
-    """The path cannot be followed any further; the message says why."""
+    """The path cannot be followed any further; the message gives the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class LoadingPath:
         self._shift = 0.0
 
     def advance(self, point: PathPoint) -> PathPoint:
-        """Return a further point of the path, by a step as long as the path's turning allows. Raises PathLostError."""
+        """Return the next point of the path, by a step as long as its curvature allows. Raises PathLostError."""
         size, reason = min(self.size, longest_step(self.line, point)), ""
         while not too_small(self.line, point, size):
             change = size * point.tangent
@@ -68,7 +68,7 @@ class LoadingPath:
         raise PathLostError(reason)
 
     def shorten(self, point: PathPoint) -> bool:
-        """Shorten the next step; tell whether it is still worth taking."""
+        """Shorten the next step; return whether it is still worth taking."""
         self.size *= 0.5
         self.refused += 1
         self.lost = self.refused > _REFUSALS or too_small(self.line, point, self.size)
@@ -81,12 +81,12 @@ class LoadingPath:
         self.size = self._next_size
 
     def normal(self, before: PathPoint, after: PathPoint) -> np.ndarray:
-        """Return the direction (n + 1,) that places between two points are measured along."""
+        """Return the direction (n + 1,) along which distances between two points are measured."""
         chord = after.y - before.y
         return self.line.plane(chord / self.line.length(chord))
 
     def unbalanced(self, point: PathPoint) -> np.ndarray:
-        """Return the residual (n,) of the unknown coordinates that is left at a point."""
+        """Return the residual (n,) of the unknown coordinates at a point."""
         result = np.zeros(len(point.y) - 1)
         left = Pencil(self.system, point.y[:-1], point.load_factor).unbalanced
         result[self.system.free_dofs] = left
@@ -107,8 +107,8 @@ class LoadingPath:
         return Solution(self.system.model, True, at, p, np.zeros_like(p), np.zeros_like(p), statistics)
 
     def corrected(self, start: np.ndarray, base: np.ndarray, normal: np.ndarray, like: np.ndarray) -> PathPoint:
-        """Return the point of the path in the plane through `start` across `normal` (n + 1,); stresses are those
-        predicted from `base`, the tangent goes the way of `like`. Raises PathLostError.
+        """Return the point of the path in the plane through `start` normal to `normal` (n + 1,), with stresses
+        predicted from `base` and the tangent in the sense of `like`. Raises PathLostError.
         """
         corrected = self.line.correct(start, self.line.stresses(base, start - base), normal)
         if not corrected.ended.good:
@@ -119,7 +119,7 @@ class LoadingPath:
             raise PathLostError("the tangent is singular") from None
 
     def softest(self, point: PathPoint, count: int) -> Softest:
-        """Return the `count` softest modes, none left out. Raises ConvergenceError."""
+        """Return the `count` softest modes, without gaps. Raises ConvergenceError."""
         pencil = Pencil(self.system, point.y[:-1], point.load_factor)
         none = np.empty((len(self.system.free_dofs), 0))
         shift = self._shift or None
@@ -127,7 +127,7 @@ class LoadingPath:
             shift *= 4.0
         found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
         if not len(found[0]):
-            raise ConvergenceError("round-off leaves the softest modes of the tangent no digits")
-        # of the size of the lowest values, which change little from here to the next state
+            raise ConvergenceError("round-off leaves no digits of the softest modes of the tangent")
+        # of the size of the lowest eigenvalues, which change little from one state to the next
         self._shift = 2.0 * min(float(found[0][0]), 0.0) - float(np.abs(found[0][:2]).max())
         return Softest(found[0][:count], found[1][:, :count])

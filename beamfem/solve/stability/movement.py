@@ -1,4 +1,4 @@
-"""How far a change of the coordinates moves a model, however it is turned in the plane."""
+"""Size of a change of the coordinates, independent of the orientation of the model in the plane."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from beamfem.kernels.block import GRADIENTS, TURNED_GRADIENTS
 
 
 def largest_movement(system: System, change: np.ndarray) -> float:
-    """Return the largest of a change (n,): displacements in sizes of the model, gradients, rotations [rad]."""
+    """Return the largest component of a change (n,): relative displacements, gradients, rotations [rad]."""
     scaled = np.append(change / system.scale, 0.0)
     largest = 0.0
     for block in system.blocks:

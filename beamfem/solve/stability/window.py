@@ -12,15 +12,15 @@ from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability.loading_path import LoadingPath, Softest
 
 _NODES = np.array([-1.0, -0.75, -0.45, 0.45, 0.75, 1.0])  # in units of the radius
-_REFERENCE = 2  # the node whose modes those of the others are turned to
+_REFERENCE = 2  # the node to whose modes those of the others are rotated
 _SPARE = 2  # modes found beyond those that are unstable
-_APART = 0.5  # of the change of stiffness in a window: modes that are no further apart are taken as one subspace
-_ALIKE = 0.7  # least cosine between the subspaces of soft modes at two nodes
+_APART = 0.5  # of the change of stiffness in a window: closer modes are taken as one subspace
+_ALIKE = 0.7  # smallest cosine between the subspaces of soft modes at two nodes
 
 
 @dataclass(frozen=True)
 class Zero:
-    """A place where the stiffness of a mode of a window vanishes, and the number of that mode in order of stiffness."""
+    """A distance at which the stiffness of a mode of a window vanishes, and the number of that mode by stiffness."""
 
     at: float
     number: int
@@ -74,7 +74,7 @@ class Window:
 
     @cached_property
     def _soft(self) -> slice:
-        """The modes whose stiffness changes its sign, and those that come close to them."""
+        """The modes whose stiffness changes its sign, and those that come close to them in stiffness."""
         count = min(len(soft.values) for soft in self.softest)
         values = np.array([soft.values[:count] for soft in self.softest])
         low, high = values.min(axis=0), values.max(axis=0)
@@ -91,8 +91,8 @@ class Window:
 
     @cached_property
     def _turned(self) -> tuple[np.ndarray, np.ndarray, float]:
-        """Soft modes of each point (points, unknown, m), turned to those of one of them, their stiffness (points, m, m)
-        and the least cosine between what they span.
+        """Soft modes of each point (points, unknown, m), rotated to those of one of them, their stiffness
+        (points, m, m) and the smallest cosine between their subspaces.
         """
         reference = self.mass @ self.softest[_REFERENCE].vectors[:, self._soft]
         vectors, stiffness, least = [], [], 1.0
@@ -107,11 +107,11 @@ class Window:
 
     @property
     def alike(self) -> bool:
-        """Whether the soft modes at all points span about the same."""
+        """Whether the soft modes of all points span nearly the same subspace."""
         return self._soft.stop == 0 or self._turned[2] > _ALIKE
 
     def zeros(self, reach: float) -> list[Zero]:
-        """Return where the stiffness of a soft mode vanishes, no further from the centre than `reach`."""
+        """Return the zeros of the stiffness of soft modes, at most `reach` from the centre."""
         from scipy.optimize import brentq  # slow to import
 
         if self._soft.stop == 0:
@@ -127,7 +127,7 @@ class Window:
         return sorted(found, key=lambda zero: zero.at)
 
     def mode(self, zero: Zero) -> np.ndarray:
-        """Return the mode (n,) whose stiffness vanishes."""
+        """Return the mode (n,) whose stiffness vanishes at a zero."""
         turned = np.tensordot(self.weights(zero.at), self._turned[0], axes=1)
         result = np.zeros(self.rows.shape[1] - 1)
         result[self.free] = turned @ self._modes(zero.at)[1][:, zero.number]
@@ -147,7 +147,7 @@ class Window:
         return float(brentq(lambda x: self.weights(x) @ self.slopes, *inner, xtol=1e-15, rtol=1e-14))
 
     def aside(self, mode: np.ndarray) -> np.ndarray:
-        """Return how far each point (points,) is along a mode (n,)."""
+        """Return the component of each point (points,) along a mode (n,)."""
         return np.asarray(self.rows[:, self.free] @ (self.mass @ mode[self.free]))
 
 
@@ -159,7 +159,7 @@ def on_path(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPo
 
 
 def smooth(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoint], x: float) -> np.ndarray:
-    """Return coordinates and load factor (n + 1,) on the cubic through two points of a path, or its tangents beyond."""
+    """Return coordinates and load factor (n + 1,) on the cubic through two points, continued by its tangents."""
     before, after = (end.y for end in ends)
     slopes = [end.tangent / path.line.dot(normal, end.tangent) for end in ends]
     reach = path.line.dot(normal, after - before)

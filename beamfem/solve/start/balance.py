@@ -6,8 +6,8 @@ from beamfem.assembly.equations import STATICS, linearise, residual
 from beamfem.assembly.round_off import digits_of, load_size, remainder, row_floors
 from beamfem.assembly.system import System
 
-_TOLERANCE = 1e-6  # of the largest force: a state this far from equilibrium is none
-_CANCELLED = 1e4 * np.finfo(float).eps  # strains carry round-off of positions, up to this for fields of high order
+_TOLERANCE = 1e-6  # of the largest force: largest residual of an equilibrium
+_CANCELLED = 1e4 * np.finfo(float).eps  # round-off of strains due to positions, up to this for fields of high order
 
 
 def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
@@ -23,14 +23,14 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))
     if np.all(left <= _TOLERANCE * force):
         return 0.0
-    # faint loads hide in the round-off of stiff rows and bend a slender beam all the same
+    # small loads may be below the round-off of stiff rows, but still bend a slender beam
     if np.all(left <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
         return 0.0
     return float(left.max())
 
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
-    """Return whether a state (n,) balances what acts but for its last digits; where nothing acts, all rows tell."""
+    """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
     if not system.loads_at(load_factor).any:
         zeros = np.zeros_like(p)
         left = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))

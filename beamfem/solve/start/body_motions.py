@@ -1,4 +1,4 @@
-"""Motions of beams taken as rigid, and the conditions that supports and joints put on them."""
+"""Motions of beams taken as rigid, and the constraints that supports and joints impose on them."""
 
 from collections.abc import Sequence
 
@@ -33,7 +33,7 @@ def bodies_of(model: Model) -> np.ndarray:
 class Conditions:
     """Conditions on the motions (a, b, turn) of all bodies from a state p (n,).
 
-    Lengths are measured by the model's size, turns are about its centre. body (beams,): the body that a beam is of.
+    Lengths are relative to the size of the model, rotations are about its centre. body (beams,): the body of each beam.
     """
 
     def __init__(self, system: System, body: np.ndarray, p: np.ndarray) -> None:
@@ -67,7 +67,7 @@ class Conditions:
             self._resist(connector.item.points, stopped)
 
     def _resist(self, points: Sequence[Point], stopped: np.ndarray) -> None:
-        """Add what resists motions (r, 3 m) of points."""
+        """Add conditions on motions (r, 3 m) of points."""
         moved = [np.vstack([self.extent * self.displacement(point), [0.0, 0.0, 1.0]]) for point in points]
         bodies = [int(self.body[self.model.number_of(point.beam)]) for point in points]
         for row in stopped:
@@ -79,7 +79,7 @@ class Conditions:
                 self._add({own: part / size for own, part in parts.items()})
 
     def displacement(self, point: Point) -> np.ndarray:
-        """Return the displacement (2, 3) of a point with a, b and turn of its body."""
+        """Return the displacement (2, 3) of a point per unit of a, b and turn of its body."""
         node = self.model.mesh_of(point).node_at(point.fraction)
         return self._moved(self.nodes[self.model.number_of(point.beam)][node])
 
@@ -93,13 +93,13 @@ class Conditions:
         self.count += 1
 
     def matrix(self) -> csr_array:
-        """Return the conditions (m, 3 bodies); a motion that they leave free gives zero."""
+        """Return the conditions (m, 3 bodies); their product with an unconstrained motion is zero."""
         row, column, value = np.array(self.entries or [(0, 0, 0.0)]).T
         shape = (max(self.count, 1), 3 * self.bodies)
         return csr_array(coo_array((value, (row.astype(int), column.astype(int))), shape=shape))
 
     def dense(self) -> np.ndarray:
-        """Return the same as an array."""
+        """Return the conditions as a dense array."""
         result = np.zeros((max(self.count, 1), 3 * self.bodies))
         for row, column, value in self.entries:
             result[row, column] += value
@@ -128,7 +128,7 @@ def mechanisms(conditions: Conditions) -> np.ndarray:
             values, vectors = eigsh(rows.T @ rows, k=wanted, sigma=-1e-6, v0=start)
         except ArpackError as error:
             raise ConvergenceError(
-                f"whether {conditions.bodies} bodies can move freely could not be found out: {error}"
+                f"whether {conditions.bodies} bodies can move freely could not be determined: {error}"
             ) from error
         if values.max() >= NEGLIGIBLE:
             return np.asarray(vectors.T[values < NEGLIGIBLE])

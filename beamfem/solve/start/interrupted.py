@@ -1,4 +1,4 @@
-"""Results so far are kept however the work ends."""
+"""Results so far are kept if a solve ends with an exception."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

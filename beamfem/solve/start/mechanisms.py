@@ -1,4 +1,4 @@
-"""Refuse models that are mechanisms if every beam is taken as rigid."""
+"""Reject models that are mechanisms if every beam is taken as rigid."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def require_support(system: System) -> None:
         system.proven.add(_PROVEN)
         return
     sizes = np.abs(free[0].reshape(-1, 3)).max(axis=1)[body]
-    # the first of those that move alike, whatever the round-off
+    # the first of those that move equally, whatever the round-off
     number = int(np.flatnonzero(sizes > (1.0 - 1e-6) * sizes.max())[0])
     motions = [motion.reshape(-1, 3)[body[number]] for motion in free]
     described = [

@@ -4,7 +4,7 @@ from beamfem.errors import InputError
 from beamfem.memory import SHARE, in_gib, installed_memory
 
 _STATE = 3 * 8  # bytes of a coordinate: p, p', p''
-_STEP = 8 * 8  # bytes of a step whether it is kept or not: its time, what is prescribed and the loads
+_STEP = 8 * 8  # bytes of a step, stored or not: its time, prescribed values and loads
 
 
 def require_memory(coordinates: int, duration: float, step: float, save_every: int) -> None:
@@ -22,7 +22,7 @@ def require_memory(coordinates: int, duration: float, step: float, save_every: i
     if room > 0.0:
         enough = int(-(-(steps * _STATE * coordinates) // room))
         raise InputError(f"{message}; save_every={enough} would fit")
-    raise InputError(f"{message}; take a larger step, or a shorter duration and go on from the last state")
+    raise InputError(f"{message}; take a larger step, or a shorter duration and continue from the last state")
 
 
 def require_room(states: int, coordinates: int) -> None:

@@ -8,7 +8,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.lapack import qr
 
-_DEPENDENT = 1e-10  # of a condition of unit size: what is left of it across all others
+_DEPENDENT = 1e-10  # of a condition of unit size: its part that is independent of all others
 
 
 def refuse_multipliers(system: System, analysis: str) -> None:
@@ -16,15 +16,17 @@ def refuse_multipliers(system: System, analysis: str) -> None:
     for item in system.connectors.items:
         if len(item.own):
             raise InputError(
-                f"{analysis} takes no connectors with unknowns of their own, which {item.name} has; solve_static "
+                f"{analysis} does not support connectors with unknowns of their own, such as {item.name}; solve_static "
                 "and simulate do. A stiff spring in its place has none"
             )
 
 
 def refuse_memory(system: System, analysis: str) -> None:
-    """Raise InputError if a connector or a section law has history, so that states depend on more than the load."""
+    """Raise InputError if a connector or a section law has history, so that states do not depend on the load alone."""
     for kind, name in system.history.holders:
-        raise InputError(f"{analysis} takes no {kind} that remember, as {name} does; solve_static and simulate do")
+        raise InputError(
+            f"{analysis} does not support {kind} with history, such as {name}; solve_static and simulate do"
+        )
 
 
 def refuse_dampers(system: System) -> None:
@@ -56,6 +58,6 @@ def dependent(system: System) -> str:
     """Return the message that conditions of connectors are linearly dependent."""
     names = ", ".join(sorted({item.name for item in system.connectors.items if len(item.own)}))
     return (
-        f"conditions of connectors ({names}) say the same twice, or what supports and joints say already: their "
-        "multipliers cannot be told apart; leave out those that are not needed"
+        f"conditions of connectors ({names}) are redundant, among themselves or with supports and joints: their "
+        "multipliers are not unique; leave out those that are not needed"
     )

@@ -10,7 +10,7 @@ from beamfem.solve.start.transfer import transferred
 
 
 def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
-    """Return the coordinates (n,) to start from: the reference, or those of a state of a like model."""
+    """Return the coordinates (n,) to start from: the reference, or those of a state of a compatible model."""
     if start is None:
         return system.reference.copy()
     if not isinstance(start, State):

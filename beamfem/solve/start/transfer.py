@@ -15,17 +15,17 @@ from beamfem.model.turns import uncounted
 from beamfem.results import postprocess
 from beamfem.results.solution import State
 
-_SAME = 1e-9  # of the length of a beam, within which its nodes are at the same place
+_SAME = 1e-9  # of the length of a beam: tolerance between positions of nodes
 _ADVICE = "take it from a model of the same beams, elements and points with supports"
 
 
 def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return coordinates and rates (n,) of a state in the model of a system.
 
-    Beams are identified by identity, in a copy of their model by position, in any order. Nodes are the same; whether
-    their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models keep
-    their history, and so do beams with the same element and section law.
-    Raises InputError if the beams do not match.
+    Beams are matched by identity or, in a copy of their model, by position, in any order. Nodes are the same, but
+    whether their coordinates are gradients or angles depends on supports and joints. Connectors that are in both models
+    keep their history, and so do beams with the same element and section law. Raises InputError if the beams do not
+    match.
     """
     source, target = state.model, system.model
     if source is target:
@@ -34,7 +34,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
     for old, new in _matched(source, target, name):
         values, rates = _by_label(old, state)
         for label, nodes, dofs in coordinate_columns(new):
-            # a turned vector is that of the first of the joined nodes
+            # a rotated vector belongs to the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
         if old.history.shape == new.history.shape and new.history.size and block_key(old.beam) == block_key(new.beam):
@@ -47,7 +47,7 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
 
 
 def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:
-    """Return the rotation at the start (m,) [rad], full turns included, of each beam of a model that does not count it.
+    """Return the rotation at the start (m,) [rad], full turns included, of beams whose coordinates do not contain it.
 
     Zero without a state. Raises InputError if the beams do not match.
     """
@@ -67,7 +67,7 @@ def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
 
 
 def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Every coordinate that a node could have (nodes,), and its rate, by name."""
+    """Return every coordinate that a node could have (nodes,), and its rate, by name."""
     p, v = state.p[None], state.v[None]
     e, rate = postprocess.nodal_vectors(mesh, p)[0], postprocess.nodal_velocities(mesh, p, v)[0]
     values: dict[str, np.ndarray] = {}

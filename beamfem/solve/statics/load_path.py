@@ -1,4 +1,4 @@
-"""Follow the equilibrium path through a row of a static solve if a load step alone leaves it."""
+"""Follow the equilibrium path to the next row of a static solve if a load step alone would leave it."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -16,10 +16,10 @@ from beamfem.solve.continuation.steps import Step, longest_step, take_step, too_
 from beamfem.solve.newton.iteration import Newton
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
-_PACE = 40  # steps, refused ones included, from which it is foretold how many more are needed
+_PACE = 40  # steps, rejected ones included, from which the number of further steps is estimated
 _SLOWER = 0.8  # likewise where it slows down, as towards a limit point
 _FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
-_GAIN = 1e-7  # of the load factor: where a path would gain less before it turns back, it has come to its limit point
+_GAIN = 1e-7  # of the load factor: a path that would gain less before it turns back has reached its limit point
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 
 
@@ -69,7 +69,7 @@ class PathFollower:
 
     @cached_property
     def line(self) -> Continuation:
-        """The continuation of the path; its lengths are measured by the effect of the loads at its start."""
+        """The continuation of the path; its unit of length is the effect of the loads at its start."""
         return begin(self.system, *self.start, self.newton)[0]
 
     def follow(self, p: np.ndarray, load_factor: float, beyond: float, end: float) -> Iterator[Followed]:
@@ -115,7 +115,7 @@ class PathFollower:
             if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
-                    "out of reach: the loads are far too large for what bears them",
+                    "out of reach: the loads are far too large for the structure",
                     0,
                     0,
                 )
@@ -124,7 +124,7 @@ class PathFollower:
 def _at_maximum(line: Continuation, before: PathPoint, point: PathPoint) -> bool:
     """Return whether the load factor would stop growing if the path continued as from the previous point.
 
-    Where several paths cross in a limit point no step leads over it, as in a bar that softens everywhere at once.
+    If several paths cross at a limit point, no step leads over it, as in a bar that softens everywhere at once.
     """
     first, now = float(before.tangent[-1]), float(point.tangent[-1])
     if not 0.0 <= now < first:

@@ -1,4 +1,4 @@
-"""Load steps that stay on the path: by load if that is safe, otherwise by arc length."""
+"""Load steps that stay on the path: by load factor if that is safe, otherwise by arc length."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -17,13 +17,13 @@ from beamfem.solve.statics.static_record import StaticRecord
 
 Snap = Literal["error", "jump"]
 
-_CUTS = 4  # in succession, before the path is followed by its length
-_CUTS_OF_PAST = 10  # likewise where the past counts, so that no path is followed instead
+_CUTS = 4  # in succession, before the path is followed by arc length
+_CUTS_OF_PAST = 10  # the same for models with history, whose path is not followed
 _EASY_ITERATIONS = 8
 _LARGEST_TURN = 1.0  # [rad] of a prescribed rotation in one load step
-SAME = 1e-12  # of the load factor: no nearer than this are two of them
+SAME = 1e-12  # of the load factor: smaller differences count as zero
 _BESIDE = 1e-4  # of the load factor of a limit point, which is located to about 1e-8
-_SHORTEST_TURN = 1e-9  # of the load factor: a rotation that turns further within this has a jump
+_SHORTEST_TURN = 1e-9  # of the load factor: a larger rotation within this is a jump
 
 
 def reach(
@@ -41,7 +41,7 @@ def reach(
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
     remembers = len(system.history.numbers) > 0
-    # what remembers goes through the steps that are asked for, to the end of each, whatever is cut
+    # models with history go through the requested steps, to the end of each, however they are cut
     asked = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
     ahead = sorted({stop for stop in asked if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
@@ -62,7 +62,7 @@ def reach(
                 if result.iterations <= _EASY_ITERATIONS:
                     step = min(2.0 * step, longest)
             elif result.ended is Termination.NO_DIGITS:
-                # what round-off takes of a load it takes of a smaller one as well
+                # round-off that hides a load hides a smaller one as well
                 raise ConvergenceError(f"at load factor {target:.6g} {result.ended.value}", done.solution())
             elif cuts < (_CUTS_OF_PAST if remembers else _CUTS):
                 cuts += 1
@@ -72,12 +72,12 @@ def reach(
             elif holders := system.history.holders:
                 raise ConvergenceError(
                     f"no load step from load factor {done.reached:.6g} to {target:.6g} found an equilibrium: "
-                    f"{result.ended.value}; models with {holders[0][0]} that remember are not followed along a path, "
-                    "but simulate shows where they go",
+                    f"{result.ended.value}; models with {holders[0][0]} that have history are not followed along a "
+                    "path, but simulate shows how they move",
                     done.solution(),
                 )
             else:
-                # behind what the load step could not pass, a longer one is tried once
+                # beyond the point that the load step could not pass, a longer one is tried once
                 _follow(done, follower, (target, stop), snap)
                 refused = 1.0
                 step *= 2.0
@@ -126,10 +126,10 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
 
 
 def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyond: np.ndarray, end: float) -> bool:
-    """Add a row beyond a critical point (n + 1,) where a branch merges into a stable path; tell whether it does.
+    """Add a row beyond a critical point (n + 1,) at which a branch merges into a stable path; return whether it does.
 
-    There it comes to rest no further away than it moved on as small a part of the load before; beyond a limit point it
-    goes far.
+    In this case the structure comes to rest as close as it moved over an equally small part of the load before; beyond
+    a limit point it moves far.
     """
     load_factor = float(point[-1])
     target = min((1.0 + _BESIDE) * load_factor, end)
@@ -147,11 +147,11 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
     """Add the state of rest after a limit point. Raises LimitPointError unless jumps are allowed."""
     load_factor = float(turn.limit[-1])
-    where = f"a limit point at load factor {load_factor:.6g}: beyond it no equilibrium is near by"
+    where = f"a limit point at load factor {load_factor:.6g}: beyond it there is no equilibrium nearby"
     if snap == "error":
         raise LimitPointError(
-            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to where the structure comes to '
-            "rest; or let a Prescribed displacement lead instead of the load",
+            f'{where}. trace_equilibrium follows the path around it; snap="jump" goes to the state in which the '
+            "structure comes to rest; or prescribe a displacement (Prescribed) instead of the load",
             load_factor,
             done.solution(),
         )
@@ -163,5 +163,5 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
     found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
     done.iterations += found.iterations
     if not found.ended.good:
-        raise LimitPointError(f"{where}, and no state of rest was found behind it", load_factor, done.solution())
+        raise LimitPointError(f"{where}, and no state of rest was found beyond it", load_factor, done.solution())
     done.add(load_factor, found.state, found.negative_pivots, found.ended, found.digits)

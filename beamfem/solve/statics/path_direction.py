@@ -7,14 +7,14 @@ from beamfem.assembly.equations import STATICS, linearise, load_slope
 from beamfem.assembly.system import System
 from beamfem.solve.continuation.steps import leaves_arc
 
-_SLOPE_WIDTH = 1e-3  # of the load step; loads are asked for within it only, since functions may end with it
+_SLOPE_WIDTH = 1e-3  # of the load step; loads are evaluated within it only, since functions may end with it
 
 
 def leaves_path(system: System, start: tuple[np.ndarray, float], end: tuple[np.ndarray, float]) -> bool:
     """Return whether no smooth path leads from one equilibrium, p (n,) and its load factor, to another.
 
-    Along an arc the chord deviates from the tangents at its ends by half of what they turn by; between states of two
-    pieces of a path, on either side of limit points, it does so from one of them by more.
+    Along an arc the chord deviates from the tangents at its ends by half the angle between them; between states on two
+    pieces of a path, on either side of limit points, it deviates from one of them by more.
     """
     (p, before), (q, after) = start, end
     width = _SLOPE_WIDTH * (after - before)
@@ -29,7 +29,7 @@ def leaves_path(system: System, start: tuple[np.ndarray, float], end: tuple[np.n
 
 
 def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, width: float) -> np.ndarray:
-    """Return the scaled change of p (n,) per load factor, whose difference is taken about `middle`."""
+    """Return the scaled derivative of p (n,) by the load factor, by a difference centred at `middle`."""
     zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
     _, stiffness = linearise(system, p, zeros, zeros, load_factor, STATICS)
     result = np.zeros(len(p))

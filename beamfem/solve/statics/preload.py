@@ -23,7 +23,7 @@ _AT_REST = "nothing acts at load factor 0"
 
 
 def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
-    """Return the equilibrium at load factor 0; if it is far from the start, all loads are grown along a path."""
+    """Return the equilibrium at load factor 0; if it is far from the start, all loads are increased along a path."""
     if _at_rest(system):
         return NewtonResult(system.reference, 0, Termination.CONVERGED)
     result = solve_equilibrium(system, system.reference, 0.0, newton, keep=0)
@@ -33,7 +33,7 @@ def first_equilibrium(system: System, newton: Newton) -> NewtonResult:
 def _at_rest(system: System) -> bool:
     """Return whether nothing acts at load factor 0."""
     if _AT_REST not in system.proven:
-        # a load that is lost in the round-off of stiff rows may bend the beam all the same
+        # a load below the round-off of stiff rows may still bend the beam
         moved = system.prescribed_changes(0.0).any()
         if moved or system.loads_at(0.0).any or not _free_of_force(system):
             return False
@@ -51,7 +51,7 @@ def _free_of_force(system: System) -> bool:
 
 
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:
-    """Return the end of the path along which the loads at load factor 0 grow from zero."""
+    """Return the end of the path along which the loads at load factor 0 increase from zero."""
     growing = system_of(_growing(system.model), static=True)
     done = StaticRecord(growing.model, growing.symmetric)
     done.iterations = failed.iterations
@@ -64,7 +64,7 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
 
 
 def _growing(model: Model) -> Model:
-    """Return the model with the loads and prescribed values of load factor 0 in proportion to the load factor."""
+    """Return the model with loads and prescribed values proportional to the load factor, those at 0 reached at 1."""
     loads = [_in_proportion(load) for load in model.loads]
     moved = {id(support): _in_step(support) for support in model.point_supports if _moves(support)}
     supports = [part for support in model.supports for part in moved.get(id(support), (support,))]
@@ -77,7 +77,7 @@ def _moves(support: PointSupport) -> bool:
 
 
 def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
-    """Return supports like one, with its values at load factor 0 in proportion to the load factor."""
+    """Return equivalent supports with the values at load factor 0 in proportion to the load factor."""
     values = {
         name: function_value("motion prescribed", value, 0.0) if callable(value) else 0.0
         for name, value in support.prescribed().items()
@@ -96,6 +96,6 @@ def _in_proportion(load: Load) -> Load:
     """Return a load whose factor is proportional to the load factor, with its value at load factor 0 reached at 1."""
     weight = factor(load, 0.0, True)
     found: Load = copy(load)
-    # whether its class has it as a field or not
+    # whether or not it is a field of its class
     object.__setattr__(found, "amplitude", lambda load_factor: weight * load_factor)
     return found

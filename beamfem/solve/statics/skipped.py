@@ -9,17 +9,18 @@ from beamfem.solve.newton.iteration import Newton, NewtonResult
 from beamfem.solve.statics.path_direction import leaves_path
 from beamfem.solve.statics.static_record import StaticRecord
 
-_OVERSHOOT = 3.0  # first correction of a step beside the whole of it: more is what a limit point near the start makes
-_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models are at rest first and go all the way in one long step
+_OVERSHOOT = 3.0  # ratio of the first correction to the whole step; it is larger if a limit point is near the start
+_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models start at rest and reach the end in one long step
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
-    """Return whether a load step to `target` may have gone over limit points.
+    """Return whether a load step to `target` may have passed limit points.
 
-    Either linearised stability expects a critical point before its end. Or the tangent at its start goes far beyond its
-    end, as beside a limit point; from the reference a straight beam does so where its own tension stiffens it. Or,
-    looked at where the iteration was slow, the state half-way has another count of negative pivots, or the step goes
-    another way than the tangents at its ends, if nothing remembers: there the path has kinks.
+    This is so if linearised stability predicts a critical point before its end, or if the tangent at its start leads
+    far beyond its end, as near a limit point; this is not tested from the reference, where it also happens to a
+    straight beam that is stiffened by its own tension. If the iteration was slow, it is also so if the state half-way
+    has another count of negative pivots, or, in models without history, whose path has no kinks, if the step has
+    another direction than the tangents at its ends.
     """
     if result.linear is not None:
         done.iterations += 1
@@ -40,9 +41,9 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:
-    """Return whether the state half-way has another count with the mean stress resultants of both ends.
+    """Return whether the state half-way, with the mean stress resultants of both ends, has another count.
 
-    Its own would be those of a chord.
+    Its own stress resultants would be those of a chord.
     """
     done.iterations += 1
     zeros = np.zeros(len(end))

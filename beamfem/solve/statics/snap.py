@@ -1,8 +1,8 @@
 """State of rest of a structure that snaps at a limit point under constant load.
 
 Slow loading and damping: the motion is overdamped, M q' = -r(q), in implicit Euler steps that grow as it comes to rest.
-Loads of constant direction lose potential energy in every step, so it ends in a stable equilibrium, as long as no step
-leaves its energy valley: M / dt + K must be positive definite on the way.
+Under loads of constant direction the potential energy decreases in every step, so the motion ends in a stable
+equilibrium, as long as no step leaves its energy valley: M / dt + K must be positive definite in every step.
 """
 
 import numpy as np
@@ -16,12 +16,13 @@ from beamfem.solve.newton.newton import solve_equilibrium
 
 _STEPS = 2000
 _ITERATIONS = 8  # of Newton's method in a step
-_SHORTEST = 1e-9  # of the first step, which moves by much: shorter ones lead nowhere
+_SHORTEST = 1e-9  # of the first step, which moves far: shorter ones are given up
 _LARGEST_MOVE = 0.1  # in a step: lengths of the model, radians
 _NEAR = 1e-3  # a step that moves less than this, however long, is close to rest
-_CLOSE = 1e-9  # of the move: the last correction of a step
+_CLOSE = 1e-9  # of the movement: size of the last correction of a step
 _SAME_LOAD = 1e-6  # limit points are located to about 1e-8
-_SAME_PLACE = 1e-3  # of the model, or of a gradient: by 1e-6 loads beside a limit point, states differ by the root
+# of the model, or of a gradient: states at load factors 1e-6 apart differ by the square root near a limit point
+_SAME_PLACE = 1e-3
 
 
 def rest_state(
@@ -57,7 +58,7 @@ def rest_state(
         time *= 2.0
         waits += 1
         if size < _NEAR and waits > wait:
-            waits, wait = 0, 2 * wait + 1  # Newton's method costs several steps: where it fails, the next try waits
+            waits, wait = 0, 2 * wait + 1  # Newton's method costs several steps: if it fails, the next attempt waits
             result = solve_equilibrium(system, p, load_factor, newton, keep=0)
             iterations += result.iterations
             near = _size(system, result.state - p) < _LARGEST_MOVE
@@ -83,7 +84,7 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
     """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations.
 
-    It also fails if the step is so long that several states are possible at its end: some lie in other valleys.
+    It also fails if the step is so long that several states are possible at its end, some of them in other valleys.
     """
     free, moved, zeros = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)

@@ -15,7 +15,7 @@ from beamfem.solve.newton.iteration import Termination
 class StaticRecord:
     """The rows found so far: load factors, states (n,) and the negative pivots of their tangents.
 
-    One call adds a row, so that an interruption finds it whole.
+    One call adds a row, so that rows are complete after an interruption.
     """
 
     def __init__(self, model: Model, symmetric: bool) -> None:
@@ -53,7 +53,7 @@ class StaticRecord:
         """
         load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
         counts = [count for _, _, count in self.rows]
-        # follower loads: an odd count is a negative determinant, so at least one motion grows; an even one says nothing
+        # follower loads: an odd count, a negative determinant, means that a motion grows; an even one proves nothing
         unstable = np.array([count > 0 if self.symmetric else count % 2 == 1 for count in counts])
         status = Status.STOPPED if not complete else Status.COMPLETED
         if complete and self.ended is Termination.ROUND_OFF:
@@ -80,7 +80,7 @@ class StaticRecord:
             True,
             load_factors,
             states,
-            np.zeros(states.shape),  # unlike zeros_like, no memory until somebody writes to it
+            np.zeros(states.shape),  # unlike zeros_like, it takes no memory until it is written to
             np.zeros(states.shape),
             statistics,
             ~unstable if self.symmetric else None,

@@ -33,17 +33,55 @@ def solve_static(
     at: Sequence[float] | None = None,
     snap: Snap = "error",
 ) -> Solution:
-    """Return the equilibria from load factor 0 to 1 along the path that starts at 0.
+    """Find the static equilibria from load factor 0 to 1, along the path that starts at 0.
 
-    A load step is accepted if the iterates keep the number of negative pivots; otherwise the path is followed by arc
-    length. At a bifurcation the primary path is continued, and a warning reports unstable rows.
-    steps: initial number of load steps, which are grown and cut as needed. Rows of the result: load factor 0 (loads
-    with scale=False), ..., 1. at: ascending load factors from 0 to 1 for the rows instead, reached exactly, except
-    those skipped by a jump; the last of them ends the solve. snap: at a limit point raise an "error", or "jump" to the
-    state in which a slow, damped structure comes to rest under the same load, and continue from there.
-    Raises InputError and FreeMotionError before the solve; LimitPointError with the load factor, and ConvergenceError
-    if no step converges, both with the states found. Any other exception during the solve, such as KeyboardInterrupt,
-    carries them as its `solution` too.
+    A load step is accepted if the number of negative pivots of the tangent stays the same over its iterations;
+    otherwise the path is followed by arc length. At a bifurcation the primary path is continued, and a warning reports
+    unstable rows.
+
+    Parameters
+    ----------
+    model : Model
+        Beams, supports and loads.
+    steps : int, default 1
+        Initial number of load steps, which are enlarged and cut as needed.
+    newton : Newton, optional
+        Tolerances of the iteration.
+    at : sequence of float, optional
+        Ascending load factors from 0 to 1 for the rows of the result, reached exactly, except those skipped by a jump;
+        the last of them ends the solve. By default the rows are the accepted load steps: load factor 0 (only the loads
+        with scale=False), ..., 1.
+    snap : {"error", "jump"}, default "error"
+        What to do at a limit point: raise an error, or jump to the state in which a slow, damped structure comes to
+        rest under the same load, and continue from there.
+
+    Returns
+    -------
+    Solution
+        One row for each load step.
+
+    Raises
+    ------
+    InputError
+        Before the solve, for invalid arguments.
+    FreeMotionError
+        Before the solve, if the model can move without resistance.
+    LimitPointError
+        At a limit point; it has the load factor and the states found.
+    ConvergenceError
+        If no step converges; its `solution` has the states found. Any other exception during the solve, such as
+        KeyboardInterrupt, carries them as its `solution` too.
+
+    Warns
+    -----
+    UnstableWarning
+        If some rows are unstable equilibria.
+
+    Examples
+    --------
+    >>> halves = bf.solve_static(model, at=[0.0, 0.5, 1.0])
+    >>> halves.displacement(beam.end)[:, 1].round(4)
+    array([ 0.    , -0.0153, -0.0305])
     """
     if at is None:
         return solve_through(model, (), steps, newton, snap=snap)
@@ -52,12 +90,12 @@ def solve_static(
 
 
 def _ascending(at: Sequence[float]) -> list[float]:
-    """Check the load factors requested by a user."""
+    """Return the load factors requested by a user. Raises InputError."""
     wanted = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
     rising = all(after - before > SAME for before, after in pairwise(wanted))
     if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
         raise InputError(
-            "at of solve_static must be load factors that rise within 0 and 1, such as [0.25, 0.5, 1.0], got "
+            "at of solve_static must be ascending load factors between 0 and 1, such as [0.25, 0.5, 1.0], got "
             f"{shown(at)}"
         )
     return wanted
@@ -66,7 +104,7 @@ def _ascending(at: Sequence[float]) -> list[float]:
 def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
     """Return the rows at some load factors, with the rotations counted over all rows."""
     near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
-    # behind a jump the last of several states at a load factor
+    # after a jump, the last of several states at a load factor
     rows = np.array([np.flatnonzero(own)[-1] for own in near if own.any()], dtype=int)
     stability = None if solution.stability is None else solution.stability[rows]
     states = {name: getattr(solution, name)[rows] for name in ("at", "p", "v", "a")}
@@ -82,7 +120,7 @@ def solve_through(
     snap: Snap = "error",
     end: float = 1.0,
 ) -> Solution:
-    """Return the same with rows at load factors `stops` in between, up to the load factor `end`."""
+    """Return the static solution up to the load factor `end`, with rows at the load factors `stops`."""
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
     system = system_of(model, static=True)

@@ -1,0 +1,231 @@
+"""What a solution says of points: fields, positions, velocities, reactions, forces of connectors."""
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from beamfem.model.beam import Point
+from beamfem.model.contribution import Contribution
+from beamfem.model.model import Model
+from beamfem.results import postprocess
+from beamfem.results.connected import connector_force, multipliers
+from beamfem.results.postprocess import Fields
+from beamfem.results.reactions import reaction
+from beamfem.results.section_forces import Cuts, at_points
+from beamfem.results.self_stress import self_stress
+from beamfem.results.turns import turned_of
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+
+class PointQuantities:
+    """Quantities of a `Solution`, which derives from this class, at points."""
+
+    model: Model
+    p: np.ndarray
+    v: np.ndarray
+
+    @property
+    def _whole(self) -> "Solution":
+        return cast("Solution", self)
+
+    def fields(self, point: Point) -> Fields:
+        """Return position, gradients, rotation, shear angle, strain and stress at a point.
+
+        Where two elements meet or a load acts, strain and stress are those on the side towards the beam's end.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam, such as `beam.end` or `beam.at(0.5)`.
+
+        Returns
+        -------
+        Fields
+            The fields over the steps.
+
+        Examples
+        --------
+        >>> fields = solution.fields(beam.at(0.5))
+        >>> fields.position[-1].round(4)
+        array([ 0.9999, -0.0096])
+        """
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        forces = at_points(self._whole, mesh, Cuts(element, xi))
+        own = self_stress(self._whole, mesh, element, xi, None, np.zeros((1, 1)))
+        found = postprocess.fields(mesh, self.p, element, xi, forces, own, turned_of(self._whole, mesh))
+        return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
+
+    def position(self, point: Point) -> np.ndarray:
+        """Return the position of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (steps, 2)
+            Position (x, y).
+
+        Examples
+        --------
+        >>> solution.position(beam.end)[-1].round(4)
+        array([ 1.9997, -0.0305])
+        """
+        return postprocess.position(self.model.mesh_of(point), self.p, point.fraction)
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point from the reference configuration.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m], (steps, 2)
+            Displacement (ux, uy).
+
+        Examples
+        --------
+        >>> solution.displacement(beam.end)[-1].round(4)
+        array([-0.0003, -0.0305])
+        """
+        mesh = self.model.mesh_of(point)
+        return self.position(point) - postprocess.start(mesh, point.fraction)
+
+    def velocity(self, point: Point) -> np.ndarray:
+        """Return the velocity of a point.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [m/s], (steps, 2)
+            Velocity (vx, vy).
+
+        Examples
+        --------
+        >>> motion = bf.simulate(model, duration=0.02, step=0.001)
+        >>> motion.velocity(beam.end)[-1].round(2)
+        array([-0.09, -2.44])
+        """
+        return self._axis(point, postprocess.nodal_velocities(self.model.mesh_of(point), self.p, self.v)).r[:, 0]
+
+    def rotation(self, point: Point) -> np.ndarray:
+        """Return the rotation of the section, counter-clockwise positive, full turns included.
+
+        Parameters
+        ----------
+        point : Point
+            A point of a beam.
+
+        Returns
+        -------
+        array, [rad], (steps,)
+            Rotation from the reference.
+
+        Examples
+        --------
+        >>> round(float(solution.rotation(beam.end)[-1]), 4)
+        -0.0229
+        """
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        now = self._axis(point, postprocess.nodal_vectors(mesh, self.p))
+        return postprocess.turning(mesh, self.p, now, element, xi, turned_of(self._whole, mesh))[:, 0]
+
+    def _axis(self, point: Point, vectors: np.ndarray) -> postprocess.Axis:
+        mesh = self.model.mesh_of(point)
+        element, xi = mesh.locate(point.fraction)
+        return postprocess.axis(mesh, vectors, np.array([element]), np.array([xi]))
+
+    def reaction(self, point: Point) -> np.ndarray:
+        """Return the reaction of supports and springs on the beam at a point.
+
+        Supports at joined points of other beams are not included.
+
+        Parameters
+        ----------
+        point : Point
+            A supported point.
+
+        Returns
+        -------
+        array, (steps, 3)
+            fx, fy [N], m [N m].
+
+        Raises
+        ------
+        InputError
+            If the point has no support.
+
+        Examples
+        --------
+        >>> solution.reaction(beam.start)[-1, 1:].round()  # fy, m
+        array([10000., 19997.])
+        """
+        return reaction(self._whole, point)
+
+    def connector_force(self, connector: Contribution) -> np.ndarray:
+        """Return the forces of a connector on its points.
+
+        Parameters
+        ----------
+        connector : Contribution
+            One of `model.connectors`.
+
+        Returns
+        -------
+        array, (steps, m, 3)
+            fx, fy [N], m [N m] at each of its m points.
+
+        Raises
+        ------
+        InputError
+            For a connector that is not in the model.
+
+        Examples
+        --------
+        >>> forces = solution.connector_force(model.connectors[0])  # doctest: +SKIP
+        """
+        return connector_force(self._whole, connector)
+
+    def multipliers(self, connector: Contribution) -> np.ndarray:
+        """Return the additional unknowns of a connector, such as multipliers.
+
+        Parameters
+        ----------
+        connector : Contribution
+            One of `model.connectors`.
+
+        Returns
+        -------
+        array, (steps, k)
+            Its unknowns.
+
+        Raises
+        ------
+        InputError
+            For a connector that is not in the model.
+
+        Examples
+        --------
+        >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
+        """
+        return multipliers(self._whole, connector)
+
+
+def _single(value: Any) -> Any:
+    """Drop the axis of points."""
+    if isinstance(value, postprocess.Components):
+        return postprocess.Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
+    return value[:, 0]

@@ -1,0 +1,120 @@
+"""Docstrings of the public names: every parameter is described, and every example runs and gives what it shows."""
+
+import doctest
+import inspect
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import matplotlib
+import pytest
+
+import beamfem as bf
+
+
+def public() -> dict[str, Any]:
+    """Return the public functions and classes, and the public methods of classes, by name."""
+    found = {}
+    for name in bf.__all__:
+        thing = getattr(bf, name)
+        found[name] = thing
+        if inspect.isclass(thing) and not issubclass(thing, Exception):
+            methods = inspect.getmembers(thing, lambda own: inspect.isfunction(own) or isinstance(own, property))
+            for own, method in methods:
+                documented = method.fget if isinstance(method, property) else method
+                if not own.startswith("_") and (documented.__module__ or "").startswith("beamfem."):
+                    found[f"{name}.{own}"] = documented
+    return found
+
+
+PUBLIC = public()
+# classes whose signature is their own, and functions
+DESCRIBED = [
+    name
+    for name, thing in PUBLIC.items()
+    if "." not in name
+    and (inspect.isfunction(thing) or not getattr(thing, "_is_protocol", False))
+    and (not inspect.isclass(thing) or issubclass(thing, bf.ConvergenceError) or not issubclass(thing, Exception))
+    and thing is not bf.Status
+]
+
+
+def sections(docstring: str) -> dict[str, list[str]]:
+    """Return the lines of each section by its title, those before the first one by ""."""
+    lines = inspect.cleandoc(docstring).split("\n")
+    found: dict[str, list[str]] = {"": []}
+    title = ""
+    for line, below in zip(lines, [*lines[1:], ""], strict=True):
+        if re.fullmatch(r"-{3,}", below) and len(below) == len(line):
+            title = line
+            found[title] = []
+        elif not re.fullmatch(r"-{3,}", line):
+            found[title].append(line)
+    return found
+
+
+def described(lines: list[str]) -> Iterator[str]:
+    """Yield the names that a section describes."""
+    for line in lines:
+        if line and not line.startswith(" "):
+            yield from (name.strip(" *") for name in line.partition(" : ")[0].split(","))
+
+
+def taken(thing: Any) -> list[str]:
+    """Return the parameters of a function or class; constants of the code come after them and are left out."""
+    try:
+        parameters = inspect.signature(thing).parameters
+    except ValueError:  # of abstract classes
+        return []
+    return [name for name in parameters if name not in ("self", "cls", "args", "kwargs")]
+
+
+@pytest.mark.parametrize("name", DESCRIBED)
+def test_every_parameter_is_described_and_no_other(name):
+    thing = PUBLIC[name]
+    found = sections(thing.__doc__)
+    assert sorted(described(found.get("Parameters", []))) == sorted(taken(thing))
+    if inspect.isfunction(thing):
+        assert {"Returns", "Examples"} <= set(found)
+
+
+@pytest.mark.parametrize("name", [name for name in PUBLIC if "." in name])
+def test_methods_with_parameters_section_describe_all_parameters(name):
+    found = sections(PUBLIC[name].__doc__ or "")
+    if "Parameters" in found:
+        assert sorted(described(found["Parameters"])) == sorted(taken(PUBLIC[name]))
+        assert "Returns" in found or name.split(".")[1] in ("to_vtk", "save")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [f"Solution.{own}" for own in ("plot", "animate", "to_vtk", "save", "section_forces", "reaction", "position")],
+)
+def test_methods_that_are_used_most_have_sections(name):
+    assert {"Parameters", "Examples"} <= set(sections(PUBLIC[name].__doc__))
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_summaries_are_one_sentence_in_the_first_line(name):
+    docstring = PUBLIC[name].__doc__
+    if docstring is not None and "Parameters" in sections(docstring):
+        assert sections(docstring)[""][0].rstrip().endswith((".", "`."))
+
+
+@pytest.fixture(scope="session")
+def names() -> dict[str, Any]:
+    """Return what the examples of the package leave: a cantilever and its solution."""
+    runner = doctest.DocTestRunner()
+    example = doctest.DocTestParser().get_doctest(bf.__doc__, {}, "beamfem", None, 0)
+    assert runner.run(example, clear_globs=False).failed == 0
+    return example.globs
+
+
+@pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if ">>> " in (thing.__doc__ or "")])
+def test_examples_give_what_they_show(name, names, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    matplotlib.use("Agg")
+    told: list[str] = []
+    example = doctest.DocTestParser().get_doctest(PUBLIC[name].__doc__, dict(names), name, None, 0)
+    doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(example, out=told.append)
+    assert not told, "".join(told)

@@ -67,7 +67,7 @@ class PathState(State):
     def section_forces(self, beam: Beam) -> SectionForces:
         """Return normal and shear force [N] and moment [N m] of a beam (stations,), see `SectionForces`."""
         found = self._alone.section_forces(beam)
-        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
+        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0], found.units)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results import postprocess
-from beamfem.results.beam_stress import BeamStress, beam_stress
+from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
 from beamfem.results.connected import connector_force, kinetic_of_connectors, momenta_of_connectors, multipliers
 from beamfem.results.drawing_options import FilmOptions, PageOptions, PictureOptions, ShapeOptions, WindowOptions
 from beamfem.results.energies import Energy, potential
@@ -53,6 +53,9 @@ class State:
 
     def __post_init__(self) -> None:
         require_state(self)
+
+    def _repr_html_(self) -> str:
+        return offered(State._repr_html_)(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +177,7 @@ class Solution:
         forces = at_points(self, mesh, Cuts(element, xi))
         own = self_stress(self, mesh, element, xi, None, np.zeros((1, 1)))
         found = postprocess.fields(mesh, self.p, element, xi, forces, own, turned_of(self, mesh))
-        return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
+        return Fields(*(postprocess.at_single_point(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point (steps, 2) [m]."""
@@ -233,6 +236,10 @@ class Solution:
         self.model.number_of(beam)
         return beam_stress(self, beam)
 
+    def peak_stress(self, part: Part = "von_mises") -> Peak:
+        """Return the peak of a stress over all beams and rows, with its beam, see `BeamStress.peak`."""
+        return peak_stress(self, part)
+
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
@@ -245,7 +252,7 @@ class Solution:
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self))
         parts = (postprocess.strain_energy(mesh, self.p, imposed_measures(self, mesh)) for mesh in self.model.meshes)
         strain = sum(parts, np.zeros(len(self)))
-        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]))
+        return Energy(kinetic, strain, potential(self, [m.first_moment for m in self._momenta]), self.model.unit("J"))
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:
@@ -341,10 +348,3 @@ class Solution:
 
     def _stable_rows(self) -> np.ndarray:
         return offered(Solution._stable_rows)(self)
-
-
-def _single(value: Any) -> Any:
-    """Drop the axis of points."""
-    if isinstance(value, postprocess.Components):
-        return postprocess.Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
-    return value[:, 0]

@@ -17,7 +17,7 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
-from beamfem.view.rendering import ADVICE, can_render, has_display
+from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_needed
 from beamfem.view.shapes import FIELD_COLOURS, Shapes
 from beamfem.view.written import WrittenFile
 
@@ -107,7 +107,8 @@ class _Scene:
 
         self.shapes = shapes
         self.surface = pyvista.PolyData(self._points(0), _faces(shapes))
-        self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
+        with no_display_needed():
+            self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
         options: dict[str, Any] = {"color": _PLAIN}

@@ -31,11 +31,11 @@ _OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], np.ndarray]]] =
     "fy": ("reaction fy", "N", lambda s, at: s.reaction(at)[:, 1]),
     "m": ("reaction moment", "N m", lambda s, at: s.reaction(at)[:, 2]),
 }
-_OF_SECTION = (
+OF_SECTION = (
     *("normal", "shear", "moment", "stress", "von_mises", "upper", "lower", "outer"),
     *("tension", "compression", "shear_stress", "utilisation"),
 )
-_ENERGIES = ("kinetic", "strain", "potential", "total")
+ENERGIES = ("kinetic", "strain", "potential", "total")
 
 
 def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str] | None = None) -> Any:
@@ -63,14 +63,14 @@ def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarra
     """Return label and values (steps,) of what is drawn along an axis. Raises InputError."""
     if isinstance(given, str):
         name, unit = axis_of_rows(solution)
-        require_known(f"{which} of a curve is no {shown(given)}", given, [name.replace(" ", "_"), *_ENERGIES])
-        if given in _ENERGIES:
+        require_known(f"{which} of a curve is no {shown(given)}", given, [name.replace(" ", "_"), *ENERGIES])
+        if given in ENERGIES:
             return f"{given} energy [{solution.model.unit('J')}]", getattr(solution.energy(), given)
         return f"{name} [{unit}]", solution.at
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Point):
         name, point = given
-        require_known(f"{which} of a curve is no {shown(name)} of a point", name, [*_OF_POINT, *_OF_SECTION])
-        if name in _OF_SECTION:
+        require_known(f"{which} of a curve is no {shown(name)} of a point", name, [*_OF_POINT, *OF_SECTION])
+        if name in OF_SECTION:
             label, unit, values = _of_section(solution, QUANTITIES[name], point)
         else:
             label, unit, value = _OF_POINT[name]

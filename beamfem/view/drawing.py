@@ -21,7 +21,7 @@ _LONGER_SIDE = 5.6  # [inch]
 _LEAST = np.array([3.2, 1.3])  # of the axes [inch]
 _LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
 _NAME = 1.6  # of a shape in the legend [inch]
-LINE = 0.26  # of a title above a legend [inch]
+LINE = 0.3  # of a title above a legend [inch]
 _SEVERAL = 9  # shapes of a motion or a path
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 

@@ -1,6 +1,7 @@
 """Fields of the rows of a page, in levels between their limits."""
 
 import base64
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from beamfem.view.shapes import Shapes, limits
 _FORCES = ("moment", "normal", "shear")
 # names of fields and of the parts of `BeamStress`
 _STRESSES = {"stress": "von_mises", "upper": "upper", "lower": "lower", "utilisation": "utilisation"}
+FURTHER = ("upper", "lower", "utilisation")  # only on pages with room for them
 _LEVELS = 254.0  # steps between the limits; level 0 is what is not known
 
 
@@ -28,9 +30,9 @@ def names_of(solution: Solution) -> tuple[str, ...]:
     return (*_FORCES, *stresses, *moved)
 
 
-def fields_of(shapes: Shapes) -> list[dict[str, Any]]:
-    """Return fields in levels from 1 to 255 between their limits, 0 where they are not known."""
-    solution, rows, names = shapes.solution, shapes.rows, names_of(shapes.solution)
+def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Return fields by name in levels from 1 to 255 between their limits, 0 where they are not known."""
+    solution, rows = shapes.solution, shapes.rows
     forces = [section_forces(points, solution, rows) for points in shapes.points]
     stresses: list[dict[str, np.ndarray]] = []
     if any(name in _STRESSES for name in names):

@@ -14,7 +14,7 @@ from beamfem.files import path_of, whole
 from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
-from beamfem.view.page_fields import as_text, fields_of, names_of
+from beamfem.view.page_fields import FURTHER, as_text, fields_of, names_of
 from beamfem.view.page_loads import loads_of
 from beamfem.view.shapes import Shapes
 from beamfem.view.summary import model_rows, solution_rows
@@ -52,7 +52,7 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
 
 
 def _data(solution: Solution, frames: int) -> dict[str, Any]:
-    shapes, body = _sized(solution, frames, len(names_of(solution)))
+    shapes, body, names = _sized(solution, frames)
     sides = shapes.body if body else [axis[:, :, None] for axis in shapes.axis]
     low, high = shapes.box
     size = float(np.max(high - low)) or 1.0
@@ -86,20 +86,21 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "loads": loads_of(shapes),
         "outlines": outlines,
         "places": places,
-        "fields": fields_of(shapes),
+        "fields": fields_of(shapes, names),
     }
 
 
-def _sized(solution: Solution, frames: int, fields: int) -> tuple[Shapes, bool]:
-    """Return the shapes that fit on a page, and whether bodies fit too."""
-    rows = spread_rows(solution, frames)
+def _sized(solution: Solution, frames: int) -> tuple[Shapes, bool, tuple[str, ...]]:
+    """Return the shapes that fit on a page, whether bodies fit too, and the names of the fields."""
+    rows, names = spread_rows(solution, frames), names_of(solution)
     elements = sum(mesh.elements for mesh in solution.model.meshes)
-    room = _BYTES // (len(rows) * (8 + fields))
+    room = _BYTES // (len(rows) * (8 + len(names)))
     if room >= 2 * elements:
         # an element of n pieces has n + 1 points
-        return Shapes(solution, rows, total=max(1, room - elements)), True
-    most = max(2, _BYTES // (2 * elements * (4 + fields)))
-    return Shapes(solution, spread_rows(solution, min(frames, most)), total=1), False
+        return Shapes(solution, rows, total=max(1, room - elements)), True, names
+    names = tuple(name for name in names if name not in FURTHER)
+    most = max(2, _BYTES // (2 * elements * (4 + len(names))))
+    return Shapes(solution, spread_rows(solution, min(frames, most)), total=1), False, names
 
 
 def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:

@@ -69,6 +69,24 @@ def test_legend_and_title_are_above_each_other_inside_the_figure(bent):
     assert title.y1 <= figure.bbox.y1
 
 
+@pytest.mark.parametrize("options", [{}, {"colour": "stress"}, {"shapes": 2}, {"shapes": 3, "colour": "outer"}])
+def test_the_legend_of_a_narrow_picture_fits_into_it(options):
+    """A mast far away from the origin: its places are long texts."""
+    mast = bf.Beam(bf.Line((-1234.5, 0), (-1234.5, 5678.9)), 4, bf.CRBF(3), bf.Rectangle(100.0, 100.0), STEEL)
+    model = bf.Model([mast], [bf.Clamp(mast.start)], [bf.PointForce(mast.at(0.37), (1e4, 0.0))], units="N, mm")
+    for solution in (bf.solve_static(model, steps=4), bf.trace_equilibrium(model, until=1.0)):
+        figure = solution.plot(**options)
+        figure.canvas.draw()
+        (legend,), whole = figure.legends, figure.bbox
+        box = legend.get_window_extent()
+        assert whole.x0 <= box.x0
+        assert max(box.x1 - whole.x1, box.y1 - whole.y1) <= 0.0
+        title = figure.axes[0].title
+        if title.get_text():
+            assert title.get_window_extent().y0 >= box.y1 - 4.0
+            assert title.get_window_extent().y1 <= whole.y1
+
+
 def test_a_buckling_mode_and_its_critical_state_are_told_apart():
     """Both are at the same load factor: the legend read the same twice."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(3), SECTION, STEEL)

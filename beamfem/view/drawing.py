@@ -10,18 +10,18 @@ from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag
 from beamfem.view.acting import draw_loads
-from beamfem.view.extreme import mark_extreme
+from beamfem.view.extreme import extreme_of
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.plots import empty_figure, quiet, save_figure
-from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+from beamfem.view.shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
 from beamfem.view.supports import draw_joints, draw_supports
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]
 _LEAST = np.array([3.2, 1.3])  # of the axes [inch]
 _LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
-_NAME = 1.6  # of a shape in the legend [inch]
-LINE = 0.3  # of a title above a legend [inch]
+_LETTER, _HANDLE, _SMALL = 0.07, 0.6, 9.0  # width of a letter and of a line in a legend [inch], letters [points]
+LINE, _FURTHER = 0.3, 0.15  # of a title above a legend, and above a second line of it [inch]
 _SEVERAL = 9  # shapes of a motion or a path
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 
@@ -55,10 +55,14 @@ def plot_shapes(
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
-    named = len(rows) + undeformed
-    crowded = len(rows) > _NAMED or named * _NAME > _inches(drawn.box)[0] + _LEFT + _RIGHT
-    barred = colour is not None or (crowded and len(rows) > 1)
-    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"), LINE if colour else 0.0)
+    extreme = None if colour is None else extreme_of(drawn)
+    dashed, names = [ORIGINAL] if undeformed else [], [moment_of(solution, int(row)) for row in rows]
+    width = _inches(drawn.box)[0] + _LEFT + (_RIGHT if extreme is None else _BAR)
+    crowded = len(rows) > _NAMED or _wide([*dashed, *names]) > width
+    barred = extreme is not None or (crowded and len(rows) > 1)
+    lines = 2 if extreme is not None and _wide([*dashed, f"{extreme.value} {extreme.where}"]) > width else 1
+    above = 0.0 if extreme is None else LINE + (lines - 1) * _FURTHER
+    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"), above)
     entries = [draw_undeformed(axes, drawn.points)] if undeformed else []
     for order in range(len(rows)):
         drawn.draw(axes, order, (order + 1) / len(rows))
@@ -67,16 +71,16 @@ def plot_shapes(
     draw_joints(axes, solution, int(rows[-1]))
     if loads:
         draw_loads(axes, solution, rows)
-    if drawn.quantity is not None:
+    if extreme is not None:
         bar(figure, axes, drawn)
-        entries.append(mark_extreme(axes, drawn))
+        entries.append(extreme.draw(axes, lines))
     elif barred:
         _bar_of_rows(figure, axes, solution, rows)
-    elif named > 1:
-        entries += _names_of_rows(solution, rows)
+    elif len(rows) > 1 or undeformed:
+        entries += [entry((order + 1) / len(rows), name) for order, name in enumerate(names)]
     legend_above(figure, axes, entries)
-    if named == 1 or drawn.quantity is not None:
-        axes.set_title(_span(solution, rows), fontsize=10, pad=6.0 if not entries else 72.0 * LINE)
+    if extreme is not None or not (entries or barred):
+        axes.set_title(_span(solution, rows), fontsize=10, pad=max(6.0, 72.0 * above))
     if path is not None:
         save_figure(figure, path)
     return figure
@@ -141,8 +145,9 @@ def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -
     shown.ax.tick_params(length=0)
 
 
-def _names_of_rows(solution: Solution, rows: np.ndarray) -> list[Any]:
-    return [entry((order + 1) / len(rows), moment_of(solution, int(row))) for order, row in enumerate(rows)]
+def _wide(labels: list[str]) -> float:
+    """Return about how wide a legend in one line is [inch]."""
+    return sum(_LETTER * len(label) + _HANDLE for label in labels)
 
 
 def entry(fraction: float, label: str) -> Any:
@@ -156,7 +161,7 @@ def legend_above(figure: Any, axes: Any, entries: list[Any]) -> None:
     """Write a legend in a line above the axes, if there is anything to explain."""
     if entries:
         top = axes.get_position().y1
-        options = {"ncols": len(entries), "frameon": False, "borderaxespad": 0.1}
+        options = {"ncols": len(entries), "frameon": False, "borderaxespad": 0.1, "fontsize": _SMALL}
         figure.legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, top), **options)
 
 

@@ -12,6 +12,7 @@ from beamfem.results.along import AxisPoints, Quantity, quantity
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
+ORIGINAL = "original shape"  # what is dashed
 _SAME = 1e-3  # of the largest value: smaller differences are not worth all colours
 FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print
 _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
@@ -191,4 +192,4 @@ def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:
     axes.add_collection(
         LineCollection(lines, colors=_DASHED, linestyles=_DASHES, linewidths=0.9, zorder=1.5), autolim=False
     )
-    return Line2D([], [], color=_DASHED, linestyle=_DASHES, linewidth=0.9, label="original shape")
+    return Line2D([], [], color=_DASHED, linestyle=_DASHES, linewidth=0.9, label=ORIGINAL)

@@ -17,4 +17,4 @@ solution = bf.solve_static(model, at=[0.0, 0.125, 0.25, 0.5, 1.0])
 
 print("end at", solution.position(beam.end)[-1].round(6) + 0.0, "m")
 print(f"turned by {solution.rotation(beam.end)[-1] / (2 * np.pi):.6f} turns")
-solution.plot("out/examples/roll_up.png")
+solution.plot("out/examples/roll_up.png", shapes=5)

@@ -52,6 +52,51 @@ def test_the_peak_says_where_and_when():
         solution.stresses(bf.Beam(own.curve, 4, bf.CRBF(3), own.section, STEEL))
 
 
+def test_a_peak_carries_its_time_and_a_stress_shows_its_peaks():
+    own, solution = cantilever(bf.Rectangle(0.02, 0.04))
+    found = solution.stresses(own)
+    peak = found.peak()
+    assert (peak.at, peak.beam) == (1.0, own)
+    assert f"von_mises {peak.value:.4g} Pa at 0 m in row 1, load factor 1" in repr(found)
+    table = found._repr_html_()
+    for head in ("von_mises [Pa]", "utilisation [-]", "at arc length [m]", "load factor"):
+        assert head in table
+    push = bf.PointForce(own.end, (0.0, -FORCE), amplitude=lambda t: float(np.sin(np.pi * t / 1e-3)))
+    motion = bf.simulate(bf.Model([own], [bf.Clamp(own.start)], [push], units="N, m, ms"), 4e-3, 1e-4)
+    moved = motion.stresses(own)
+    peak = moved.peak()
+    assert peak.at == motion.time[peak.row]
+    assert f"t = {peak.at:.4g} ms" in repr(moved)
+    assert "time [ms]" in moved._repr_html_()
+
+
+def test_the_peak_of_a_frame_is_in_the_weaker_of_two_beams():
+    """A post under a bracket: M = F a in both at the corner, and W of the post is an eighth of the bracket's.
+
+    Of the post, both faces: F a / W and F / A, which presses.
+    """
+    force, arm = 10.0, 0.5
+    thin, thick = bf.Rectangle(0.02, 0.01), bf.Rectangle(0.02, 0.02 * np.sqrt(2.0))
+    post = bf.Beam(bf.Line((0.0, 0.0), (0.0, 1.0)), 4, bf.CRBF(3), thin, STEEL)
+    bracket = bf.Beam(bf.Line((0.0, 1.0), (arm, 1.0)), 4, bf.CRBF(3), thick, STEEL)
+    # so small that the frame stays as it is
+    loads = [bf.PointForce(bracket.end, (0.0, -1e-4 * force))]
+    model = bf.Model([bracket, post], [bf.Clamp(post.start)], loads, [bf.Rigid(post.end, bracket.start)])
+    solution = bf.solve_static(model)
+    peak = solution.peak_stress()
+    bending, pressing = 1e-4 * force * arm / (0.02 * 0.01**2 / 6.0), 1e-4 * force / (0.02 * 0.01)
+    assert peak.beam is post
+    assert peak.value == pytest.approx(bending + pressing, rel=1e-4)
+    assert (peak.row, peak.at) == (len(solution) - 1, 1.0)
+    assert solution.peak_stress("compression").value == pytest.approx(-bending - pressing, rel=1e-4)
+    assert solution.peak_stress("tension").value == pytest.approx(bending - pressing, rel=1e-4)
+    shear = solution.peak_stress("shear")
+    assert shear.beam is bracket
+    assert shear.value == pytest.approx(1.5 * 1e-4 * force / (0.02 * 0.02 * np.sqrt(2.0)), rel=1e-3)
+    with pytest.raises(bf.InputError, match="there is no stress 'mises'; did you mean von_mises"):
+        solution.peak_stress("mises")
+
+
 def test_layers_have_strengths_of_their_own():
     """The stiff layer carries more stress, the weak one is used up first."""
     weak = bf.Material(2e10, 0.3, 1000.0, strength=1e6)

@@ -46,6 +46,24 @@ def test_picture_of_the_body(bent, tmp_path):
 
 
 @renders
+def test_a_picture_without_a_display_is_silent_and_errors_are_not(bent, tmp_path, monkeypatch, capfd):
+    """VTK looks for an X server first and complained on stderr that there is none."""
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    logger = pytest.importorskip("vtkmodules.vtkCommonCore").vtkLogger
+    before = logger.GetCurrentVerbosityCutoff()
+    bent.picture(tmp_path / "body.png", size=(60, 40))
+    assert capfd.readouterr().err == ""
+    assert logger.GetCurrentVerbosityCutoff() == before
+    with rendering.no_display_needed():
+        logger.Log(logger.VERBOSITY_WARNING, "here", 1, "no display")
+        logger.Log(logger.VERBOSITY_ERROR, "here", 1, "an error")
+    said = capfd.readouterr().err
+    assert "an error" in said
+    assert "no display" not in said
+
+
+@renders
 def test_a_picture_leaves_no_window_behind(bent, tmp_path, monkeypatch):
     pyvista = pytest.importorskip("pyvista")
     made, begin = [], pyvista.Plotter.__init__

@@ -58,3 +58,48 @@ def test_an_option_that_is_misspelt_is_named_with_the_right_one():
         solution.plot(color="moment")
     with pytest.raises(bf.InputError, match="animate has no option 'fsp'"):
         solution.animate("film.gif", fsp=3)
+
+
+STIFF = bf.Model([OWN], [bf.Clamp(OWN.start)], [bf.PointForce(OWN.at(0.5), (0.0, -30.0))])
+SOLVED = {
+    "statics": lambda: bf.solve_static(STIFF, steps=3),
+    "path": lambda: bf.trace_equilibrium(STIFF, until=1.0),
+    "motion": lambda: bf.simulate(STIFF, duration=0.01, step=1e-3),
+}
+
+
+@pytest.mark.parametrize("kind", SOLVED)
+def test_section_forces_stresses_and_energies_are_drawn(kind):
+    solution = SOLVED[kind]()
+    over = "time" if kind == "motion" else "load_factor"
+    forces, stress, energy = solution.section_forces(OWN), solution.stresses(OWN), solution.energy()
+    middle = int(np.flatnonzero(np.isclose(forces.arc_length, 0.5))[-1])  # just after the load
+    for point, station in ((OWN.start, 0), (OWN.at(0.5), middle), (OWN.end, -1)):
+        for name in ("moment", "normal", "shear"):
+            expected = getattr(forces, name)[:, station]
+            found = drawn(solution.plot_curve(over, (name, point)))[:, 1]
+            assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(getattr(forces, name)).max())
+        found = drawn(solution.plot_curve(over, ("stress", point)))[:, 1]
+        assert found == pytest.approx(stress.von_mises[:, station], rel=1e-9, abs=1e-9 * stress.von_mises.max())
+    for name in ("kinetic", "strain", "potential", "total"):
+        figure = solution.plot_curve(over, name)
+        assert np.array_equal(drawn(figure)[:, 1], getattr(energy, name))
+        assert figure.axes[0].get_ylabel() == f"{name} energy [J]"
+
+
+def test_the_moment_at_a_clamp_is_force_times_arm():
+    small = bf.Model([OWN], [bf.Clamp(OWN.start)], [bf.PointForce(OWN.end, (0.0, -1e-3))])
+    figure = bf.solve_static(small).plot_curve("load_factor", ("moment", OWN.start))
+    assert drawn(figure)[-1, 1] == pytest.approx(-1e-3, rel=1e-6)
+    assert figure.axes[0].get_ylabel() == "bending moment at (0, 0) [N m]"
+
+
+def test_a_section_without_stress_is_named():
+    plain = bf.Beam(OWN.curve, 4, bf.CRBF(3), bf.Section.from_stiffness(1e6, 1e6, 1e2, 1.0, 1.0))
+    solution = bf.solve_static(bf.Model([plain], [bf.Clamp(plain.start)], [bf.PointForce(plain.end, (0.0, 1.0))]))
+    with pytest.raises(bf.InputError, match="no von Mises stress to draw: stresses need sections"):
+        solution.plot_curve("load_factor", ("stress", plain.start))
+    with pytest.raises(bf.InputError, match="did you mean moment"):
+        solution.plot_curve("load_factor", ("momentum", plain.start))
+    with pytest.raises(bf.InputError, match="did you mean strain"):
+        solution.plot_curve("load_factor", "strains")

@@ -135,6 +135,7 @@ NO_KEY = {
     "Solution.spline": "a curve for a program to go on with",
     "Solution.to_pandas": "arrays for a program to go on with",
     "Solution.to_xarray": "arrays for a program to go on with",
+    "Solution.peak_stress": "outputs ask for the stresses of each beam",
     "Solution.show": "a window, which waits for its user",
     "Solution.support_forces": "numbers by coordinate, which only a program can place; outputs ask for reactions",
     "Solution.remainders": "digits that only a program can use",

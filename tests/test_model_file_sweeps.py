@@ -175,6 +175,13 @@ def test_curves_are_drawn_beside_the_model_file(written, tmp_path, monkeypatch):
     assert (tmp_path / "curves" / "curve.png").stat().st_size > 1000
 
 
+@pytest.mark.parametrize("quantity", ["moment", "stress", "fy"])
+def test_a_curve_of_a_section_over_an_energy_is_drawn(written, tmp_path, quantity):
+    curve = CURVE.replace('"load_factor"', '"strain"').replace("arm.end", "arm.start").replace('"uy"', f'"{quantity}"')
+    run(written(ARM + curve))
+    assert (tmp_path / "curves" / "curve.png").stat().st_size > 1000
+
+
 @pytest.mark.parametrize(
     ("old", "new", "key", "words"),
     [

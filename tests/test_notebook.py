@@ -35,7 +35,7 @@ def test_solution_tells_how_it_ended():
     assert rows["ended"] == solution.statistics.ended
     moved = np.linalg.norm(solution.displacement(solution.model.beams[0].end)[-1])
     assert rows["largest displacement"].startswith(f"{moved:.4g} m")
-    assert rows["largest displacement"].endswith("at (1, 0), in the last row")
+    assert rows["largest displacement"].endswith("at (1, 0), load factor 1")
     assert "<b>Path of statics</b>" in arch()._repr_html_()
 
 
@@ -122,3 +122,58 @@ def test_sweeps_studies_and_stresses_are_tables():
     solution = cantilever()
     peaks = solution.stresses(solution.model.beams[0])._repr_html_()
     assert f"{solution.stresses(solution.model.beams[0]).peak().value:.6g}" in peaks
+
+
+def test_the_largest_displacement_is_that_of_all_rows(tmp_path):
+    """Of a vibration that is back at rest in its last row, and inside of elements too."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.CRBF(4), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
+    model = bf.Model([beam], [bf.Pin(beam.start), bf.Roller(beam.end)])
+    swing = bf.solve_modes(model, 1).solution(0, amplitude=1e-3, frames=5)[:4]
+    rows = rows_of(swing._repr_html_())
+    when = f"t = {swing.time[0]:.3g} s"
+    assert rows["largest displacement"] == f"0.001 m: (0, 0.001) m at (0.5, 0), {when}".replace(
+        "0, 0.001", _moved(swing)
+    )
+    assert np.abs(swing.displacement(beam.at(0.5))[-1]).max() < 1e-9
+    assert f"at (0.5, 0), {when}" in swing.to_html(tmp_path / "swing.html").read_text()
+
+
+def _moved(swing):
+    ux, uy = swing.displacement(swing.model.beams[0].at(0.5))[0]
+    return f"{0.0 if abs(ux) < 1e-12 else ux:.4g}, {uy:.4g}"
+
+
+def test_states_beams_energies_and_section_forces_are_tables():
+    solution = cantilever()
+    beam, tip = solution.model.beams[0], solution.displacement(solution.model.beams[0].end)[-1]
+    rows = rows_of(solution[-1]._repr_html_())
+    assert rows["load factor or time"] == "1"
+    assert rows["largest displacement"].startswith(f"{np.linalg.norm(tip):.4g} m")
+    assert rows_of(arch()[2]._repr_html_())["at rest"] == "yes"
+    assert rows_of(pendulum()[5]._repr_html_())["at rest"] == "no"
+    rows = rows_of(beam._repr_html_())
+    assert rows["curve"] == "Line, (0, 0) to (1, 0)"
+    assert (rows["length"], rows["elements"]) == ("1", "4")
+    assert rows["element"].startswith("CRBF-3")
+    assert rows["section"].startswith("area 0.0001, second moment 8.333e-10")
+    assert rows["material"] == "youngs modulus 2e+11, poisson ratio 0.3, density 7800"
+    table = solution.energy()._repr_html_()
+    assert "largest [J]" in table
+    assert f"{solution.energy().strain[-1]:.6g}" in table
+    forces = solution.section_forces(beam)
+    table = forces._repr_html_()
+    assert f"{forces.moment.max():.6g}" in table
+    assert "largest moment [N m]" in table
+    path = arch()
+    assert "<b>SectionForces</b>" in path[2].section_forces(path.model.beams[0])._repr_html_()
+
+
+def test_tables_of_a_model_in_millimetres_say_so():
+    beam = bf.Beam(bf.Line((0, 0), (500, 0)), 4, bf.CRBF(3), bf.Rectangle(20, 4), bf.Material(2e5, 0.3, 7.8e-9))
+    solution = bf.solve_static(
+        bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0, -10))], units="N, mm")
+    )
+    assert "largest [N mm]" in solution.energy()._repr_html_()
+    assert "moment [N mm]" in solution.section_forces(beam)._repr_html_()
+    assert "von_mises [MPa]" in solution.stresses(beam)._repr_html_()
+    assert " MPa at 0 mm" in repr(solution.stresses(beam))

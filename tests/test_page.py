@@ -53,6 +53,27 @@ def test_fields_have_their_limits_and_units(tmp_path):
     assert "speed" in {field["name"] for field in data_of(pendulum().to_html(tmp_path / "fall.html"))["fields"]}
 
 
+def test_stresses_are_colours_where_sections_have_them(tmp_path):
+    """A beam by its stiffness beside one of steel: what is not known is level 0."""
+    steel = bf.Material(2e11, 0.3, 7800.0, strength=2e8)
+    own = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.04), steel)
+    other = bf.Beam(bf.Line((1, 0), (2, 0)), 2, bf.CRBF(3), bf.Section.from_stiffness(1e8, 1e8, 1e5, 1.0, 1.0))
+    joints, loads = [bf.Rigid(own.end, other.start)], [bf.PointForce(other.end, (0.0, -10.0))]
+    solution = bf.solve_static(bf.Model([own, other], [bf.Clamp(own.start)], loads, joints))
+    data = data_of(solution.to_html(tmp_path / "two.html"))
+    fields = {field["name"]: field for field in data["fields"]}
+    assert {"stress", "upper", "lower", "utilisation"} <= set(fields)
+    assert fields["stress"]["label"] == "von Mises stress [Pa]"
+    assert fields["stress"]["high"] == pytest.approx(solution.peak_stress().value, rel=1e-9)
+    values = np.frombuffer(base64.b64decode(fields["stress"]["values"]), np.uint8).reshape(2, -1)
+    first = data["beams"][0]
+    assert (values[-1, :first].max(), values[-1, :first].min()) == (255, values[-1, :first][-1])
+    assert (values[:, first:] == 0).all()
+    alone = bf.solve_static(bf.Model([other], [bf.Clamp(other.start)], loads))
+    names = {field["name"] for field in data_of(alone.to_html(tmp_path / "one.html"))["fields"]}
+    assert names == {"moment", "normal", "shear", "rotation", "displacement"}
+
+
 def test_page_is_complete_in_itself(falling, tmp_path):
     path = falling.to_html(tmp_path / "fall.html", title="Fall & <rise>")
     text = path.read_text()

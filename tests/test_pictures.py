@@ -49,7 +49,7 @@ def test_axes_are_labelled_and_of_equal_scale(bent, tmp_path):
     x, y = np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0]
     assert box.width / x == pytest.approx(box.height / y, rel=1e-6)
     names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert names == ["load factor 0", "load factor 1"]
+    assert names == ["original shape", "load factor 1"]
     assert 0.005 < share_of_ink(image.imread(tmp_path / "new" / "bent.png") * 255) < 0.3
 
 
@@ -311,7 +311,7 @@ def test_modes_carry_their_frequencies(tmp_path):
 @pytest.mark.parametrize(
     ("draw", "message"),
     [
-        (lambda s: s.plot(colour="torsion"), "no quantity 'torsion' along a beam; known are moment"),
+        (lambda s: s.plot(colour="torsion"), "no quantity 'torsion' along a beam; did you mean tension"),
         (lambda s: s.plot(shapes=0), "shapes must be at least 1"),
         (lambda s: s.plot_history(s.model.beams[0].end, "torsion"), "no history of 'torsion'"),
         (lambda s: s.plot_history(), "needs a point such as beam.end"),

@@ -93,3 +93,20 @@ def test_modes_buckling_and_studies_are_tables():
     table = study.to_pandas()
     np.testing.assert_array_equal(table["elements"], [2, 4, 8])
     np.testing.assert_array_equal(table[study.quantity], study.curves[0].value)
+
+
+def of_three(load: float, n: int, h: float) -> float:
+    return load * n * h
+
+
+@pytest.mark.parametrize(("n", "h"), [([1, 2, 3, 4, 5], [1.0, 2.0]), ([1, 2, 3], [1.0])])
+def test_the_legend_of_a_sweep_leaves_the_axes_their_height(n, h):
+    """Ten curves took half of the figure, above the axes."""
+    figure = bf.sweep(of_three, load=[1.0, 2.0], n=n, h=h).plot()
+    figure.canvas.draw()
+    axes, (legend,) = figure.axes[0].get_window_extent(), figure.legends
+    assert len(legend.get_texts()) == len(n) * len(h)
+    assert not legend.get_window_extent().overlaps(axes)
+    assert axes.height > 0.75 * figure.bbox.height
+    assert axes.width > 5.0 * figure.dpi
+    assert figure.bbox.x1 >= legend.get_window_extent().x1

@@ -17,6 +17,7 @@ from beamfem.model.damping import retardation_time
 from beamfem.model.jumps import find_jumps
 from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
+from beamfem.registry import offered
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
@@ -96,6 +97,9 @@ class Beam:
     def __repr__(self) -> str:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
         return f"Beam({type(self.curve).__name__} of length {self.curve.length:g}, {count} x {self.element.name})"
+
+    def _repr_html_(self) -> str:
+        return offered(Beam._repr_html_)(self)
 
     @cached_property
     def prismatic(self) -> bool:

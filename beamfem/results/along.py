@@ -83,6 +83,21 @@ class AxisPoints:
         return postprocess.axis(self.mesh, rates, self.element, self.xi).r
 
 
+@dataclass(frozen=True, eq=False)
+class OnePoint(AxisPoints):
+    """The point at a fraction of the length; where two elements meet, that of the one towards the beam's end."""
+
+    fraction: float
+
+    @cached_property
+    def element(self) -> np.ndarray:
+        return np.array([self.mesh.locate(self.fraction)[0]])
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        return np.array([self.mesh.locate(self.fraction)[1]])
+
+
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
     cuts = Cuts(points.element, points.xi)
@@ -140,16 +155,31 @@ def _stress(name: str) -> Callable[..., np.ndarray]:
     return values
 
 
+def _outer(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    found = stress_at(solution, points.mesh, points.element, points.xi, rows)
+    return np.where(np.abs(found["upper"]) >= np.abs(found["lower"]), found["upper"], found["lower"])
+
+
+_NO_STRESS = "stresses need sections with a material and a height"
+
+
+def _of_stress(label: str, name: str) -> Quantity:
+    return Quantity(label, "Pa", _stress(name), _NO_STRESS)
+
+
+_VON_MISES = _of_stress("von Mises stress", "von_mises")
 QUANTITIES = {
     "moment": Quantity("bending moment", "N m", _section_force("moment")),
     "normal": Quantity("normal force", "N", _section_force("normal")),
     "shear": Quantity("shear force", "N", _section_force("shear")),
-    "stress": Quantity(
-        "von Mises stress",
-        "Pa",
-        _stress("von_mises"),
-        "stresses need sections with a material and a height",
-    ),
+    "stress": _VON_MISES,
+    "von_mises": _VON_MISES,
+    "upper": _of_stress("stress at the upper face", "upper"),
+    "lower": _of_stress("stress at the lower face", "lower"),
+    "outer": Quantity("stress at the outer fibre", "Pa", _outer, _NO_STRESS),
+    "tension": _of_stress("largest tension", "tension"),
+    "compression": _of_stress("largest compression", "compression"),
+    "shear_stress": _of_stress("shear stress", "shear"),
     "utilisation": Quantity(
         "utilisation of the strength",
         "-",

@@ -1,36 +1,62 @@
 """Stress of a beam: extremes over each section, their peaks along the beam, and the utilisation of the strength."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.model.beam import Beam
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
+from beamfem.registry import offered
 from beamfem.results.free_bodies import Cuts
 from beamfem.results.section_forces import at_points, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
-from beamfem.tabulate import as_html
+from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 Part = Literal["lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation"]
+PARTS: tuple[Part, ...] = ("lower", "upper", "tension", "compression", "shear", "von_mises", "utilisation")
 _HEIGHTS = np.linspace(0.0, 1.0, 9)  # fractions of a layer: its faces, and the peak of a parabolic shear stress
 _VALUES = 4_000_000  # most values in one array
 
 
-class Peak(NamedTuple):
-    """The extreme of a stress: its value, arc length [m] and row."""
+@dataclass(frozen=True)
+class Peak:
+    """The extreme of a stress, which unpacks into its value, arc length and row.
+
+    Parameters
+    ----------
+    value : float, [Pa]
+        The stress; a utilisation is a ratio [-].
+    arc_length : float, [m]
+        Where it is.
+    row : int
+        Row of the solution.
+    at : float
+        Load factor of that row, or time of a motion [s].
+    beam : Beam
+        The beam.
+
+    Examples
+    --------
+    >>> value, arc_length, row = solution.stresses(beam).peak("tension")
+    """
 
     value: float
     arc_length: float
     row: int
+    at: float
+    beam: Beam
+
+    def __iter__(self) -> Iterator[float]:
+        return iter((self.value, self.arc_length, self.row))
 
 
 @dataclass(frozen=True)
@@ -55,6 +81,14 @@ class BeamStress:
     utilisation : array, [-], (steps, stations)
         Largest ratio of von Mises stress to the strength of the material there; nan if no strength is given
         (`Material`).
+    at : array, (steps,)
+        Load factors, or times of a motion [s].
+    beam : Beam
+        The beam.
+    static : bool, default True
+        Whether `at` are load factors.
+    units : Units
+        Units of the model, for the text of peaks.
 
     Examples
     --------
@@ -71,13 +105,20 @@ class BeamStress:
     shear: np.ndarray
     von_mises: np.ndarray
     utilisation: np.ndarray
+    at: np.ndarray
+    beam: Beam
+    static: bool = True
+    units: Units = field(default=Units(), repr=False)
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        rows, stations = self.von_mises.shape
+        told: tuple[Part, ...] = ("tension", "compression", "von_mises", "utilisation")
+        known = [part for part in told if np.isfinite(getattr(self, part)).any()]
+        peaks = "; ".join(f"{part} {self._told(part)}" for part in known) or "none is known"
+        return f"BeamStress({rows} rows, {stations} stations of {self.beam!r}; peaks: {peaks})"
 
     def _repr_html_(self) -> str:
-        names = [name for name in self.__dataclass_fields__ if name != "arc_length"]
-        rows = [(name, *self.peak(name)) for name in names]  # type: ignore[arg-type]
-        return f"<b>Stress, peaks</b>{as_html(('', 'extreme', 'at arc length', 'row'), rows)}"
+        return offered(BeamStress._repr_html_)(self)
 
     def peak(self, part: Part = "von_mises") -> Peak:
         """Return the peak along the beam and over the rows.
@@ -93,7 +134,7 @@ class BeamStress:
         Returns
         -------
         Peak
-            Value, arc length [m] and row; nan if no value is known.
+            Value, arc length [m], row, load factor or time there, and beam; nan if no value is known.
 
         Raises
         ------
@@ -106,14 +147,19 @@ class BeamStress:
         >>> round(arc_length, 3), row
         (0.0, 1)
         """
-        known = [name for name in self.__dataclass_fields__ if name != "arc_length"]
-        require_known(f"there is no stress {shown(part)}", part, known)
+        require_known(f"there is no stress {shown(part)}", part, PARTS)
         values = getattr(self, part)
         if not np.isfinite(values).any():
-            return Peak(np.nan, np.nan, -1)
-        measured = -values if part == "compression" else np.abs(values) if part in ("lower", "upper") else values
-        row, station = np.unravel_index(np.nanargmax(measured), values.shape)
-        return Peak(float(values[row, station]), float(self.arc_length[station]), int(row))
+            return Peak(np.nan, np.nan, -1, np.nan, self.beam)
+        row, station = np.unravel_index(np.nanargmax(_measured(part, values)), values.shape)
+        place = float(self.arc_length[station]), int(row), float(self.at[row])
+        return Peak(float(values[row, station]), *place, self.beam)
+
+    def _told(self, part: Part) -> str:
+        """Return the peak of a part in words."""
+        peak, unit = self.peak(part), "" if part == "utilisation" else f" {self.units.of('Pa')}"
+        when = f"load factor {peak.at:.4g}" if self.static else f"t = {peak.at:.4g} {self.units.of('s')}"
+        return f"{peak.value:.4g}{unit} at {peak.arc_length:.4g} {self.units.of('m')} in row {peak.row}, {when}"
 
 
 def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
@@ -122,7 +168,20 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     cuts = stations(mesh)
     found = stress_at(solution, mesh, cuts.element, cuts.xi)
     arc = mesh.arc_length(cuts.element, cuts.xi)
-    return BeamStress(arc, *(found[name] for name in BeamStress.__dataclass_fields__ if name != "arc_length"))
+    units = units_of(solution.model.units)
+    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **found)
+
+
+def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
+    """Return the peak of a stress over all beams and rows, as `BeamStress.peak`; nan if none is known."""
+    peaks = [beam_stress(solution, beam).peak(part) for beam in solution.model.beams]
+    sizes = _measured(part, np.array([peak.value for peak in peaks]))
+    return peaks[0 if np.isnan(sizes).all() else int(np.nanargmax(sizes))]
+
+
+def _measured(part: Part, values: np.ndarray) -> np.ndarray:
+    """Return what is largest at the peak."""
+    return -values if part == "compression" else np.abs(values) if part in ("lower", "upper") else values
 
 
 def stress_at(

@@ -7,7 +7,7 @@ class ShapeOptions(TypedDict, total=False):
     """Options of `solution.plot`, see `beamfem.view.drawing.plot_shapes`."""
 
     colour: str | None
-    shapes: int
+    shapes: int | None
     undeformed: bool
     supports: bool
     loads: bool

@@ -1,7 +1,7 @@
 """Energies of a solution."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from beamfem.model.load import Load, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.returned import forces_of
+from beamfem.registry import offered
 from beamfem.results import postprocess
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.loading import loading
@@ -32,8 +33,12 @@ class Energy:
     strain: np.ndarray
     potential: np.ndarray
     dissipated: np.ndarray
+    unit: str = field(default="J", repr=False)
 
     __repr__ = brief
+
+    def _repr_html_(self) -> str:
+        return offered(Energy._repr_html_)(self)
 
     @property
     def total(self) -> np.ndarray:

@@ -149,7 +149,7 @@ class PathState(State):
             Normal and shear force [N] and moment [N m], (stations,).
         """
         found = self._alone.section_forces(beam)
-        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0])
+        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0], found.units)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """What a solution says of points: fields, positions, velocities, reactions, forces of connectors."""
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -56,7 +56,7 @@ class PointQuantities:
         forces = at_points(self._whole, mesh, Cuts(element, xi))
         own = self_stress(self._whole, mesh, element, xi, None, np.zeros((1, 1)))
         found = postprocess.fields(mesh, self.p, element, xi, forces, own, turned_of(self._whole, mesh))
-        return Fields(*(_single(getattr(found, name)) for name in Fields.__dataclass_fields__))
+        return Fields(*(postprocess.at_single_point(getattr(found, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point.
@@ -222,10 +222,3 @@ class PointQuantities:
         >>> tension = solution.multipliers(model.connectors[0])[:, 0]  # doctest: +SKIP
         """
         return multipliers(self._whole, connector)
-
-
-def _single(value: Any) -> Any:
-    """Drop the axis of points."""
-    if isinstance(value, postprocess.Components):
-        return postprocess.Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
-    return value[:, 0]

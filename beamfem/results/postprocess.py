@@ -1,6 +1,7 @@
 """Results derived from states: fields, section forces, energies, momenta; vectorised over steps."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from beamfem.model.reference import (
     reference_axis,
     reference_position,
 )
+from beamfem.registry import offered
+from beamfem.units import Units
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,8 @@ class SectionForces:
         Force across the normal.
     moment : array, [N m], (steps, stations)
         Moment about the axis, > 0 if it increases the rotation along the beam.
+    units : Units
+        Units of the model, for tables.
 
     Examples
     --------
@@ -102,8 +107,12 @@ class SectionForces:
     normal: np.ndarray
     shear: np.ndarray
     moment: np.ndarray
+    units: Units = field(default=Units(), repr=False)
 
     __repr__ = brief
+
+    def _repr_html_(self) -> str:
+        return offered(SectionForces._repr_html_)(self)
 
 
 def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
@@ -305,3 +314,10 @@ def momenta(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> Momenta:
     angular = angular + (cross(now.r, rate.d) + cross(now.d, rate.r)) @ first
     moment = np.einsum("sqc,q->sc", now.r, mass) + np.einsum("sqc,q->sc", now.d, first)
     return Momenta(kinetic, linear, angular, moment)
+
+
+def at_single_point(value: Any) -> Any:
+    """Drop the axis of points."""
+    if isinstance(value, Components):
+        return Components(value.xx[:, 0], value.yy[:, 0], value.xy[:, 0])
+    return value[:, 0]

@@ -8,7 +8,7 @@ from beamfem.curves import BSpline, spline_through_hermite, without_removable_kn
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.results import postprocess
-from beamfem.results.beam_stress import BeamStress, beam_stress
+from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
 from beamfem.results.connected import kinetic_of_connectors, momenta_of_connectors
 from beamfem.results.energies import Energy, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
@@ -91,6 +91,27 @@ class Quantities(PointQuantities):
         self.model.number_of(beam)
         return beam_stress(self._whole, beam)
 
+    def peak_stress(self, part: Part = "von_mises") -> Peak:
+        """Return the peak of a stress over all beams and rows.
+
+        Parameters
+        ----------
+        part : str, default "von_mises"
+            See `BeamStress.peak`.
+
+        Returns
+        -------
+        Peak
+            The peak, with its beam.
+
+        Examples
+        --------
+        >>> peak = solution.peak_stress()
+        >>> round(peak.value / 1e6), peak.beam is beam  # MPa
+        (240, True)
+        """
+        return peak_stress(self._whole, part)
+
     @cached_property
     def _momenta(self) -> tuple[postprocess.Momenta, ...]:
         return tuple(postprocess.momenta(mesh, self.p, self.v) for mesh in self.model.meshes)
@@ -115,7 +136,8 @@ class Quantities(PointQuantities):
         imposed = ((mesh, imposed_measures(self._whole, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, own) for mesh, own in imposed)
         strain, dissipated = sum(parts, np.zeros((len(self), 2))).T
-        return Energy(kinetic, strain, potential(self._whole, [m.first_moment for m in self._momenta]), dissipated)
+        acting = potential(self._whole, [m.first_moment for m in self._momenta])
+        return Energy(kinetic, strain, acting, dissipated, self.model.unit("J"))
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:

@@ -11,6 +11,7 @@ from beamfem.results.acting import Rows, rows_of
 from beamfem.results.free_bodies import Cuts, cut_free
 from beamfem.results.last_digits import exactly
 from beamfem.results.postprocess import SectionForces
+from beamfem.units import units_of
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -26,7 +27,7 @@ def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     arc = mesh.arc_length(cuts.element, cuts.xi)
     arc = np.where(cuts.xi == 0.0, mesh.vertices[cuts.element], arc)
     arc = np.where(cuts.xi == 1.0, mesh.vertices[cuts.element + 1], arc)
-    return SectionForces(arc, found[:, 0], found[:, 1], found[:, 2])
+    return SectionForces(arc, found[:, 0], found[:, 1], found[:, 2], units_of(solution.model.units))
 
 
 def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:

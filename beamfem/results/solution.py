@@ -59,6 +59,9 @@ class State:
     def __post_init__(self) -> None:
         require_state(self)
 
+    def _repr_html_(self) -> str:
+        return offered(State._repr_html_)(self)
+
 
 @dataclass(frozen=True, eq=False)
 class Solution(Quantities, Pictures, Exports):

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 _MARKERS = "osD^vP*X<>"
 _NAMED = 12  # curves in a legend
+_ABOVE = 50  # characters of all names in a line
+_CUT, _WIDEST = 40, 3.2  # characters of the longest name, and their width [inch]
 
 
 def plot_sweep(
@@ -33,19 +35,28 @@ def plot_sweep(
     for point, text, height in zip(sweep.parameters, texts, sweep[value].tolist(), strict=True):
         label = ", ".join(f"{name}={text[name]}" for name in names if name != over)
         curves.setdefault(label, []).append((float(point[over]), height))
-    figure, axes = new_figure()
+    named = 1 < len(curves) <= _NAMED
+    # a legend of few short names stands above the axes, a longer one beside them in a wider figure
+    beside = named and sum(map(len, curves)) > _ABOVE
+    figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if beside else 0.0))
     for number, (label, points) in enumerate(curves.items()):
         x, y = np.array(sorted(points)).T
         colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
-        axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.4, label=label)
+        axes.plot(x, y, color=colour, marker=marker, markersize=4, linewidth=1.4, label=_cut(label))
     axes.set_xlabel(over)
     axes.set_ylabel(value)
     axes.margins(0.04)
-    if 1 < len(curves) <= _NAMED:
-        figure.legend(frameon=False, fontsize=9, loc="outside upper left")
+    if beside:
+        figure.legend(frameon=False, fontsize=9, loc="outside right upper")
+    elif named:
+        figure.legend(frameon=False, fontsize=9, loc="outside upper left", ncols=len(curves))
     if path is not None:
         save_figure(figure, path)
     return figure
+
+
+def _cut(label: str) -> str:
+    return label if len(label) <= _CUT else f"{label[: _CUT - 2]} …"
 
 
 def _is_number(value: Any) -> bool:

@@ -13,7 +13,7 @@ from beamfem.files import path_of, whole
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag, positive
 from beamfem.view.acting import FORCE, draw_loads
-from beamfem.view.drawing import bar, equal_axes
+from beamfem.view.drawing import LINE, bar, equal_axes, legend_above
 from beamfem.view.frames import moment_of, spread_rows
 from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
 from beamfem.view.supports import PRESCRIBED, draw_joints, draw_supports
@@ -70,15 +70,16 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     What stands still is drawn once.
     """
     solution = shapes.solution
-    figure, axes = equal_axes(shapes.box, shapes.quantity is not None, shapes.solution.model.unit("m"))
+    above = LINE if undeformed else 0.0
+    figure, axes = equal_axes(shapes.box, shapes.quantity is not None, solution.model.unit("m"), above)
     figure.set_dpi(dpi)
     size = np.ceil(figure.get_size_inches() * dpi / 2.0) * 2.0
     figure.set_size_inches(size / dpi)
     if undeformed:
-        draw_undeformed(axes, shapes.points)
+        legend_above(figure, axes, [draw_undeformed(axes, shapes.points)])
     if shapes.quantity is not None:
         bar(figure, axes, shapes)
-    title = axes.set_title(" ", fontsize=10)
+    title = axes.set_title(" ", fontsize=10, pad=72.0 * LINE if undeformed else 6.0)
     canvas = figure.canvas
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)

@@ -17,7 +17,7 @@ from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown
 from beamfem.view.drawing import plot_shapes
 from beamfem.view.frames import moment_of, one_row, spread_rows
-from beamfem.view.rendering import ADVICE, can_render, has_display
+from beamfem.view.rendering import ADVICE, can_render, has_display, no_display_needed
 from beamfem.view.shapes import FIELD_COLOURS, Shapes
 from beamfem.view.written import WrittenFile
 
@@ -107,7 +107,8 @@ class _Scene:
 
         self.shapes = shapes
         self.surface = pyvista.PolyData(self._points(0), _faces(shapes))
-        self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
+        with no_display_needed():
+            self.plotter = pyvista.Plotter(off_screen=off_screen, window_size=list(size))
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
         options: dict[str, Any] = {"color": _PLAIN}
@@ -118,7 +119,7 @@ class _Scene:
             options = {"scalars": "layer", "rgb": True}
         if shapes.quantity is not None:
             self.surface["field"] = self._values(0)
-            title = shapes.label
+            title = f"{shapes.label}\n"  # away from the topmost number
             bar = {"title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.25,
                    "height": 0.5, "width": 0.05, "n_labels": 5, "fmt": "%.3g", "title_font_size": 18,
                    "label_font_size": 16}  # fmt: skip
@@ -146,7 +147,7 @@ class _Scene:
         self.plotter.enable_parallel_projection()
         self.plotter.view_vector((0.25, 0.35, 1.0), viewup=(0.0, 1.0, 0.0))
         self.plotter.reset_camera(bounds=bounds)
-        self.plotter.camera.zoom(1.3)
+        self.plotter.camera.zoom(1.3 if self.shapes.quantity is None else 1.1)  # a colour bar stands beside the body
         self.plotter.add_axes(color="black", zlabel="")
 
     def _points(self, order: int) -> np.ndarray:

@@ -8,12 +8,14 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
+from beamfem.results.along import QUANTITIES, OnePoint, Quantity
 from beamfem.results.solution import Solution
 from beamfem.validation import require_known, shown
 from beamfem.view.frames import axis_of_rows
+from beamfem.view.places import place
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
-Quantity = str | tuple[str, Any] | np.ndarray
+Drawn = str | tuple[str, Any] | np.ndarray
 _MARKED = 200  # rows up to which each is a dot
 
 # of a point: label, unit and value
@@ -29,14 +31,21 @@ _OF_POINT: dict[str, tuple[str, str, Callable[[Solution, Point], np.ndarray]]] =
     "fy": ("reaction fy", "N", lambda s, at: s.reaction(at)[:, 1]),
     "m": ("reaction moment", "N m", lambda s, at: s.reaction(at)[:, 2]),
 }
+OF_SECTION = (
+    *("normal", "shear", "moment", "stress", "von_mises", "upper", "lower", "outer"),
+    *("tension", "compression", "shear_stress", "utilisation"),
+)
+ENERGIES = ("kinetic", "strain", "potential", "total")
 
 
-def plot_curve(solution: Solution, x: Quantity, y: Quantity, path: str | PathLike[str] | None = None) -> Any:
+def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str] | None = None) -> Any:
     """Plot one quantity against another, one point per row; return the matplotlib figure.
 
     x, y: a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m], "rotation"
-    [rad], "vx", "vy" [m/s] and, at supports, "fx", "fy" [N] and "m" [N m]; "load_factor" or "time" [s]; a pair of a
-    label and numbers (steps,), or numbers. Raises InputError; MissingPackageError without matplotlib.
+    [rad], "vx", "vy" [m/s], at supports "fx", "fy" [N] and "m" [N m], of the section there "normal", "shear" [N],
+    "moment" [N m] and the stresses of `plot` [Pa]; "load_factor" or "time" [s]; "kinetic", "strain", "potential" or
+    "total" energy [J]; a pair of a label and numbers (steps,), or numbers. Where two elements meet or a load acts, a
+    section is that on the side towards the beam's end. Raises InputError; MissingPackageError without matplotlib.
     """
     (across, horizontal), (up, vertical) = (_taken(solution, *own) for own in (("x", x), ("y", y)))
     figure, axes = new_figure()
@@ -50,17 +59,23 @@ def plot_curve(solution: Solution, x: Quantity, y: Quantity, path: str | PathLik
     return figure
 
 
-def _taken(solution: Solution, which: str, given: Quantity) -> tuple[str, np.ndarray]:
+def _taken(solution: Solution, which: str, given: Drawn) -> tuple[str, np.ndarray]:
     """Return label and values (steps,) of what is drawn along an axis. Raises InputError."""
     if isinstance(given, str):
         name, unit = axis_of_rows(solution)
-        require_known(f"{which} of a curve is no {shown(given)}", given, [name.replace(" ", "_")])
+        require_known(f"{which} of a curve is no {shown(given)}", given, [name.replace(" ", "_"), *ENERGIES])
+        if given in ENERGIES:
+            return f"{given} energy [{solution.model.unit('J')}]", getattr(solution.energy(), given)
         return f"{name} [{unit}]", solution.at
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Point):
-        require_known(f"{which} of a curve is no {shown(given[0])} of a point", given[0], _OF_POINT)
-        label, unit, value = _OF_POINT[given[0]]
-        at = given[1].reference
-        return f"{label} at ({at[0]:.4g}, {at[1]:.4g}) [{solution.model.unit(unit)}]", value(solution, given[1])
+        name, point = given
+        require_known(f"{which} of a curve is no {shown(name)} of a point", name, [*_OF_POINT, *OF_SECTION])
+        if name in OF_SECTION:
+            label, unit, values = _of_section(solution, QUANTITIES[name], point)
+        else:
+            label, unit, value = _OF_POINT[name]
+            values = value(solution, point)
+        return f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]", values
     label, numbers = given if isinstance(given, tuple) and len(given) == 2 else ("", given)
     try:
         values = np.asarray(numbers)
@@ -73,3 +88,12 @@ def _taken(solution: Solution, which: str, given: Quantity) -> tuple[str, np.nda
             f"numbers, one a row, got {shown(given)}"
         )
     return label, values
+
+
+def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[str, str, np.ndarray]:
+    """Return label, unit and values (steps,) of a quantity along the axis at a point. Raises InputError."""
+    mesh = solution.model.mesh_of(point)
+    values = quantity.values(OnePoint(mesh, 0, point.fraction), solution, np.arange(len(solution)))[:, 0]
+    if not np.isfinite(values).any():
+        raise InputError(f"the section at this point has no {quantity.label} to draw: {quantity.unknown}")
+    return quantity.label, quantity.unit, values

@@ -6,19 +6,23 @@ from typing import Any
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.results.path import Path
 from beamfem.results.solution import Solution
 from beamfem.validation import count, flag
 from beamfem.view.acting import draw_loads
+from beamfem.view.extreme import extreme_of
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
 from beamfem.view.plots import empty_figure, quiet, save_figure
-from beamfem.view.shapes import FIELD_COLOURS, Shapes, draw_undeformed, shade
+from beamfem.view.shapes import FIELD_COLOURS, ORIGINAL, Shapes, draw_undeformed, shade
 from beamfem.view.supports import draw_joints, draw_supports
 
 _ROOM = 0.45  # [inch] around the shapes for symbols and arrows
 _LONGER_SIDE = 5.6  # [inch]
 _LEAST = np.array([3.2, 1.3])  # of the axes [inch]
 _LEFT, _RIGHT, _BOTTOM, _TOP, _BAR = 0.85, 0.3, 0.55, 0.4, 1.35  # margins, to the right with a colour bar [inch]
-_NAME = 1.6  # of a shape in the legend [inch]
+_LETTER, _HANDLE, _SMALL = 0.07, 0.6, 9.0  # width of a letter and of a line in a legend [inch], letters [points]
+LINE, _FURTHER = 0.3, 0.15  # of a title above a legend, and above a second line of it [inch]
+_SEVERAL = 9  # shapes of a motion or a path
 _NAMED = 3  # shapes that are named each; above, a bar tells them apart
 
 
@@ -26,33 +30,40 @@ def plot_shapes(
     solution: Solution,
     path: str | PathLike[str] | None = None,
     colour: str | None = None,
-    shapes: int = 9,
+    shapes: int | None = None,
     undeformed: bool = True,
     supports: bool = True,
     loads: bool = True,
 ) -> Any:
-    """Draw the deformed body at several steps, later ones darker; return the matplotlib figure.
+    """Draw the deformed body at one or several steps, later ones darker; return the matplotlib figure.
 
     path: file to write (PNG, SVG, PDF; folders are created); colour: None for the time or load factor, or a field along
-    the
-    beams: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain"
-    [-], "shear_angle" [rad], "stress" [Pa] (largest von Mises stress of a section), "utilisation" [-] of the strength;
-    shapes: number of steps; undeformed: draw the reference axes dashed; supports and loads: draw their symbols, each
-    load on the shape at which it is largest.
+    the beams, whose extreme value is marked: "moment" [N m], "normal", "shear" [N], "rotation" [rad], "displacement"
+    [m], "speed" [m/s], "axial_strain" [-], "shear_angle" [rad]; of the stress of a section [Pa] "stress" or "von_mises"
+    (its largest von Mises stress), "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression",
+    "shear_stress"; "utilisation" [-] of the strength;
+    shapes: number of steps, one of them the last; by default the last alone, of motions and paths 9; undeformed: draw
+    the reference axes dashed; supports and loads: draw their symbols, each load on the shape at which it is largest.
     Raises InputError; MissingPackageError without matplotlib.
     """
     if len(solution) == 0:
         raise InputError("the solution has no rows, so there is nothing to draw")
     for name, value in (("undeformed", undeformed), ("supports", supports), ("loads", loads)):
         flag(name, value)
-    rows = spread_rows(solution, count("shapes", shapes))
+    several = _SEVERAL if isinstance(solution, Path) or not solution.static else 1
+    rows = spread_rows(solution, several if shapes is None else count("shapes", shapes))
     if colour is not None and solution.static and len(rows) > 1:
         rows = rows[1:]  # without load the field is nothing, and its shape would hide the others
     drawn = Shapes(solution, rows, colour)
-    barred = colour is not None or len(rows) > _NAMED or len(rows) * _NAME > _inches(drawn.box)[0] + _LEFT + _RIGHT
-    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"))
-    if undeformed:
-        draw_undeformed(axes, drawn.points)
+    extreme = None if colour is None else extreme_of(drawn)
+    dashed, names = [ORIGINAL] if undeformed else [], [moment_of(solution, int(row)) for row in rows]
+    width = _inches(drawn.box)[0] + _LEFT + (_RIGHT if extreme is None else _BAR)
+    crowded = len(rows) > _NAMED or _wide([*dashed, *names]) > width
+    barred = extreme is not None or (crowded and len(rows) > 1)
+    lines = 2 if extreme is not None and _wide([*dashed, f"{extreme.value} {extreme.where}"]) > width else 1
+    above = 0.0 if extreme is None else LINE + (lines - 1) * _FURTHER
+    figure, axes = equal_axes(drawn.box, barred, solution.model.unit("m"), above)
+    entries = [draw_undeformed(axes, drawn.points)] if undeformed else []
     for order in range(len(rows)):
         drawn.draw(axes, order, (order + 1) / len(rows))
     if supports:
@@ -60,24 +71,29 @@ def plot_shapes(
     draw_joints(axes, solution, int(rows[-1]))
     if loads:
         draw_loads(axes, solution, rows)
-    if drawn.quantity is not None:
+    if extreme is not None:
         bar(figure, axes, drawn)
-    elif barred and len(rows) > 1:
+        entries.append(extreme.draw(axes, lines))
+    elif barred:
         _bar_of_rows(figure, axes, solution, rows)
-    elif len(rows) > 1:
-        _names_of_rows(figure, solution, rows)
-    if len(rows) == 1 or drawn.quantity is not None:
-        axes.set_title(_span(solution, rows), fontsize=10)
+    elif len(rows) > 1 or undeformed:
+        entries += [entry((order + 1) / len(rows), name) for order, name in enumerate(names)]
+    legend_above(figure, axes, entries)
+    if extreme is not None or not (entries or barred):
+        axes.set_title(_span(solution, rows), fontsize=10, pad=max(6.0, 72.0 * above))
     if path is not None:
         save_figure(figure, path)
     return figure
 
 
-def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m") -> tuple[Any, Any]:
-    """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it."""
+def equal_axes(box: np.ndarray, with_bar: bool, unit: str = "m", above: float = 0.0) -> tuple[Any, Any]:
+    """Return a figure and axes [unit] of equal scale around a box (2, 2) [m], with room for symbols around it.
+
+    above: room above a title or a legend [inch].
+    """
     scale, inches = _LONGER_SIDE / _extent(box), _inches(box)
     right = _BAR if with_bar else _RIGHT
-    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP, layout=None)
+    figure = empty_figure(inches[0] + _LEFT + right, inches[1] + _BOTTOM + _TOP + above, layout=None)
     width, height = figure.get_size_inches()
     axes = figure.add_axes((_LEFT / width, _BOTTOM / height, inches[0] / width, inches[1] / height))
     frame(axes, box.mean(axis=0), inches / scale, inches, unit)
@@ -129,15 +145,24 @@ def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -
     shown.ax.tick_params(length=0)
 
 
-def _names_of_rows(figure: Any, solution: Solution, rows: np.ndarray) -> None:
+def _wide(labels: list[str]) -> float:
+    """Return about how wide a legend in one line is [inch]."""
+    return sum(_LETTER * len(label) + _HANDLE for label in labels)
+
+
+def entry(fraction: float, label: str) -> Any:
+    """Return an entry of a legend for a shape; fraction: from 0 for pale to 1 for strong."""
     from matplotlib.lines import Line2D
 
-    colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
-    handles = [
-        Line2D([], [], color=colour, linewidth=3, label=moment_of(solution, int(row)))
-        for row, colour in zip(rows, colours, strict=True)
-    ]
-    figure.legend(handles=handles, loc="upper center", ncols=len(rows), frameon=False)
+    return Line2D([], [], color=shade(fraction), linewidth=3, label=label)
+
+
+def legend_above(figure: Any, axes: Any, entries: list[Any]) -> None:
+    """Write a legend in a line above the axes, if there is anything to explain."""
+    if entries:
+        top = axes.get_position().y1
+        options = {"ncols": len(entries), "frameon": False, "borderaxespad": 0.1, "fontsize": _SMALL}
+        figure.legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, top), **options)
 
 
 def _add_bar(figure: Any, axes: Any, colours: Any, label: str) -> Any:

@@ -8,12 +8,18 @@ from beamfem.results.solution import Solution
 
 _POINTS = 4000  # of all beams in a shape
 _SMOOTH = 12  # straight pieces that make an element look curved
+_ALIKE = 5e-4  # load factors that three digits do not tell apart
 
 
 def spread_rows(solution: Solution, most: int) -> np.ndarray:
-    """Return up to `most` different rows including first and last: equally spaced in time, in statics by row."""
+    """Return up to `most` different rows including first and last: equally spaced in time, in statics by row.
+
+    One is the last.
+    """
     if len(solution) <= most:
         return np.arange(len(solution))
+    if most == 1:
+        return np.array([len(solution) - 1])
     if solution.static:
         return np.unique(np.linspace(0, len(solution) - 1, most).round().astype(int))
     wanted = np.linspace(solution.at[0], solution.at[-1], most)
@@ -41,6 +47,9 @@ def axis_of_rows(solution: Solution) -> tuple[str, str]:
 def moment_of(solution: Solution, row: int) -> str:
     """Return a text that identifies a row."""
     value = float(solution.at[row])
+    if not solution.static:
+        return f"t = {value:.3g} {solution.model.unit('s')}"
     if isinstance(solution, Path):
         return f"load factor {value:.4g}, row {row}"
-    return f"load factor {value:.3g}" if solution.static else f"t = {value:.3g} {solution.model.unit('s')}"
+    alike = np.sum(np.abs(solution.at - value) <= _ALIKE * abs(value))
+    return f"load factor {value:.3g}" + (f", row {row}" if alike > 1 else "")

@@ -12,6 +12,8 @@ from beamfem.results.path import Path, PathState
 from beamfem.results.solution import Solution
 from beamfem.validation import items, one_of, require_known, shown
 from beamfem.view.frames import axis_of_rows
+from beamfem.view.labels import write_labels
+from beamfem.view.places import place
 from beamfem.view.plots import COLOURS, new_figure, save_figure
 
 _STYLES = ("-", "--", ":")
@@ -58,7 +60,7 @@ def plot_history(
         parts = [values(solution, own) for own in points]
         if len(parts) > 1:
             parts = [
-                {f"{name} at ({own.reference[0]:.3g}, {own.reference[1]:.3g})": curve for name, curve in part.items()}
+                {f"{name} at {place(solution.model, own.reference)}": curve for name, curve in part.items()}
                 for own, part in zip(points, parts, strict=True)
             ]
     figure, axes = new_figure()
@@ -96,28 +98,38 @@ def plot_load_displacement(
     axes.axhline(0.0, color="0.6", linewidth=0.8)
     marker = "." if len(solution) <= 200 else None
     axes.plot(curve, load, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4, zorder=2)
+    marked: list[tuple[float, float]] = []
+    colours: list[str] = []
     if isinstance(solution, Path):
-        kinds = (("limit point", solution.limit_points, "o", 1), ("bifurcation", solution.bifurcations, "D", 2))
-        for name, states, shape, colour in kinds:
+        kinds = (("limit point", solution.limit_points, _ring, 1), ("bifurcation", solution.bifurcations, _diamond, 2))
+        for name, states, look, number in kinds:
+            colour = COLOURS[number]
             if not states:
                 continue
             alone = _together(solution, states)
             (x,) = values(alone, point).values()
-            axes.plot(
-                x, alone.at, shape, color=COLOURS[colour], markersize=8, markeredgecolor="white", label=name, zorder=3
-            )
-            for place in zip(x, alone.at, strict=True):
-                axes.annotate(
-                    f"{place[1]:.5g}", place, (0, 8), textcoords="offset points", ha="center", fontsize=8, zorder=4
-                )
+            axes.plot(x, alone.at, linestyle="none", label=name, zorder=3, **look(colour))
+            marked += zip(x.tolist(), alone.at.tolist(), strict=True)
+            colours += len(states) * [colour]
         if solution.limit_points or solution.bifurcations:
             figure.legend(loc="outside upper center", ncols=2, frameon=False)
-    axes.set_xlabel(f"{label} at ({point.reference[0]:.4g}, {point.reference[1]:.4g}) [{solution.model.unit(unit)}]")
+    axes.set_xlabel(f"{label} at {place(solution.model, point.reference)} [{solution.model.unit(unit)}]")
     axes.set_ylabel("load factor [-]")
-    axes.margins(0.06)
+    axes.margins(0.06, 0.1)
+    if marked:
+        write_labels(axes, marked, [f"{at:.5g}" for _, at in marked], colours, np.column_stack([curve, load]))
     if path is not None:
         save_figure(figure, path)
     return figure
+
+
+def _ring(colour: str) -> dict[str, Any]:
+    """Return the look of a limit point: at one place with a bifurcation both are seen."""
+    return {"marker": "o", "markersize": 10, "color": colour, "markerfacecolor": "none", "markeredgewidth": 1.8}
+
+
+def _diamond(colour: str) -> dict[str, Any]:
+    return {"marker": "D", "markersize": 6, "color": colour, "markeredgecolor": "white"}
 
 
 def _quantity(name: str) -> tuple[str, str, Callable[[Solution, Point], dict[str, np.ndarray]]]:

@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.results.solution import Solution
 from beamfem.validation import count
-from beamfem.view.drawing import frame
+from beamfem.view.drawing import entry, frame
 from beamfem.view.plots import empty_figure, save_figure
 from beamfem.view.shapes import Shapes, draw_undeformed
 from beamfem.view.supports import draw_joints, draw_supports
@@ -39,7 +39,7 @@ def plot_modes(modes: "Modes", path: str | PathLike[str] | None = None, most: in
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([len(solution) - 1] if mode < len(modes.rigid) else [len(solution) // 2, 0])
 
-    return _plot(modes, title, rows, path, most)
+    return _plot(modes, title, rows, ("half a period later", "at its largest"), path, most)
 
 
 def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None, most: int = _MOST) -> Any:
@@ -56,13 +56,14 @@ def plot_buckling(buckling: "Buckling", path: str | PathLike[str] | None = None,
     def rows(mode: int, solution: Solution) -> np.ndarray:
         return np.array([0, 1])
 
-    return _plot(buckling, title, rows, path, most)
+    return _plot(buckling, title, rows, ("critical state", "with the mode"), path, most)
 
 
 def _plot(
     modes: "Modes | Buckling",
     title: Callable[[int], str],
     rows: Callable[[int, Solution], np.ndarray],
+    names: tuple[str, str],
     path: str | PathLike[str] | None,
     most: int,
 ) -> Any:
@@ -77,10 +78,10 @@ def _plot(
     lines = -(-number // columns)
     height = np.clip(_WIDTH * size[1] / size[0] if size[0] > 0.0 else np.inf, _LEAST_HEIGHT, 1.4 * _WIDTH) + 0.7
     width = np.clip((height - 0.7) * size[0] / max(size[1], 1e-12), 2.2, _WIDTH)
-    figure = empty_figure(columns * width + 0.6, lines * height + 0.4)
+    figure = empty_figure(columns * width + 0.6, lines * height + 0.7)
     grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
     for mode, (axes, own) in enumerate(zip(grid.flat, shapes, strict=False)):
-        draw_undeformed(axes, own.points)
+        original = draw_undeformed(axes, own.points)
         for order in range(len(own.rows)):
             own.draw(axes, order, (order + 1) / len(own.rows))
         draw_supports(axes, own.solution, int(own.rows[-1]), own.centre)
@@ -90,6 +91,8 @@ def _plot(
         axes.label_outer()
     for axes in grid.flat[number:]:
         axes.set_visible(False)
+    entries = [original, *(entry(0.5 * (order + 1), name) for order, name in enumerate(names))]
+    figure.legend(handles=entries, loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
     if path is not None:
         save_figure(figure, path)
     return figure

@@ -23,7 +23,7 @@ def plot_model(model: Model, path: str | PathLike[str] | None = None) -> Any:
     rates = np.zeros_like(p)
     at_rest = Solution(model, True, np.ones(1), p, rates, rates, Statistics(0, 0, 0, "the model without stress"))
     figure = plot_shapes(at_rest, undeformed=False)
-    figure.axes[0].set_title("as it is without stress, with all loads", fontsize=10)
+    figure.axes[0].set_title("reference shape, full loads", fontsize=10)
     if path is not None:
         save_figure(figure, path)
     return figure

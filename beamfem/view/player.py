@@ -1,6 +1,5 @@
 """A page with a slider over the steps of a solution: one file, drawn by the browser, works offline."""
 
-import base64
 import json
 from html import escape
 from importlib.resources import files
@@ -12,27 +11,27 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.files import path_of, whole
-from beamfem.results.along import QUANTITIES, section_forces
 from beamfem.results.solution import Solution
 from beamfem.validation import count, optional, text
 from beamfem.view.frames import axis_of_rows, moment_of, spread_rows
+from beamfem.view.page_fields import FURTHER, as_text, fields_of, names_of
 from beamfem.view.page_loads import loads_of
-from beamfem.view.shapes import Shapes, limits
+from beamfem.view.shapes import Shapes
 from beamfem.view.summary import model_rows, solution_rows
 from beamfem.view.supports import joints_of, supports_of
 from beamfem.view.written import WrittenFile
 
 _BYTES = 560_000  # of numbers in a page; as text they grow by a third
-_FORCES = ("moment", "normal", "shear")
 _LEVELS = 65534  # into which the box of all shapes is cut
 
 
 def write_player(solution: Solution, path: str | PathLike[str], title: str | None = None, frames: int = 60) -> Path:
     """Write a self-contained page with a slider over up to `frames` steps and return its path; folders are created.
 
-    The body moves with its supports, optionally coloured by a section force [N, N m], rotation [rad], displacement [m]
-    or speed [m/s]; a curve of the largest displacement and the statistics are shown beside it. Below 1 MB: for large
-    models only the axes and fewer steps are drawn. Raises InputError for a suffix other than .html.
+    The body moves with its supports, optionally coloured by a section force [N, N m], a stress [Pa], utilisation,
+    rotation [rad], displacement [m] or speed [m/s]; a curve of the largest displacement and the statistics are shown
+    beside it. Below 1 MB: for large models only the axes and fewer steps are drawn. Raises InputError for a suffix
+    other than .html.
     """
     target = path_of(path)
     if target.suffix != ".html":
@@ -53,7 +52,7 @@ def write_player(solution: Solution, path: str | PathLike[str], title: str | Non
 
 
 def _data(solution: Solution, frames: int) -> dict[str, Any]:
-    shapes, body = _sized(solution, frames, len(_names(solution)))
+    shapes, body, names = _sized(solution, frames)
     sides = shapes.body if body else [axis[:, :, None] for axis in shapes.axis]
     low, high = shapes.box
     size = float(np.max(high - low)) or 1.0
@@ -78,8 +77,8 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "axis": f"{name} [{unit}]",
         "length": solution.model.unit("m"),
         "moved": [float(f"{value:.5g}") for value in np.concatenate(moved, axis=1).max(axis=1)],
-        "points": _text(numbers),
-        "reference": _text(
+        "points": as_text(numbers),
+        "reference": as_text(
             np.round(
                 (np.concatenate([own.reference for own in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
             ).astype("<i2")
@@ -87,42 +86,21 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "loads": loads_of(shapes),
         "outlines": outlines,
         "places": places,
-        "fields": _fields(shapes),
+        "fields": fields_of(shapes, names),
     }
 
 
-def _sized(solution: Solution, frames: int, fields: int) -> tuple[Shapes, bool]:
-    """Return the shapes that fit on a page, and whether bodies fit too."""
-    rows = spread_rows(solution, frames)
+def _sized(solution: Solution, frames: int) -> tuple[Shapes, bool, tuple[str, ...]]:
+    """Return the shapes that fit on a page, whether bodies fit too, and the names of the fields."""
+    rows, names = spread_rows(solution, frames), names_of(solution)
     elements = sum(mesh.elements for mesh in solution.model.meshes)
-    room = _BYTES // (len(rows) * (8 + fields))
+    room = _BYTES // (len(rows) * (8 + len(names)))
     if room >= 2 * elements:
         # an element of n pieces has n + 1 points
-        return Shapes(solution, rows, total=max(1, room - elements)), True
-    most = max(2, _BYTES // (2 * elements * (4 + fields)))
-    return Shapes(solution, spread_rows(solution, min(frames, most)), total=1), False
-
-
-def _fields(shapes: Shapes) -> list[dict[str, Any]]:
-    """Return fields in 255 levels between their limits."""
-    solution, rows = shapes.solution, shapes.rows
-    forces = [section_forces(points, solution, rows) for points in shapes.points]
-    found = []
-    for name in _names(solution):
-        quantity = QUANTITIES[name]
-        if name in _FORCES:
-            parts = [own[name] for own in forces]
-        else:
-            parts = [quantity.values(points, solution, rows) for points in shapes.points]
-        low, high = limits(parts)
-        levels = np.round((np.concatenate(parts, axis=1) - low) / (high - low) * 255.0).astype(np.uint8)
-        label = f"{quantity.label} [{solution.model.unit(quantity.unit)}]"
-        found.append({"name": name, "label": label, "low": low, "high": high, "values": _text(levels)})
-    return found
-
-
-def _names(solution: Solution) -> tuple[str, ...]:
-    return _FORCES + (("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed"))
+        return Shapes(solution, rows, total=max(1, room - elements)), True, names
+    names = tuple(name for name in names if name not in FURTHER)
+    most = max(2, _BYTES // (2 * elements * (4 + len(names))))
+    return Shapes(solution, spread_rows(solution, min(frames, most)), total=1), False, names
 
 
 def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
@@ -151,7 +129,3 @@ def _rounded(place: np.ndarray) -> list[float]:
 def _css(colour: str) -> str:
     """Return a colour of matplotlib, a name or a grey between 0 and 1, as CSS."""
     return colour if colour.startswith("#") else f"rgb({','.join([str(round(255 * float(colour)))] * 3)})"
-
-
-def _text(numbers: np.ndarray) -> str:
-    return base64.b64encode(np.ascontiguousarray(numbers).tobytes()).decode()

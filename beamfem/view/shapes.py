@@ -12,9 +12,11 @@ from beamfem.results.along import AxisPoints, Quantity, quantity
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
+ORIGINAL = "original shape"  # what is dashed
 _SAME = 1e-3  # of the largest value: smaller differences are not worth all colours
 FIELD_COLOURS = "viridis"  # told apart by the colour-blind, and its lightness rises: readable in grey print
 _LIGHT, _DARK = np.array([0.68, 0.78, 0.88]), np.array([0.07, 0.22, 0.42])
+_DASHED, _DASHES = "0.55", (0, (5, 3))  # axes in the reference
 _UNKNOWN = 0.8  # grey of what has no value
 _SLABS = 40_000  # of bodies in a picture; above, axes alone are drawn
 
@@ -165,17 +167,29 @@ class Shapes:
 
 def limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
     """Return the smallest and the largest value, widened if they agree to three digits."""
-    known = [v[np.isfinite(v)] for v in values]
-    low, high = min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
+    low, high = _range(values)
     size = max(abs(low), abs(high))
-    return (low, high) if high - low > _SAME * size else (low - (size or 1.0), high + (size or 1.0))
+    return (low - (size or 1.0), high + (size or 1.0)) if even(values) else (low, high)
+
+
+def even(values: Sequence[np.ndarray]) -> bool:
+    """Return whether all values agree to three digits."""
+    low, high = _range(values)
+    return high - low <= _SAME * max(abs(low), abs(high))
+
+
+def _range(values: Sequence[np.ndarray]) -> tuple[float, float]:
+    known = [v[np.isfinite(v)] for v in values]
+    return min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
 
 
 def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:
-    """Draw the axes in the reference as dashed lines."""
+    """Draw the axes in the reference as dashed lines; return the entry of the legend that says so."""
     from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
 
-    lines = LineCollection(
-        [own.reference for own in points], colors="0.55", linestyles=(0, (5, 3)), linewidths=0.9, zorder=1.5
+    lines = [own.reference for own in points]
+    axes.add_collection(
+        LineCollection(lines, colors=_DASHED, linestyles=_DASHES, linewidths=0.9, zorder=1.5), autolim=False
     )
-    return axes.add_collection(lines, autolim=False)
+    return Line2D([], [], color=_DASHED, linestyle=_DASHES, linewidth=0.9, label=ORIGINAL)

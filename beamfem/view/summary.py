@@ -9,6 +9,7 @@ import numpy as np
 
 from beamfem.model.model import Model
 from beamfem.tabulate import as_html
+from beamfem.view.places import place
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from beamfem.solve.stability.buckling import Buckling
 
 _BEAMS = 12  # listed each
+_VALUES = 500_000  # most points in one array
+_EQUAL = 1e-9  # what differs by less is the same: points of two beams at their joint, the round-off of a zero
 
 
 def model_rows(model: Model) -> list[tuple[str, str]]:
@@ -34,7 +37,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
 
 
 def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
-    """Return how a solution was found and where it ends, as pairs of name and text."""
+    """Return how a solution was found, where it ends and how far it moves, as pairs of name and text."""
     statistics = solution.statistics
     name, unit = ("load factor", "") if solution.static else ("time", f" {solution.model.unit('s')}")
     rows = [("rows", str(len(solution)))]
@@ -52,20 +55,29 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     return rows + [("warning", sentence) for sentence in solution.warnings]
 
 
-def largest_displacement(solution: "Solution") -> tuple[str, str]:
-    """Return the largest nodal displacement in the last row, and its place."""
-    from beamfem.results.along import AxisPoints
+def largest_displacement(solution: "Solution", with_row: bool = True) -> tuple[str, str]:
+    """Return the largest displacement of all rows, its place, and its time or load factor unless there is one row."""
+    from beamfem.view.frames import axis_points, moment_of
 
-    found = []
-    for mesh in solution.model.meshes:
-        points = AxisPoints(mesh, 1)
-        moved = points.positions(solution.p[-1:])[0][0] - points.reference
-        best = int(np.linalg.norm(moved, axis=1).argmax())
-        found.append((float(np.linalg.norm(moved[best])), moved[best], points.reference[best]))
-    size, (ux, uy), (x, y) = max(found, key=lambda item: item[0])
+    best = (-1.0, np.zeros(2), np.zeros(2), 0)
+    for points in axis_points(solution, _VALUES // len(solution)):
+        chunk = max(1, _VALUES // len(points.xi))
+        for first in range(0, len(solution), chunk):
+            moved = points.positions(solution.p[first : first + chunk])[0] - points.reference
+            size = np.linalg.norm(moved, axis=-1)
+            row, point = np.unravel_index(int(size.argmax()), size.shape)
+            if size[row, point] > best[0] * (1.0 + _EQUAL):
+                best = float(size[row, point]), moved[row, point], points.reference[point], first + int(row)
+    largest, moved, at, number = best
     length = solution.model.unit("m")
-    moved = f"{size:.4g} {length}: ({ux:.4g}, {uy:.4g}) {length}"
-    return "largest displacement", f"{moved} at {_place(x, y)}, in the last row"
+    text = f"{largest:.4g} {length}: {_vector(moved)} {length} at {place(solution.model, at)}"
+    return "largest displacement", text + (f", {moment_of(solution, number)}" if with_row else "")
+
+
+def _vector(moved: np.ndarray) -> str:
+    """Return a displacement as text, without the round-off of a zero."""
+    ux, uy = np.where(np.abs(moved) <= _EQUAL * np.abs(moved).max(), 0.0, moved)
+    return f"({ux:.4g}, {uy:.4g})"
 
 
 def model_table(model: Model) -> str:
@@ -105,17 +117,10 @@ def _beams(model: Model) -> str:
         if number == _BEAMS:
             lines.append(("…", f"{len(model.beams) - _BEAMS} more", *[""] * 5))
             break
-        ends = [_place(x, y) for x, y in (mesh.position[0], mesh.position[-1])]
+        ends = [place(model, at) for at in (mesh.position[0], mesh.position[-1])]
         kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
         lines.append((str(number), *ends, f"{beam.curve.length:.4g}", *kind))
     return as_html(head, lines)
-
-
-def _place(x: float, y: float) -> str:
-    """Return a point as text, without the round-off of a zero."""
-    noise = 1e-12 * max(abs(x), abs(y))
-    x, y = (0.0 if abs(value) <= noise else value for value in (x, y))
-    return f"({x:.4g}, {y:.4g})"
 
 
 def _kinds(items: Sequence[object]) -> str:

@@ -70,7 +70,7 @@ def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray)
 
 
 def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
-    """Return the symbols of supports in a row: rollers roll, symbols of prescribed motions stay at the reference.
+    """Return the symbols of supports in a row: rollers roll, prescribed motions start at their points.
 
     centre: of all shapes (2,) [m], which decides the side on which a symbol is drawn.
     """
@@ -176,7 +176,7 @@ def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np
         if name in prescribed and name not in still:
             value = prescribed[name]
             sign = 1.0 if callable(value) or value > 0.0 else -1.0
-            _moved(stamps, at, sign * np.array(direction))
+            _moved(stamps, now, sign * np.array(direction))
     if "rotation" in prescribed and "rotation" not in still:
         value = prescribed["rotation"]
         arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * (1.0 if callable(value) or value > 0.0 else -1.0))
@@ -187,7 +187,7 @@ def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np
 def _moved(stamps: Stamps, at: np.ndarray, direction: np.ndarray) -> None:
     """Draw an arrow with a bar at its foot: a displacement, not a force."""
     across = np.array([-direction[1], direction[0]])
-    foot, tip = 0.5 * direction, 2.0 * direction
+    foot, tip = 0.0 * direction, 1.6 * direction
     for outline in ([foot - 0.3 * across, foot + 0.3 * across], [foot, tip]):
         stamps.add(at, np.array(outline), PRESCRIBED, 1.4)
     head = np.array([tip, tip - 0.45 * direction + 0.2 * across, tip - 0.45 * direction - 0.2 * across])

@@ -14,13 +14,14 @@ from beamfem.model.beam import Point
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.validation import require_known
+from beamfem.view.curve import ENERGIES, OF_SECTION
 
 Quantity = str | tuple[str, Point]
 
 
 @dataclass(frozen=True)
 class OutputCurve:
-    """A picture of y over x: each a name and a point, or "load_factor", "time"."""
+    """A picture of y over x: each a name and a point, or "load_factor", "time", or an energy of the model."""
 
     file: Path
     x: Quantity
@@ -43,11 +44,14 @@ def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tup
 
     def quantity(table: Table, key: str) -> Quantity:
         if not isinstance(table.values[key], dict):
-            if table.text(key) != axis:
+            name = table.text(key)
+            if name not in (axis, *ENERGIES):
                 raise table.error(
-                    f'must be "{axis}" or {{ point = ..., quantity = ... }}, got "{table.text(key)}"', key
+                    f'must be "{axis}" or {{ point = ..., quantity = ... }}, or an energy of the model: '
+                    f'{", ".join(ENERGIES)}; got "{name}"',
+                    key,
                 )
-            return axis
+            return name
         of_point = table.table(key)
         name, point = build(of_point, _of_point, {"point": places.point})
         require_supported(of_point, "quantity", model, point, [name])
@@ -62,7 +66,8 @@ def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tup
 
 
 def _of_point(point: Point, quantity: str) -> tuple[str, Point]:
+    known = (*QUANTITIES, *OF_SECTION)
     if not isinstance(quantity, str):
-        raise InputError(f"quantity must be one of {', '.join(QUANTITIES)}, got {quantity!r}")
-    require_known(f"there is no quantity {quantity!r} of a point", quantity, QUANTITIES)
+        raise InputError(f"quantity must be one of {', '.join(known)}, got {quantity!r}")
+    require_known(f"there is no quantity {quantity!r} of a point", quantity, known)
     return quantity, point

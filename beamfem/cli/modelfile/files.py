@@ -93,14 +93,15 @@ class Plot(_OfAny):
 
     file: Path
     colour: str | None = None
-    shapes: int = 9
+    shapes: int | None = None
     undeformed: bool = True
     supports: bool = True
     loads: bool = True
 
     def __post_init__(self) -> None:
         _check_colour(self.colour)
-        count("shapes", self.shapes)
+        if self.shapes is not None:
+            count("shapes", self.shapes)
         _check_flags(self)
 
     def write(self, found: Found) -> None:

@@ -1,0 +1,105 @@
+"""Numbers beside points of a curve, where they cover neither each other nor the points nor, if possible, the curve."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+_SIZE = 8.0  # of the text [points of print]
+_MARK = 5.0  # half of the square that a mark covers [points of print]
+_APART = (8.0, 18.0, 30.0, 44.0)  # distances from the point to try [points of print]
+_SAME = 6.0  # equal numbers of points nearer than this are written once [points of print]
+_STEP = 2.0  # between the points of a curve that are looked at [points of print]
+_COVERS, _CROSSES = 1000.0, 1.0  # how bad it is to cover something, or a point of the curve
+
+
+@dataclass(frozen=True)
+class _Box:
+    """A rectangle [points of print]: its middle and half of its sides, (2,) each."""
+
+    middle: np.ndarray
+    half: np.ndarray
+
+    def covers(self, other: "_Box") -> bool:
+        return bool(np.all(np.abs(self.middle - other.middle) < self.half + other.half))
+
+    def counted(self, points: np.ndarray) -> int:
+        """Return how many of points (n, 2) lie in it."""
+        return int(np.sum(np.all(np.abs(points - self.middle) < self.half, axis=1)))
+
+    def beyond(self, room: "_Box") -> bool:
+        return bool(np.any(np.abs(self.middle - room.middle) + self.half > room.half))
+
+
+def write_labels(
+    axes: Any,
+    points: Sequence[tuple[float, float]],
+    texts: Sequence[str],
+    colours: Sequence[str],
+    curve: np.ndarray,
+) -> None:
+    """Write a text beside each point; those that stand away from it have a line to it.
+
+    points, curve (n, 2): in numbers of the axes, whose limits are final.
+    """
+    axes.figure.draw_without_rendering()  # the axes have their place from now on
+    points_per_pixel = 72.0 / axes.figure.dpi
+
+    def on_paper(given: Any) -> np.ndarray:
+        return np.asarray(axes.transData.transform(np.asarray(given, dtype=float).reshape(-1, 2)) * points_per_pixel)
+
+    places, line = on_paper(points), _dense(on_paper(curve))
+    marks = [_Box(at, np.full(2, _MARK)) for at in places]
+    frame = axes.get_window_extent()
+    corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * points_per_pixel
+    room = _Box(corners.mean(axis=0), 0.5 * (corners[1] - corners[0]))
+    written: list[_Box] = []
+    named: list[tuple[str, np.ndarray]] = []
+    for point, at, text, colour in zip(points, places, texts, colours, strict=True):
+        if any(text == own and np.linalg.norm(at - there) < _SAME for own, there in named):
+            continue
+        note = axes.annotate(text, point, fontsize=_SIZE, zorder=4, ha="center", va="center", annotation_clip=False)
+        extent = note.get_window_extent()
+        half = 0.5 * points_per_pixel * np.array([extent.width, extent.height]) + 1.0
+        note.remove()
+
+        # the first of equals is the nearest
+        boxes = [_Box(at + offset, half) for offset in _offsets(half)]
+        best = min(boxes, key=partial(_badness, [*marks, *written], room, line))
+        offset = best.middle - at
+        written.append(best)
+        named.append((text, at))
+        away = np.any(np.abs(offset) > half + _APART[0] + 1.0)
+        axes.annotate(
+            text,
+            point,
+            offset,
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=_SIZE,
+            color=colour,
+            zorder=4,
+            arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6, "shrinkB": 4.0} if away else None,
+        ).set_in_layout(False)
+
+
+def _badness(others: Sequence[_Box], room: _Box, line: np.ndarray, box: _Box) -> float:
+    """Return how much a text in a box would cover, and whether it is outside of the axes."""
+    covered = sum(box.covers(other) for other in others) + box.beyond(room)
+    return _COVERS * covered + _CROSSES * box.counted(line)
+
+
+def _offsets(half: np.ndarray) -> list[np.ndarray]:
+    """Return where the middle of a text may stand, from its point: above, below, beside and across, near ones first."""
+    ways = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
+    return [np.array(way) * (half + apart * (0.7 if all(way) else 1.0)) for apart in _APART for way in ways]
+
+
+def _dense(line: np.ndarray) -> np.ndarray:
+    """Return points (m, 2) on a polygon (n, 2) that are near each other."""
+    long = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    along = np.linspace(0.0, long[-1], 2 + int(long[-1] / _STEP))
+    return np.column_stack([np.interp(along, long, component) for component in line.T])

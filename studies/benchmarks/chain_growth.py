@@ -1,8 +1,9 @@
 """How time and memory grow with one chain of 1000 to 1,000,000 elements; each size in a process of its own.
 
 The cantilever under P L^2 / E I = 5 for statics, the pendulum of the paper for motion. Reported: CPU time of a ready
-model an element and iteration with one thread, of motions the time on the clock with two threads as well, iterations, error of the tip, largest memory of the process, and bytes a coordinate of
-it beyond that of a small model. Memory counts model, solver and what is kept of the motion: its first and last state.
+model an element and iteration with one thread, of motions the time on the clock with two threads as well; iterations,
+error of the tip, largest memory of the process, and bytes a coordinate of it beyond that of a small model. Memory
+counts model, solver and what is kept of the motion: its first and last state.
 """
 
 import multiprocessing

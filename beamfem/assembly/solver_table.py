@@ -88,7 +88,6 @@ def _of_motions() -> dict[int, Routine]:
         record.PREDICT: motion_stages.predict,
         record.ASSEMBLE: motion_stages.assemble,
         record.FACTORISE: motion_stages.factorise,
-        record.TURN_ALL: motion_stages.turn_all,
         record.CORRECT: motion_stages.correct,
         record.COMPLETE: motion_stages.complete,
     }

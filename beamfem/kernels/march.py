@@ -3,7 +3,6 @@
 from beamfem.kernels import motion_steps
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.motion_stages import place_again
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
 # Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
@@ -11,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
 _hold, _two, _jacobian, _count = caller("iiirnr"), caller("ii"), caller("i", "d"), caller("inrrr")
-_stage, _in_two = caller("iiii", "d"), caller("iiii", "d")
+_stage, _in_two, _place = caller("iiii", "d"), caller("iiii", "d"), caller("iii")
 _judge = inlined(motion_steps.judge)
 
 
@@ -43,7 +42,9 @@ def _is_inside_out(s, call, system):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
-        place_again(groups[group], system)
+        own = wholes(groups[group])
+        if own[r.SHARED] != 0:  # by now other nodes are in the chunks
+            _place(wholes(own[r.ROUTINES])[r.PLACE_NODES], groups[group], system, 0)
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return not smallest > 0.0
 
@@ -108,6 +109,7 @@ def march(system, solver, calls):
         while iteration < limits[1]:
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
+            b[r.TURNS_WANTED] = iteration == 0 or renew
             _run(call[r.ASSEMBLE], system, solver, calls, b, call)
             if renew:
                 if b[r.ROLLERS] > 0:
@@ -115,8 +117,6 @@ def march(system, solver, calls):
                     _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
                 statistics[3] = min(statistics[3], -_run(call[r.FACTORISE], system, solver, calls, b, call))
                 statistics[5] += 1.0
-            if iteration == 0 or renew:
-                _run(call[r.TURN_ALL], system, solver, calls, b, call)
             _stage(call[r.SOLVE], 0, system, solver, calls)
             if full != 0:
                 _predict_resultants(s, b, call, system)

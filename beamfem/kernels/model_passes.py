@@ -24,17 +24,16 @@ def clear(s, first, end, first_entry, end_entry):
 
 
 @inlined
-def add_groups(s, system, first, end):
-    """Add the forces of groups to the residual, their tangents to the matrix."""
-    groups, values = wholes(s[r.GROUP_RECORDS]), wholes(s[r.VALUES])
-    for group in range(first, end):
-        b = wholes(groups[group])
-        call = wholes(b[r.ROUTINES])
-        _three(call[r.PLACE_NODES], groups[group], system, s[r.MOVING])
-        _two(call[r.ADD_ELEMENTS], groups[group], system)
-        if b[r.LOADS] > 0:
-            _three(call[r.ADD_LOADS], groups[group], system, values[group])
-        _two(call[r.FINISH_NODES], groups[group], system)
+def add_group(s, system, number):
+    """Add the forces of a group to the residual, its tangent to the matrix."""
+    group, values = wholes(s[r.GROUP_RECORDS])[number], wholes(s[r.VALUES])
+    b = wholes(group)
+    call = wholes(b[r.ROUTINES])
+    _three(call[r.PLACE_NODES], group, system, s[r.MOVING])
+    _two(call[r.ADD_ELEMENTS], group, system)
+    if b[r.LOADS] > 0:
+        _three(call[r.ADD_LOADS], group, system, values[number])
+    _two(call[r.FINISH_NODES], group, system)
 
 
 @inlined
@@ -60,7 +59,8 @@ def balance(system):
     small_code()
     s = wholes(system)
     clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
-    add_groups(s, system, 0, s[r.GROUPS])
+    for group in range(s[r.GROUPS]):
+        add_group(s, system, group)
     add_springs(s)
 
 

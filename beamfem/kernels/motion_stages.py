@@ -10,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 _STRIP = 256  # vectors that are turned while they are in the cache near the core
 
 _factor, _solve, _roll, _in_two = caller("iirr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
-_turn_pairs, _keep, _turns, _place = caller("idnrr"), caller("iir"), caller("iirr"), caller("iii")
+_turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
 _factor_part, _solve_part = caller("iiirr", "d"), caller("iiirr")
 
 
@@ -18,14 +18,6 @@ _factor_part, _solve_part = caller("iiirr", "d"), caller("iiirr")
 def bounds_of(b, part):
     """Return the bounds of a part."""
     return at(wholes(b[r.BOUNDS]), part * r.BOUND_FIELDS)
-
-
-@inlined
-def place_again(group, system):
-    """Fill the chunks of a group with nodal vectors, if others have used them since."""
-    b = wholes(group)
-    if b[r.SHARED] != 0:
-        _place(wholes(b[r.ROUTINES])[r.PLACE_NODES], group, system, 0)
 
 
 @routine("iiii", "d")
@@ -52,10 +44,15 @@ def predict(part, system, solver, calls):
 
 @routine("iiii", "d")
 def assemble(part, system, solver, calls):
-    """Fill the residual and, where wanted, the matrix; springs to the ground come with the last part."""
+    """Fill the residual and, where wanted, the matrix; springs to the ground come with the last part.
+
+    Where it is asked how far sections have turned since the last tangent, that is filled as well; a new one keeps their
+    directions.
+    """
     small_code()
-    s, b = wholes(system), wholes(solver)
-    own, width = bounds_of(b, part), 2 * b[r.HALF] + 1
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    own, width, groups = bounds_of(b, part), 2 * b[r.HALF] + 1, wholes(s[r.GROUP_RECORDS])
+    kept, turns, node = reals(b[r.KEPT]), reals(b[r.TURNS]), 0
     model_passes.clear(
         s,
         own[r.FIRST_COORDINATE],
@@ -63,7 +60,14 @@ def assemble(part, system, solver, calls):
         own[r.FIRST_UNKNOWN] * width,
         own[r.END_UNKNOWN] * width,
     )
-    model_passes.add_groups(s, system, own[r.FIRST_GROUP], own[r.END_GROUP])
+    for group in range(own[r.END_GROUP]):
+        if group >= own[r.FIRST_GROUP]:
+            model_passes.add_group(s, system, group)
+            if b[r.TURNS_WANTED] != 0:
+                if s[r.TANGENT] != 0:
+                    _keep(call[r.KEEP_DIRECTIONS], groups[group], node, kept)
+                _turns(call[r.TURNS_SINCE], groups[group], node, kept, turns)
+        node += wholes(groups[group])[r.NODES]
     if own[r.END_GROUP] == s[r.GROUPS]:
         model_passes.add_springs(s)
     return 0.0
@@ -76,23 +80,6 @@ def factorise(part, system, solver, calls):
     if b[r.PARTS] == 1:
         return -_factor(call[r.FACTOR_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
     return -_factor_part(call[r.FACTOR_PART], part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
-
-
-@routine("iiii", "d")
-def turn_all(part, system, solver, calls):
-    """Keep the directions of sections with a new tangent, and fill how far they have turned since the last one."""
-    small_code()
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    groups, kept, turns, own = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS]), bounds_of(b, part)
-    first = 0
-    for group in range(own[r.END_GROUP]):
-        if group >= own[r.FIRST_GROUP]:
-            place_again(groups[group], system)
-            if s[r.TANGENT] != 0:
-                _keep(call[r.KEEP_DIRECTIONS], groups[group], first, kept)
-            _turns(call[r.TURNS_SINCE], groups[group], first, kept, turns)
-        first += wholes(groups[group])[r.NODES]
-    return 0.0
 
 
 @inlined

@@ -203,7 +203,8 @@ FIRST_FREE = 43  # the first of the unknown where they follow one another, else 
 PARTS = 44  # 1, or 3: two halves and what is between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
-SOLVER_FIELDS = 47
+TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
+SOLVER_FIELDS = 48
 
 FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)
 BOUND_FIELDS = 8
@@ -239,7 +240,6 @@ JOB_FIELDS = 16
     PREDICT,
     ASSEMBLE,
     FACTORISE,
-    TURN_ALL,
     SOLVE,
     CORRECT,
     COMPLETE,
@@ -253,5 +253,5 @@ JOB_FIELDS = 16
     FACTOR_PART,
     LOWER_PART,
     UPPER_PART,
-) = range(31)
-SOLVER_ROUTINES = 31
+) = range(30)
+SOLVER_ROUTINES = 30

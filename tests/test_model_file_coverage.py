@@ -180,8 +180,8 @@ def public() -> dict[str, object]:
 
 def parameters(item: object) -> dict[str, inspect.Parameter]:
     """Return what a public function or method takes, that of an upper room where it does the work."""
-    if item in registry._FUNCTIONS:
-        module, name = registry._FUNCTIONS[item].split(":")
+    if (declared := inspect.unwrap(item)) in registry._FUNCTIONS:
+        module, name = registry._FUNCTIONS[declared].split(":")
         return dict(list(inspect.signature(getattr(import_module(module), name)).parameters.items())[1:])
     return dict(inspect.signature(item).parameters)
 

@@ -11,6 +11,7 @@ from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearF
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.quadrature import gauss
 from beamfem.validation import flag, fulfils, one_of, optional, shown, text
 
@@ -126,26 +127,31 @@ def _counted(element: Element) -> np.ndarray | None:
     return None if counted.all() else counted[:, :, None] & counted[:, None, :]
 
 
+@keywords_checked
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by gradients, 6 coordinates a node; Omar and Shabana 2001."""
     return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
+@keywords_checked
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Cubic field carried by rotations, 5 coordinates a node; paper, section 3."""
     return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
+@keywords_checked
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by gradients, 4 coordinates a node; paper, eqs. (8) to (10)."""
     return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
+@keywords_checked
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Bilinear field carried by rotations, 3 coordinates a node; paper, section 4."""
     return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
+@keywords_checked
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Field of any order in r and r_y carried by rotations, 3 coordinates a node; suggested in the paper, section 4.
 
@@ -154,6 +160,7 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
 
+@keywords_checked
 def ShearRigid(
     stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
 ) -> Element:

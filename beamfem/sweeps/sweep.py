@@ -12,6 +12,7 @@ from beamfem import tabulate
 from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
+from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
 from beamfem.results.solution import Solution
 from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
@@ -158,6 +159,7 @@ def _shortened(rows: list[list[Any]]) -> list[list[Any]]:
     return [*rows[:half], ["..."] * len(rows[0]), *rows[-half:]]
 
 
+@keywords_checked
 def sweep(
     function: Callable[..., Any],
     /,
@@ -185,7 +187,7 @@ def sweep(
     keep_stale = flag("keep_stale", keep_stale)
     varied, fixed = split(parameters)
     points = combinations(varied, fixed)
-    check_call(function, points[0])
+    check_call(function, points[0], ("executor", "store", "keep_stale"))
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
     with ExitStack() as stack:

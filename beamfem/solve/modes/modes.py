@@ -10,6 +10,7 @@ from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.model import Model
@@ -117,6 +118,7 @@ class Modes:
         return offered(Modes.plot)(self, path, **options)
 
 
+@keywords_checked
 def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
     """Return the `count` lowest modes of K phi = omega^2 M phi, those of rigid motions included.
 

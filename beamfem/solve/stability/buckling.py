@@ -10,6 +10,7 @@ import numpy as np
 from beamfem.assembly.equations import STATICS, linearise, load_slope
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
+from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.model import Model
 from beamfem.registry import offered
@@ -99,6 +100,7 @@ class Buckling:
         return offered(Buckling.plot)(self, path, **options)
 
 
+@keywords_checked
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
     """Return the first `count` points of the loading path at which the tangent is singular, or those that there are.
 

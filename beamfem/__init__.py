@@ -90,6 +90,7 @@ __all__ = [
     "Section",
     "SectionForces",
     "SectionLaw",
+    "SeveralTurnsWarning",
     "ShearFree",
     "ShearRigid",
     "Solution",

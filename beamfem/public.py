@@ -33,6 +33,7 @@ from beamfem.errors import (
     NotReadWarning,
     NotStoredWarning,
     RoundOffWarning,
+    SeveralTurnsWarning,
     UnknownPointError,
     UnknownStressWarning,
     UnstableWarning,

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.curves.curve import warn_of_turns
 from beamfem.errors import InputError
 from beamfem.validation import convert, finite, positive, vector
 
@@ -12,7 +13,7 @@ from beamfem.validation import convert, finite, positive, vector
 class Arc:
     """Circular axis about a center (x, y) [m] of a radius [m], from start_angle to end_angle [rad] against the x-axis.
 
-    Clockwise where end_angle < start_angle; more than a full turn is allowed.
+    Clockwise where end_angle < start_angle. Warns by a `SeveralTurnsWarning` of more than a full turn, as degrees make.
     Raises InputError if the radius is not positive or the angles are equal.
     """
 
@@ -27,6 +28,7 @@ class Arc:
         convert(self, finite, "start_angle", "end_angle")
         if self.start_angle == self.end_angle:
             raise InputError(f"an Arc needs two different angles, start_angle and end_angle are both {self.end_angle}")
+        warn_of_turns("the arc", self.end_angle - self.start_angle)
 
     @property
     def length(self) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.curves.bspline import BSpline
-from beamfem.curves.curve import points
+from beamfem.curves.curve import points, warn_of_turns
 from beamfem.errors import InputError
 from beamfem.keywords import keywords_checked
 from beamfem.validation import finite, vector
@@ -21,7 +21,8 @@ def elliptic_arc(
 
     center, first, second: (x, y) [m], the last two conjugate half diameters (the half axes where they are normal to
     each other). Each piece of at most a quarter turn is a rational parabola whose middle weight is the cosine of half
-    its angle. Raises InputError if start equals end or the half diameters are parallel.
+    its angle. Warns by a `SeveralTurnsWarning` of more than a full turn. Raises InputError if start
+    equals end or the half diameters are parallel.
     """
     middle, one, two = (np.array(vector(*pair)) for pair in (("center", center), ("first", first), ("second", second)))
     begin, turn = finite("start", start), finite("end", end) - finite("start", start)
@@ -38,6 +39,7 @@ def elliptic_arc(
             f"an elliptic arc turns at most {_MOST_TURNS} times, got {abs(turn) / (2.0 * np.pi):.3g} turns from start "
             f"({start:g}) to end ({end:g}); angles are in rad"
         )
+    warn_of_turns("the elliptic arc", turn)
     pieces = max(1, int(np.ceil(abs(turn) / (np.pi / 2) - 1e-12)))
     angles = begin + turn * np.arange(2 * pieces + 1) / (2 * pieces)
     weights = np.ones(len(angles))

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, Unpack
-from warnings import warn
 
 import numpy as np
 
 from beamfem.assembly.equations import STATICS, linearise, load_slope
 from beamfem.assembly.system import System, system_of
-from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.model import Model
@@ -139,7 +138,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     if np.any(uncertainty > _UNCERTAIN):
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
         said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
-        warn(said, RoundOffWarning, stacklevel=2)
+        warn(said, RoundOffWarning)
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
     return Buckling(
         model,

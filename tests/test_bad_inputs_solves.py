@@ -82,7 +82,7 @@ SOLVES = {
     "a study of nan": (lambda: bf.converge(lambda n: n, refine="n", n=[1, 2], reference=NAN), BAD, "must be finite"),
     "a study of a number's quantity": (lambda: bf.converge(double, "tip", refine="x", x=[1, 2]), BAD, "leave quantity"),
     "a sweep of a number": (lambda: bf.sweep(3, x=[1]), BAD, "the first argument must be a function"),
-    "a column of unequal arrays": (lambda: bf.sweep(np.ones, shape=[1, 2])["value"], BAD, "have different shapes"),
+    "a column of unequal arrays": (lambda: bf.sweep(np.ones, shape=[1, 2])["ones"], BAD, "have different shapes"),
     "stability of a motion": (lambda: bf.simulate(FREE, 0.1, 0.1).stable, BAD, "this one is a motion"),
     "as many modes as unknowns on an inclined roller": (lambda: bf.solve_modes(leaning(), 9), BAD, "only 8 modes"),
     "stale results by words": (lambda: bf.sweep(abs, keep_stale="no", x=[1]), BAD, "keep_stale must be True or False"),

@@ -112,9 +112,8 @@ def test_degrees_in_place_of_radians_are_warned_of(make, what):
     with pytest.warns(SeveralTurnsWarning) as caught:
         make(90)
     (warning,) = caught
-    assert str(warning.message) == (
-        f"the {what} turns by 90 rad, more than one full turn; angles are in radians: for 90 degrees give np.radians(90)"
-    )
+    said = "turns by 90 rad, more than one full turn; angles are in radians: for 90 degrees give np.radians(90)"
+    assert str(warning.message) == f"the {what} {said}"
     assert warning.filename == __file__
     make(2 * np.pi)  # a whole turn, and one by sums with round-off, are none
     make(sum([0.1 * np.pi] * 20))

@@ -144,6 +144,8 @@ NO_KEY = {
     "Solution.time": "printed beside what outputs ask for",
     "Solution.load_factor": "printed beside what outputs ask for",
     "Modes.to_pandas": "printed, and with --json for programs",
+    "Modes.to_xarray": "arrays for a program to go on with",
+    "Buckling.to_xarray": "arrays for a program to go on with",
     "Modes.elastic": "numbers that the printed table has",
     "Modes.status": "as Status",
     "Modes.warnings": "printed after every solve",

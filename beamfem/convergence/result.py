@@ -11,6 +11,7 @@ import numpy as np
 
 from beamfem import tabulate
 from beamfem.convergence.curve import Curve
+from beamfem.sweeps.parameters import is_solution
 from beamfem.sweeps.tasks import Failure
 from beamfem.validation import flag
 
@@ -59,10 +60,13 @@ class Convergence:
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
         """Return header and rows, one per point: parameters, refinement, value, error, order, GCI, others, seconds.
 
-        rounded: errors and orders as short text instead of numbers.
+        rounded: errors and orders as short text instead of numbers. Whole solutions are omitted; `curves` holds them.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
-        others = list(dict.fromkeys(name for curve in self.curves for name in curve.others))
+        whole = {
+            name for curve in self.curves for name, values in curve.others.items() if any(map(is_solution, values))
+        }
+        others = [name for name in dict.fromkeys(n for curve in self.curves for n in curve.others) if name not in whole]
         flag("rounded", rounded)
         header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
         rows = []
@@ -115,6 +119,16 @@ class Convergence:
     def to_pandas(self) -> Any:
         """Return the table of points as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self.points())
+
+    def to_xarray(self) -> Any:
+        """Return an xarray.Dataset over curves and refinement; nan where a curve has no such point.
+
+        Value, error, order, GCI, seconds and the other numbers (curve, refinement); fitted_order, limit and
+        estimated_error (curve,). Raises MissingPackageError.
+        """
+        from beamfem.convergence.grid import as_grid
+
+        return as_grid(self)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw the error against the refinement on logarithmic axes and return the figure; path: file to write."""

@@ -13,7 +13,7 @@ from beamfem.convergence.result import Convergence
 from beamfem.errors import InputError
 from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
-from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import finite, optional, positive, require_known, shown
@@ -83,7 +83,7 @@ def converge(
             quantity = _call(runner, [(line, last) for line in going], refine, quantity)
     curves = [curve for line in lines if (curve := _curve(line, quantity, counts, reference))]
     failures = [failure for line in lines for failure in _failures(line, refine)]
-    name = getattr(function, "__name__", type(function).__name__)
+    name = name_of(function)
     return Convergence(name, quantity or name, refine, reference, tuple(curves), tuple(failures))
 
 

@@ -14,8 +14,7 @@ from beamfem.errors import InputError
 from beamfem.extras import needed_for
 from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
-from beamfem.results.solution import Solution
-from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.parameters import assignments, check_call, combinations, is_solution, labels, name_of, split
 from beamfem.sweeps.stored import StoredCalls
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
@@ -32,7 +31,7 @@ class Sweep:
     parameters: those of each point. values: what the function returned, None if it failed. seconds: duration of each
     call.
     shape: number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
-    computed: number of points called in this run; the others were read from the store.
+    computed: number of points called in this run; the others were read from the store. function: its name.
     """
 
     parameters: tuple[Mapping[str, Any], ...]
@@ -42,6 +41,7 @@ class Sweep:
     shape: tuple[int, ...]
     computed: int
     labels: tuple[Mapping[str, str], ...] = field(repr=False)
+    function: str = "value"
 
     __repr__ = brief
 
@@ -71,22 +71,28 @@ class Sweep:
     def table(self) -> list[dict[str, Any]]:
         """Return one mapping per point: varied parameters, named values (None if the call failed) and seconds.
 
-        A value with the name of a parameter is listed as `name (result)`, a bare number as `value`. Printed and written
-        tables omit whole solutions.
+        A value with the name of a parameter is listed as `name (result)`, a bare one by the name of the function, or as
+        `value` if that has none. Printed and written tables, to_pandas and to_xarray omit whole solutions, which
+        `values` and `sweep[name]` hold.
         """
-        names = dict.fromkeys(name for value in self.values for name in _named(value))
+        names = dict.fromkeys(name for value in self.values for name in self._named(value))
         varied = list(self.labels[0])
         titles = {name: f"{name} (result)" if name in (*varied, "seconds") else name for name in names}
         return [
             {name: point[name] for name in varied}
-            | {titles[name]: _named(value).get(name) for name in names}
+            | {titles[name]: self._named(value).get(name) for name in names}
             | {"seconds": float(seconds)}
             for point, value, seconds in zip(self.parameters, self.values, self.seconds, strict=True)
         ]
 
+    def _named(self, value: Any) -> Mapping[str, Any]:
+        if value is None:
+            return {}
+        return value if isinstance(value, Mapping) else {self.function: value}
+
     def _rows(self) -> tuple[list[str], list[list[Any]]]:
         rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
-        numbers = [name for name in rows[0] if not any(isinstance(row[name], Solution) for row in rows)]
+        numbers = [name for name in rows[0] if not any(is_solution(row[name]) for row in rows)]
         return numbers, [[row[name] for name in numbers] for row in rows]
 
     def _texts(self) -> list[dict[str, Any]]:
@@ -107,17 +113,17 @@ class Sweep:
         return f"<b>Sweep</b>{tabulate.as_html(header, _shortened(rows))}{note}"
 
     def to_markdown(self) -> str:
-        """Return the table of all points as Markdown."""
+        """Return the table of all points as Markdown, without whole solutions."""
         return tabulate.as_markdown(*self._rows())
 
     def to_pandas(self) -> Any:
-        """Return the table of all points as a pandas.DataFrame. Raises MissingPackageError."""
+        """Return the table of all points, without whole solutions, as a DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self._rows())
 
     def to_xarray(self) -> Any:
         """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan for points that failed.
 
-        Arrays of equal shape add dimensions of their own. Raises MissingPackageError.
+        Arrays of equal shape add dimensions of their own; whole solutions are omitted. Raises MissingPackageError.
         """
         with needed_for("to_xarray"):
             import xarray
@@ -147,7 +153,7 @@ class Sweep:
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with all digits."""
+        """Write the table of all points with all digits, without whole solutions."""
         tabulate.write_csv(path, *self._rows())
 
 
@@ -206,10 +212,10 @@ def sweep(
                 report(done)
         except BaseException as error:
             if computed := sum(outcomes[i] is not None for i in todo):
-                error.sweep = _result(points, texts, outcomes, varied, computed)  # type: ignore[attr-defined]
+                error.sweep = _result(points, texts, outcomes, varied, computed, name_of(function))  # type: ignore[attr-defined]
                 error.add_note(f"The {computed} points computed before are in the `sweep` of this exception.")
             raise
-    return _result(points, texts, outcomes, varied, len(todo))
+    return _result(points, texts, outcomes, varied, len(todo), name_of(function))
 
 
 def _result(
@@ -218,6 +224,7 @@ def _result(
     found: list[Outcome | None],
     varied: Mapping[str, Sequence[Any]],
     computed: int,
+    name: str,
 ) -> Sweep:
     outcomes = [outcome or Outcome(error=_NOT_REACHED) for outcome in found]
     failures = tuple(
@@ -233,10 +240,5 @@ def _result(
         shape=tuple(len(values) for values in varied.values()),
         computed=computed,
         labels=tuple(texts),
+        function=name,
     )
-
-
-def _named(value: Any) -> Mapping[str, Any]:
-    if value is None:
-        return {}
-    return value if isinstance(value, Mapping) else {"value": value}

@@ -13,6 +13,7 @@ from beamfem.errors import InputError
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.drawing_options import ModeOptions
@@ -112,6 +113,10 @@ class Modes:
         rigid = [*self.rigid, *[""] * (len(self) - len(self.rigid))]
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
         return as_pandas(("frequency", "growth", "rigid"), rows)
+
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return frequencies and shapes along a beam, or along all beams, as an xarray.Dataset over the modes."""
+        return offered(Modes.to_xarray)(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its frequency; return the figure."""

@@ -11,6 +11,7 @@ from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
+from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.drawing_options import ModeOptions
@@ -93,6 +94,10 @@ class Buckling:
         """
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
+
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return load factors and shapes along a beam, or along all beams, as an xarray.Dataset over the points."""
+        return offered(Buckling.to_xarray)(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its load factor; return the figure."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import numbers, points, turned, unit
 from beamfem.errors import InputError
@@ -27,6 +28,8 @@ class BSpline:
     knots: tuple[float, ...]
     control_points: tuple[tuple[float, float], ...]
     weights: tuple[float, ...] | None = None
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         convert(self, count, "degree")

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import GAP, Curve, turned
 from beamfem.errors import InputError
 from beamfem.validation import fulfils, items, shown
@@ -20,6 +21,8 @@ class Chain:
     """
 
     curves: tuple[Curve, ...]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "curves", tuple(items("curves of a Chain", self.curves)))

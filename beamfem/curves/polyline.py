@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
 
@@ -17,6 +18,8 @@ class Polyline:
     """
 
     points: tuple[tuple[float, float], ...]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", points("points", self.points))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError
@@ -39,6 +40,8 @@ class LineMesh:
     cells: np.ndarray
     member_sets: Mapping[str, np.ndarray]
     point_sets: Mapping[str, np.ndarray]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         nodes, cells = (

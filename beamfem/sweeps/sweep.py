@@ -20,7 +20,9 @@ from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import flag, require_known, shown
 
-_ROWS_PRINTED = 40
+_ROWS_REPORTED = 40
+_ROWS_PRINTED = 6
+_PRINTED = 110  # characters of a failure
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 
@@ -102,15 +104,23 @@ class Sweep:
             for point, texts in zip(self.parameters, self.labels, strict=True)
         ]
 
+    @property
+    def _note(self) -> str:
+        return f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
+
     def __str__(self) -> str:
+        failed = [tabulate.cut(str(failure), _PRINTED) for failure in self.failures[:1]]
+        return "\n".join([tabulate.as_brief(*self._rows(), _ROWS_PRINTED), f"{self._note}; all by report()", *failed])
+
+    def report(self) -> str:
+        """Return the table of up to 40 points, without whole solutions, and every failure, as text."""
         header, rows = self._rows()
-        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
-        return "\n".join([tabulate.as_text(header, _shortened(rows)), note, *map(str, self.failures)])
+        table = tabulate.as_text(header, tabulate.few(rows, _ROWS_REPORTED))
+        return "\n".join([table, self._note, *map(str, self.failures)])
 
     def _repr_html_(self) -> str:
         header, rows = self._rows()
-        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
-        return f"<b>Sweep</b>{tabulate.as_html(header, _shortened(rows))}{note}"
+        return f"<b>Sweep</b>{tabulate.as_html(header, tabulate.few(rows, _ROWS_REPORTED))}{self._note}"
 
     def to_markdown(self) -> str:
         """Return the table of all points as Markdown, without whole solutions."""
@@ -155,14 +165,6 @@ class Sweep:
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write the table of all points with all digits, without whole solutions."""
         tabulate.write_csv(path, *self._rows())
-
-
-def _shortened(rows: list[list[Any]]) -> list[list[Any]]:
-    """Return the first and the last of many rows."""
-    if len(rows) <= _ROWS_PRINTED:
-        return rows
-    half = _ROWS_PRINTED // 2
-    return [*rows[:half], ["..."] * len(rows[0]), *rows[-half:]]
 
 
 @keywords_checked

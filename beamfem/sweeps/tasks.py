@@ -9,8 +9,11 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
+from beamfem.brief import brief
 from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, end_workers, open_executor, workers
+from beamfem.tabulate import cut
 
+_LONGEST = 600  # characters of a failure, whose `error` has all
 _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
 
@@ -23,8 +26,10 @@ class Failure:
     error: str
     traceback: str = field(default="", repr=False)
 
+    __repr__ = brief
+
     def __str__(self) -> str:
-        return f"failed at {self.label}: {self.error}"
+        return cut(f"failed at {self.label}: {self.error}", _LONGEST)
 
 
 class TaskRunner:

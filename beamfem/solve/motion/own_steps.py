@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
+from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.motion_steps import count_turns
 from beamfem.linalg.tangent import UNROTATED, turning
@@ -30,6 +31,8 @@ class EquationsOfMotion:
 
     system: System
     counted: np.ndarray
+
+    __repr__ = brief
 
     @property
     def free(self) -> np.ndarray:

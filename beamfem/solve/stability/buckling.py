@@ -36,6 +36,7 @@ _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move i
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
 _LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
+_SHOWN = 6  # critical points in a text
 _UNCERTAIN = 1e-4  # of a load factor: who gets less is warned
 
 
@@ -62,9 +63,10 @@ class Buckling:
     status: Status = Status.COMPLETED
 
     def __repr__(self) -> str:
-        points = zip(self.kinds, self.load_factors, strict=True)
-        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points)
-        return f"Buckling({listed or 'no critical point'}; ended because {self.ended})"
+        points = list(zip(self.kinds, self.load_factors, strict=True))
+        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points[:_SHOWN])
+        more = f" and {len(self) - _SHOWN} more" if len(self) > _SHOWN else ""
+        return f"Buckling({listed or 'no critical point'}{more}; ended because {self.ended})"
 
     def _repr_html_(self) -> str:
         return offered(Buckling._repr_html_)(self)

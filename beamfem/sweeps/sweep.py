@@ -31,7 +31,7 @@ class Sweep:
     """Results of a sweep, one row per point, the last parameter varying fastest; `sweep[name]` is an array.
 
     parameters: those of each point. values: what the function returned, None if it failed. seconds: duration of each
-    call.
+    call, without compilation; nan where there was none.
     shape: number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
     computed: number of points called in this run; the others were read from the store. function: its name.
     """
@@ -228,7 +228,7 @@ def _result(
     computed: int,
     name: str,
 ) -> Sweep:
-    outcomes = [outcome or Outcome(error=_NOT_REACHED) for outcome in found]
+    outcomes = [outcome or Outcome(seconds=np.nan, error=_NOT_REACHED) for outcome in found]
     failures = tuple(
         Failure(point, assignments(text), outcome.error, outcome.traceback)
         for point, text, outcome in zip(points, texts, outcomes, strict=True)

@@ -2,6 +2,7 @@
 
 import math
 import os
+import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
@@ -107,13 +108,17 @@ class TaskRunner:
 
     def _alone(self, point: Point) -> Outcome:
         """Run a suspect point alone, so that the death of its worker can be attributed to it."""
+        begun = time.perf_counter()
         try:
-            return self._submit(self._open(1), [point]).result()[0]
+            executor = self._open(1)
+            begun = time.perf_counter()  # workers need a second to start
+            return self._submit(executor, [point]).result()[0]
         except BrokenExecutor:
             self._close()
-            return Outcome(error="WorkerDied: the worker process ended in this call, which ran alone")
-        except Exception as error:
-            return Outcome(error=f"{type(error).__name__}: {error}")
+            error = "WorkerDied: the worker process ended in this call, which ran alone"
+        except Exception as raised:
+            error = f"{type(raised).__name__}: {raised}"
+        return Outcome(seconds=time.perf_counter() - begun, error=error)
 
     def _submit(self, executor: Executor, points: list[Point]) -> "Future[list[Outcome]]":
         self._attempt += 1

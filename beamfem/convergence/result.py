@@ -46,6 +46,7 @@ class Convergence:
 
     @property
     def error_name(self) -> str:
+        """What the errors are: relative, or not where a limit is zero."""
         return "relative error" if all(curve.relative for curve in self.curves) else "error"
 
     @property
@@ -85,6 +86,7 @@ class Convergence:
 
     @property
     def title(self) -> str:
+        """What the study is of, in words."""
         return f"Convergence of {self.quantity} over {self.refine}"
 
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:

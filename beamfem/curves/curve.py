@@ -26,14 +26,18 @@ class Curve(Protocol):
     """
 
     @property
-    def length(self) -> float: ...
+    def length(self) -> float:
+        """Length [m]."""
 
     @property
-    def corners(self) -> tuple[float, ...]: ...
+    def corners(self) -> tuple[float, ...]:
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
 
-    def position(self, arc_length: np.ndarray) -> np.ndarray: ...
+    def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
 
-    def tangent(self, arc_length: np.ndarray) -> np.ndarray: ...
+    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

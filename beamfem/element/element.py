@@ -70,6 +70,7 @@ class Element:
 
     @property
     def coordinates_per_node(self) -> int:
+        """Number of coordinates of a node."""
         return len(labels(self.coordinates.code, self.field.vectors))
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:

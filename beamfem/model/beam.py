@@ -132,10 +132,12 @@ class Beam:
 
     @property
     def start(self) -> "Point":
+        """The point at the start of the axis, fraction 0."""
         return Point(self, 0.0)
 
     @property
     def end(self) -> "Point":
+        """The point at the end of the axis, fraction 1."""
         return Point(self, 1.0)
 
 

@@ -36,10 +36,12 @@ class EquationsOfMotion:
 
     @property
     def free(self) -> np.ndarray:
+        """Numbers (unknown,) of the unknown coordinates among all."""
         return self.system.free_dofs
 
     @property
     def scale(self) -> np.ndarray:
+        """What a correction of each unknown coordinate is measured by (unknown,)."""
         return self.system.scale[self.system.free_dofs]
 
     def residual(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:

@@ -104,3 +104,12 @@ def test_options_of_drawings_are_in_signature_and_help(method):
     assert not [each for each in listed if each.kind == each.VAR_KEYWORD]
     assert any(each.kind == each.KEYWORD_ONLY and each.default is not each.empty for each in listed)
     assert "Options" not in str(inspect.signature(method))
+
+
+def test_warnings_name_the_line_that_called_the_package():
+    """However deep inside the package they arise."""
+    column = bf.Beam(bf.Line((0, 0), (0, 1)), 4, bf.CRBF(3), bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0))
+    loads = [bf.PointForce(column.end, (0, -1000.0))]
+    with pytest.warns(bf.UnstableWarning) as caught:
+        bf.solve_static(bf.Model([column], supports=[bf.Clamp(column.start)], loads=loads), steps=3)
+    assert {warning.filename for warning in caught} == {__file__}

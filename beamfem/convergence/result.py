@@ -149,7 +149,7 @@ class Convergence:
         tabulate.write_csv(path, *self.points())
 
     def to_pandas(self) -> Any:
-        """Return the table of points as a pandas.DataFrame. Raises MissingPackageError."""
+        """Return the table of points, without whole solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self.points())
 
     def to_xarray(self) -> Any:

@@ -16,6 +16,32 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 >>> solution = bf.solve_static(model)
 >>> round(float(solution.displacement(beam.end)[-1, 1]), 4)
 -0.0305
+
+What there is; help(bf.Beam) and the like say more of each.
+
+    Model             Model Beam Point Material graded
+    Axes              Line Arc Polyline Chain BSpline Parametric Curve
+                      elliptic_arc spline_through_hermite without_removable_knots
+    Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
+    Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
+    parts of them     Cubic Lagrange Gradients Rotation ShearFree
+                      ContinuumMechanics SplitContinuum ElasticLine Structural
+    Supports          Clamp Pin Roller Spring Foundation Prescribed
+    Joints            Rigid Hinge
+    Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
+    over time         Interpolated Piecewise
+    From files        read_mesh LineMesh Frame read_dxf load
+    Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
+    their settings    Newton GeneralizedAlpha RigidVelocity
+    Results           Solution State Path PathState Bifurcation Modes Buckling Status
+    along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
+    Studies           sweep converge
+    Parts of your own PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
+                      Contribution At Remembering RememberingLaw Integrator EquationsOfMotion
+    Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
+                      LimitPointError FileError MissingPackageError
+    Warnings          UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning
+                      NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """
 
 import sys
@@ -109,6 +135,7 @@ __all__ = [
     "Section",
     "SectionForces",
     "SectionLaw",
+    "SeveralTurnsWarning",
     "ShearFree",
     "ShearRigid",
     "Solution",
@@ -150,4 +177,10 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
+    """Return what is public; nothing to help(), which has it by theme above, and would add 6000 lines on all of it."""
+    frame = sys._getframe(1) if "pydoc" in sys.modules else None
+    while frame is not None:
+        if frame.f_globals.get("__name__") == "pydoc":
+            return []
+        frame = frame.f_back
     return [*__all__]

@@ -8,13 +8,16 @@ import numpy as np
 
 from beamfem.validation import shown
 
-_FEW = 4  # numbers that are shown themselves
+_FEW = 4  # items that are shown themselves
+_LONG = 200  # characters of what is in a field
+_LONGEST = 700  # characters of everything
 
 
 def brief(item: Any) -> str:
     """Return a dataclass with its fields: arrays by their shape and range, long sequences by their length."""
     parts = (f"{field.name}={_shown(getattr(item, field.name))}" for field in fields(item) if field.repr)
-    return f"{type(item).__name__}({', '.join(parts)})"
+    said = f"{type(item).__name__}({', '.join(parts)})"
+    return said if len(said) <= _LONGEST else f"{said[:_LONGEST]}...)"
 
 
 def _shown(value: Any) -> str:
@@ -26,7 +29,9 @@ def _shown(value: Any) -> str:
         return np.array2string(value, precision=6, separator=", ").replace("\n", "")
     if isinstance(value, tuple | list):
         one = "," if len(value) == 1 else ""
-        return f"<{len(value)} items>" if len(value) > _FEW else f"({', '.join(map(_shown, value))}{one})"
+        said = f"({', '.join(map(_shown, value[:_FEW]))}{one})"
+        return f"<{len(value)} items>" if len(value) > _FEW or len(said) > _LONG else said
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{key!r}: {_shown(own)}' for key, own in value.items())}}}"
+        said = f"{{{', '.join(f'{key!r}: {_shown(value[key])}' for key in list(value)[:_FEW])}}}"
+        return f"<{len(value)} entries>" if len(value) > _FEW or len(said) > _LONG else said
     return shown(value).replace("\n", " ")

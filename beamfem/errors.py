@@ -1,5 +1,7 @@
 """What can go wrong, by name. Every message says what is wrong, where, and what would be right."""
 
+import sys
+import warnings
 from typing import Any
 
 
@@ -9,6 +11,10 @@ class BeamfemError(Exception):
 
 class InputError(BeamfemError, ValueError):
     """A value that cannot describe a beam: wrong shape, not finite, negative where it must be positive."""
+
+
+class UnknownKeywordError(InputError, TypeError):
+    """A keyword that a function, a class or a method does not have."""
 
 
 class UnknownPointError(InputError):
@@ -85,9 +91,21 @@ class NotJoinedWarning(UserWarning):
     """Lines of a mesh end close to others without being joined to them."""
 
 
+class SeveralTurnsWarning(UserWarning):
+    """An arc of more than one full turn, whose angles may be degrees; the filter of `warnings` silences it."""
+
+
 class NotReadWarning(UserWarning):
     """A mesh file holds more than lines and sets, such as sections, materials or supports, which are not taken over."""
 
 
 class UnknownStressWarning(UserWarning):
     """Sections of some beams do not tell their shape, so that the stress there is nan or left out of a file."""
+
+
+def warn(message: str, kind: type[Warning] = UserWarning) -> None:
+    """Warn of the line outside the package that led here, however deep inside of it this is."""
+    frame, level = sys._getframe(), 1
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, kind, stacklevel=level)

@@ -2,6 +2,7 @@
 
 from beamfem import view as view  # offers plot() and the like on results, and imports what draws at the first call
 from beamfem.assembly.rigid_velocity import RigidVelocity
+from beamfem.convergence.result import Convergence as _Convergence
 from beamfem.convergence.study import converge
 from beamfem.curves import (
     Arc,
@@ -32,6 +33,7 @@ from beamfem.errors import (
     NotReadWarning,
     NotStoredWarning,
     RoundOffWarning,
+    SeveralTurnsWarning,
     UnknownPointError,
     UnknownStressWarning,
     UnstableWarning,
@@ -40,6 +42,7 @@ from beamfem.io.cad import read_dxf
 from beamfem.io.frame import Frame
 from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.io.results import load
+from beamfem.keywords import check_classes as _check_classes
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import At, Contribution, Remembering
@@ -67,4 +70,7 @@ from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling, solve_buckling
 from beamfem.solve.statics.statics import solve_static
+from beamfem.sweeps.sweep import Sweep as _Sweep
 from beamfem.sweeps.sweep import sweep
+
+_check_classes(list(vars().values()))

@@ -7,12 +7,11 @@ upper room says in its `__init__` with `offer` which function that is, which is 
 from collections.abc import Callable
 from functools import wraps
 from importlib import import_module
-from inspect import signature
+from inspect import signature, unwrap
 from typing import Any
 
-from beamfem.errors import InputError
 from beamfem.extras import needed_for
-from beamfem.validation import nearest
+from beamfem.keywords import require_keywords, with_options_listed
 
 _FUNCTIONS: dict[Callable[..., Any], str] = {}
 
@@ -20,9 +19,10 @@ _FUNCTIONS: dict[Callable[..., Any], str] = {}
 def offer(method: Callable[..., Any], function: str) -> None:
     """Say which function "module:name" does what a method of a lower room declares; its docstring names it then.
 
-    The function takes the object and what the method takes.
+    The function takes the object and what the method takes. Help and completion list the options of the method.
     """
     _FUNCTIONS[method] = function
+    method.__signature__ = with_options_listed(signature(method))  # type: ignore[attr-defined]
     if method.__doc__:
         first, *further = method.__doc__.split("\n\n", 1)
         method.__doc__ = "\n\n".join([f"{first} See `{function.replace(':', '.')}`.", *further])
@@ -33,6 +33,7 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
 
     What is returned raises InputError for an option that the function has not, with what it may have meant.
     """
+    method = unwrap(method)  # its keywords are checked
     if method not in _FUNCTIONS:
         import_module("beamfem.public")  # an object may come from another process before anything else is imported
     if method not in _FUNCTIONS:
@@ -44,9 +45,7 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(function)
     def call(*arguments: Any, **options: Any) -> Any:
-        for option in options:
-            if option not in known:
-                raise InputError(f"{method.__name__} has no option {option!r}; {nearest(option, known)}")
+        require_keywords(method.__qualname__, options, known)
         with needed_for(method.__name__):
             return function(*arguments, **options)
 

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 Rows = Sequence[Sequence[Any]]
 
+_WIDTH = 76  # characters of a table that shows itself at a prompt
+_CUT = 24  # of a cell there
+_LEAST = 12  # of the last column there
+
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what a spreadsheet takes for the begin of a formula
 
 
@@ -39,16 +43,54 @@ def cells(rows: Rows) -> list[list[str]]:
 def as_text(header: Sequence[str], rows: Rows, title: str = "") -> str:
     """Return a table with frames and the width of the terminal, or plain and as wide as it needs to be in a pipe."""
     from rich import box  # slow to import
-    from rich.console import Console
     from rich.text import Text
 
     terminal = sys.stdout.isatty()
     table = _table(header, rows, box.ROUNDED if terminal else box.SIMPLE_HEAD if _unicode() else box.ASCII2)
     table.title, table.title_justify = Text(title) if title else None, "left"  # [m] is no markup
+    return _printed(table, terminal)
+
+
+def _printed(table: "Table", terminal: bool = False) -> str:
+    """Return a table as text; a pipe has no width, so that nothing is cut there."""
+    from rich.console import Console  # slow to import
+
     out = StringIO()
-    # a pipe has no width: nothing is cut there
     Console(file=out, force_terminal=terminal, width=None if terminal else 10_000, legacy_windows=False).print(table)
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()).strip("\n")
+
+
+def as_brief(header: Sequence[str], rows: Rows, most: int) -> str:
+    """Return a plain table for a prompt: at most `most` rows, cut texts, no columns for which there is no room.
+
+    The last column has the room that the others leave.
+    """
+    from rich import box  # slow to import
+
+    lines = [[*(cut(text, _CUT) for text in line[:-1]), line[-1]] for line in [list(header), *cells(few(rows, most))]]
+    ends = np.cumsum([1 + 2 + max(map(len, column)) for column in zip(*lines, strict=True)])
+    room = _WIDTH - 3 - int(ends[-2]) if len(ends) > 1 else _WIDTH
+    if room >= _LEAST:
+        lines = [[*line[:-1], cut(line[-1], room)] for line in lines]
+    else:
+        fitting = max(1, int(np.sum(ends <= _WIDTH - 6)))
+        lines = [[*line[:fitting], "..."] for line in lines]
+    return _printed(_table(lines[0], lines[1:], box.SIMPLE_HEAD if _unicode() else box.ASCII2))
+
+
+def few(rows: Rows, most: int) -> list[list[Any]]:
+    """Return the first and the last of many rows, "..." between them."""
+    listed = [list(row) for row in rows]
+    if len(listed) <= most:
+        return listed
+    last = (most - 1) // 2
+    return [*listed[: most - 1 - last], ["..."] * len(listed[0]), *listed[-last:]]
+
+
+def cut(text: str, size: int) -> str:
+    """Return a text in one line of at most so many characters."""
+    line = " ".join(text.split())
+    return line if len(line) <= size else f"{line[: size - 3]}..."
 
 
 def as_markdown(header: Sequence[str], rows: Rows) -> str:

@@ -17,6 +17,6 @@ def deflection(load: float, slenderness: float) -> float:
 
 if __name__ == "__main__":  # needed where executor=concurrent.futures.ProcessPoolExecutor is added
     table = bf.sweep(deflection, load=[1.0, 2.0, 5.0], slenderness=[10.0, 100.0], store="out/examples/sweep")
-    for load, slenderness, value in zip(table["load"], table["slenderness"], table["value"], strict=True):
+    for load, slenderness, value in zip(table["load"], table["slenderness"], table["deflection"], strict=True):
         print(f"P L^2/EI = {load:g}, L/h = {slenderness:g}: v/L = {value:.6f}")
     table.to_csv("out/examples/sweep.csv")

@@ -264,6 +264,7 @@ MAGNITUDES = {
 TABLE = CURVES | SECTIONS | ELEMENTS | BEAMS | MAGNITUDES
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.errors.SeveralTurnsWarning")
 @pytest.mark.parametrize("case", TABLE)
 def test_bad_geometry_is_named(case):
     require_named(*TABLE[case])

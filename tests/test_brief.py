@@ -34,9 +34,89 @@ def results():
     }
 
 
-def test_every_result_shows_itself_in_ten_lines_at_most(results):
-    lengths = {name: (repr(one).count("\n") + 1, len(repr(one))) for name, one in results.items()}
-    assert all(lines <= 10 and characters <= 1200 for lines, characters in lengths.values()), lengths
+LONG = [(float(i), float(i % 2)) for i in range(300)]
+STEEL = bf.Material(2e11, 0.3, 7800.0, thermal_expansion=1e-5)
+
+
+def curve_of(elements, load, order=2.0):
+    if load == 3.0:
+        raise ValueError("much to say about it, " * 50)
+    return {"a name that is rather long " * 2: load + elements**-order, **{f"other {i}": 1e-9 / 3 for i in range(30)}}
+
+
+@pytest.fixture(scope="module")
+def large():
+    polyline, function = bf.Polyline(LONG), lambda t: np.interp(t, *np.array(LONG).T)
+    arcs = [bf.elliptic_arc((0, 0), (1, 0), (0, 1), 0.3 * i, 0.3 * (i + 1)) for i in range(15)]
+    nodes = np.array(LONG)
+    cells = np.column_stack([np.arange(299), np.arange(1, 300), np.full(299, -1)])
+    sets = {f"a set with a long name of number {i}": np.arange(100) for i in range(60)}
+    mesh = bf.LineMesh(nodes, cells, sets, sets)
+    section = bf.Layered([bf.Layer(STEEL, 0.01) for _ in range(60)], 0.1)
+    beam = bf.Beam(polyline, np.linspace(0.0, 1.0, 300), bf.CRBF(2), bf.Rectangle(0.1, 0.1), STEEL)
+    own = bf.Interpolated(LONG)
+    others = [
+        *(bf.Prescribed(beam.start, own, own, own), bf.Foundation(beam, (1.0, 2.0)), bf.Clamp(beam.start)),
+        *(bf.PointForce(beam.end, (1.0, 2.0), own), bf.PointMoment(beam.end, 1.0, own), bf.Gravity((0.0, 1.0), own)),
+        *(bf.DistributedLoad(beam, (1.0, 2.0), own), bf.Pressure(beam, own), bf.Actuation(beam, own, own, own, own)),
+        *(bf.Temperature(beam, own, own, own), bf.Rigid(beam.start, beam.end), bf.Hinge(beam.start, beam.end)),
+        *(bf.Roller(beam.start), bf.Spring(beam.start, (1.0, 2.0)), bf.RigidVelocity((1.0, 2.0), 3.0)),
+    ]
+    straight = bf.Beam(bf.Line((0, 0), (1, 0)), 100, bf.CRBF(2), section)
+    model = bf.Model([straight], [bf.Clamp(straight.start)])
+    varied = {"elements": [2, 4, 8, 16, 32, 64], "load": np.linspace(1.0, 9.0, 33).tolist()}
+    study = bf.converge(curve_of, "a name that is rather long " * 2, refine="elements", **varied)
+    one = bf.converge(
+        curve_of, "a name that is rather long " * 2, refine="elements", elements=[2, 4, 8, 16, 32, 64], load=[2.0]
+    )
+    failed = bf.converge(curve_of, "other 0", refine="elements", elements=[2, 4], load=[3.0])
+    vectors = np.ones((300, 3))
+    return [
+        *(
+            polyline,
+            own,
+            bf.Piecewise(function, [x for x, _ in LONG]),
+            section,
+            mesh,
+            beam,
+            beam.end,
+            straight,
+            *others,
+        ),
+        *(
+            bf.Parametric(lambda u: (u, u * u), 0.0, 1.0),
+            arcs[0],
+            bf.elliptic_arc((0, 0), (1, 0), (0, 1), 0.0, 6.0),
+            bf.Chain(arcs),
+            bf.Chain(arcs[:3]),
+        ),
+        *(mesh.frame(1, bf.CRBF(1), bf.Rectangle(0.1, 0.1), STEEL), model),
+        *(study, one, failed, study.curves[0], study.failures[0], bf.sweep(curve_of, **varied)),
+        *(bf.At(*[vectors] * 6, 0.0, vectors[0]), bf.solve_modes(model, 60), bf.Newton(), bf.GeneralizedAlpha()),
+        *(bf.CRBF(2), bf.ANCF(), STEEL, bf.Rectangle(0.1, 0.1), bf.Section.from_stiffness(1.0, 1.0, 1.0, 1.0, 1.0)),
+    ]
+
+
+def test_everything_shows_itself_in_ten_lines_and_800_characters_at_most(large, results):
+    for one in (*large, *results.values()):
+        for text in (repr(one), str(one)):
+            said = f"{type(one).__name__}: {len(text)} characters"
+            assert (text.count("\n") + 1 <= 10, len(text) < 800) == (True, True), f"{said}: {text}"
+
+
+def test_what_is_printed_of_studies_and_sweeps_is_their_first_and_last(large):
+    (long,) = [one for one in large if type(one).__name__ == "Sweep"]
+    lines = str(long).splitlines()
+    assert lines[2].split()[:2] == ["2", "1"]
+    assert lines[-3].split()[:2] == ["64", "9"]
+    assert lines[-2].startswith("198 points, 198 computed now, 6 failed")
+    assert lines[-1].startswith("failed at elements=2, load=3: ValueError")
+    assert long.report().count("\n") > 40
+    study = bf.converge(lambda n: 1.0 + n**-2.0, refine="n", n=[2, 4, 8, 16])
+    assert str(study).splitlines()[0] == "Convergence of value over n: 1 curve of 4 points, 0 failed; all by report()"
+    assert "order 2.000" in str(study)
+    assert "GCI: grid convergence index" in study.report()
+    assert repr(study) == "Convergence(value over n: 1 curve of 4 points, 0 failed)"
 
 
 def test_arrays_are_shown_by_shape_and_range(results):

@@ -126,7 +126,7 @@ def test_round_off_and_coarse_points_are_left_out():
 def test_a_reference_that_is_not_the_limit_is_told():
     study = bf.converge(power, quantity="value", refine="elements", elements=[8, 16, 32], reference=LIMIT + 0.5)
     assert study.curves[0].fit is None
-    assert "may not be the limit" in str(study)
+    assert "may not be the limit" in study.report()
 
 
 def test_until_refines_each_curve_as_far_as_it_must():
@@ -164,14 +164,14 @@ def test_failures_are_named_and_the_others_go_on():
     assert "WorkerDied" in dead.error
     assert str(failed) == "failed at order=2, elements=8: ConvergenceError: no equilibrium found"
     assert not_a_number.error == "the value is nan, not a finite number"
-    assert str(failed) in str(study)
+    assert str(failed) in study.report()
     assert "ConvergenceError" in study.to_markdown()
 
 
 def test_nothing_but_failures_is_shown_too(tmp_path):
     study = bf.converge(failing, refine="elements", elements=[8], order=[2])
     assert study.curves == ()
-    assert "no equilibrium found" in str(study)
+    assert "no equilibrium found" in study.report()
     assert "no equilibrium found" in study.to_html(tmp_path / "page.html").read_text()
 
 
@@ -189,7 +189,7 @@ def test_table_csv_markdown_picture_and_page(tmp_path):
     assert len(rows) == 9
     assert float(rows[2]["tip"]) == study.curves[0].value[2]
     assert float(rows[8]["order"]) == pytest.approx(2.0, abs=1e-6)
-    text, markdown = str(study), study.to_markdown()
+    text, markdown = study.report(), study.to_markdown()
     for name in [*names, *header, "2.000"]:
         assert name in text
         assert name in markdown

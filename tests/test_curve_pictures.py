@@ -54,9 +54,9 @@ def test_what_is_no_quantity_is_refused(x, said):
 
 def test_an_option_that_is_misspelt_is_named_with_the_right_one():
     solution = bf.solve_static(PUSHED)
-    with pytest.raises(bf.InputError, match="plot has no option 'color'; did you mean colour"):
+    with pytest.raises(bf.InputError, match=r"Solution\.plot has no parameter 'color'; did you mean colour"):
         solution.plot(color="moment")
-    with pytest.raises(bf.InputError, match="animate has no option 'fsp'"):
+    with pytest.raises(bf.InputError, match="animate has no parameter 'fsp'"):
         solution.animate("film.gif", fsp=3)
 
 

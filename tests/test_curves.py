@@ -22,16 +22,18 @@ from beamfem.curves import (
     spline_through_hermite,
     without_removable_knots,
 )
-from beamfem.errors import InputError
+from beamfem.errors import InputError, SeveralTurnsWarning
 
 QUARTER = BSpline(2, (0, 0, 0, 1, 1, 1), ((2, 0), (2, 2), (0, 2)), (1, math.sqrt(0.5), 1))
 WAVE = BSpline(3, (0, 0, 0, 0, 0.2, 0.7, 1, 1, 1, 1), ((0, 0), (1, 2), (2, -1), (3, 1), (4, 0), (5, 1)))
 UNCLAMPED = BSpline(3, (-3, -2.5, -1, 0, 1, 1.5, 3, 4, 5), ((0, 0), (1, 2), (2, -1), (3, 1), (4, 0)))
 ANGULAR = BSpline(2, (0, 0, 0, 0.5, 0.5, 1, 1, 1), ((0, 0), (1, 0), (1, 1), (2, 1), (2, 3)))
+with pytest.warns(SeveralTurnsWarning):
+    COIL = Arc((1, 2), 0.7, 0.3, -13.0)
 CURVES = {
     "line": Line((1, 2), (4, -2)),
     "arc": Arc((1, 2), 0.7, 0.3, 4.0),
-    "clockwise arc of two turns": Arc((1, 2), 0.7, 0.3, -13.0),
+    "clockwise arc of two turns": COIL,
     "polyline": Polyline(((0, 0), (1, 0), (2, 0), (2, 3))),
     "wave": WAVE,
     "unclamped": UNCLAMPED,
@@ -74,6 +76,7 @@ def test_the_tangent_is_the_derivative_by_arc_length(curve):
     assert np.abs(np.hypot(*rate.T) - 1.0).max() < 2e-11
 
 
+@pytest.mark.filterwarnings("ignore::beamfem.errors.SeveralTurnsWarning")
 def test_saved_members_make_the_same_curve(curve):
     if isinstance(curve, Parametric):
         curve = curve.spline()
@@ -89,11 +92,31 @@ def test_questions_without_points_have_answers_without_points(curve):
 
 
 def test_full_turns_of_an_arc():
-    arc = Arc((1.0, 2.0), 0.5, np.pi / 2, -5 * np.pi)
+    with pytest.warns(SeveralTurnsWarning):
+        arc = Arc((1.0, 2.0), 0.5, np.pi / 2, -5 * np.pi)
     assert arc.length == pytest.approx(0.5 * 5.5 * np.pi, rel=1e-15)
     quarter = 0.25 * np.pi
     assert np.allclose(arc.position(np.array([0.0, quarter, 9 * quarter])), [(1, 2.5), (1.5, 2), (1.5, 2)], atol=1e-15)
     assert np.allclose(arc.tangent(np.array([0.0, quarter])), [(1, 0), (0, -1)], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("make", "what"),
+    [
+        (lambda turn: Arc((0, 0), 1, 0, turn), "arc"),
+        (lambda turn: Arc((0, 0), 1, end_angle=0, start_angle=turn), "arc"),
+        (lambda turn: elliptic_arc((0, 0), (1, 0), (0, 2), 0, turn), "elliptic arc"),
+    ],
+)
+def test_degrees_in_place_of_radians_are_warned_of(make, what):
+    with pytest.warns(SeveralTurnsWarning) as caught:
+        make(90)
+    (warning,) = caught
+    said = "turns by 90 rad, more than one full turn; angles are in radians: for 90 degrees give np.radians(90)"
+    assert str(warning.message) == f"the {what} {said}"
+    assert warning.filename == __file__
+    make(2 * np.pi)  # a whole turn, and one by sums with round-off, are none
+    make(sum([0.1 * np.pi] * 20))
 
 
 def test_quarter_circle_as_a_rational_spline_is_the_arc():

@@ -146,6 +146,8 @@ NO_KEY = {
     "Solution.time": "printed beside what outputs ask for",
     "Solution.load_factor": "printed beside what outputs ask for",
     "Modes.to_pandas": "printed, and with --json for programs",
+    "Modes.to_xarray": "arrays for a program to go on with",
+    "Buckling.to_xarray": "arrays for a program to go on with",
     "Modes.elastic": "numbers that the printed table has",
     "Modes.status": "as Status",
     "Modes.warnings": "printed after every solve",
@@ -175,15 +177,16 @@ def public() -> dict[str, object]:
     found = {name: getattr(bf, name) for name in bf.__all__}
     found = {name: item for name, item in found.items() if not (inspect.isclass(item) and issubclass(item, Exception))}
     for kind in (bf.Model, bf.Solution, bf.Modes, bf.Buckling, bf.LineMesh):
-        own = {name: item for name, item in vars(kind).items() if name[0] != "_" and name not in kind.__annotations__}
+        parts = {name: item for base in kind.__mro__[-2::-1] for name, item in vars(base).items()}
+        own = {name: item for name, item in parts.items() if name[0] != "_" and name not in kind.__annotations__}
         found |= {f"{kind.__name__}.{name}": item for name, item in own.items()}
     return found
 
 
 def parameters(item: object) -> dict[str, inspect.Parameter]:
     """Return what a public function or method takes, that of an upper room where it does the work."""
-    if item in registry._FUNCTIONS:
-        module, name = registry._FUNCTIONS[item].split(":")
+    if (declared := inspect.unwrap(item)) in registry._FUNCTIONS:
+        module, name = registry._FUNCTIONS[declared].split(":")
         return dict(list(inspect.signature(getattr(import_module(module), name)).parameters.items())[1:])
     return dict(inspect.signature(item).parameters)
 

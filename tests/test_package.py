@@ -1,15 +1,21 @@
 """What importing costs, and that the studies run."""
 
 import copy
+import inspect
 import pickle
+import pydoc
+import re
 import subprocess
 import sys
+from functools import cached_property
 
 import numpy as np
 import pytest
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 import beamfem as bf
+from beamfem.convergence.result import Convergence
+from beamfem.sweeps.sweep import Sweep
 from beamfem.view.page import Part, write_page
 from studies import all as main_job
 from studies.paper import pendulum, pendulum_figures, pendulum_page
@@ -42,6 +48,31 @@ def test_every_public_name_is_there_in_a_fresh_process():
     names = run("from beamfem import *; import beamfem; print(all(name in globals() for name in beamfem.__all__))")
     assert names == "True"
     assert all(getattr(bf, name).__doc__ for name in bf.__all__)
+
+
+def test_help_of_the_package_is_a_page_that_lists_every_public_name_once():
+    page = pydoc.render_doc(bf, renderer=pydoc.plaintext)
+    assert page.count("\n") < 110
+    assert page.index("solve_static") < page.index("PACKAGE CONTENTS")
+    table = bf.__doc__.partition("say more of each.")[2]
+    assert sorted(re.findall(r"\b[A-Za-z_]+\b", re.sub(r"(?m)^    .{18}", "", table))) == sorted(bf.__all__)
+    assert max(map(len, bf.__doc__.splitlines())) <= 120
+    assert "solve_static" in dir(bf)
+
+
+def test_every_public_member_has_a_docstring():
+    kinds = [kind for name in bf.__all__ if inspect.isclass(kind := getattr(bf, name))]
+    missing = []
+    for kind in (*kinds, Convergence, Sweep):
+        for name in dir(kind):
+            owner = next((own for own in kind.__mro__ if name in vars(own)), object)
+            item = vars(owner).get(name)
+            asked = inspect.isfunction(item) or isinstance(
+                item, property | cached_property | staticmethod | classmethod
+            )
+            if name[0] != "_" and owner.__module__.startswith("beamfem") and asked and not item.__doc__:
+                missing.append(f"{owner.__qualname__}.{name}")
+    assert missing == []
 
 
 def test_a_name_that_is_not_there_is_named():

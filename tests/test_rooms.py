@@ -49,6 +49,7 @@ ROOMS = (
     "memory",
     "quadrature",
     "registry",
+    "keywords",
     "units",
     "validation",
     "extras",
@@ -155,8 +156,10 @@ def test_functions_that_are_offered_take_what_their_method_takes(method):
     module, name = registry._FUNCTIONS[method].split(":")
     assert callable(getattr(import_module(module), name))
     taken = list(inspect.signature(registry.offered(method)).parameters.values())[1:]
-    named = [each for each in list(inspect.signature(method).parameters.values())[1:] if each.kind != each.VAR_KEYWORD]
-    assert [(each.name, each.default) for each in taken[: len(named)]] == [(e.name, e.default) for e in named]
+    listed = list(inspect.signature(method).parameters.values())[1:]
+    places = [each.name for each in listed if each.kind == each.POSITIONAL_OR_KEYWORD]
+    assert [each.name for each in taken[: len(places)]] == places
+    assert {each.name: each.default for each in listed} == {each.name: each.default for each in taken}
 
 
 def test_a_method_that_no_room_offers_says_so():

@@ -87,7 +87,7 @@ def test_a_dead_worker_costs_one_point():
     assert failure.parameters == {"x": 7}
     assert "WorkerDied" in str(failure)
     assert "x=7" in str(failure)
-    assert np.isnan(found["value"][7])
+    assert np.isnan(found["deadly"][7])
 
 
 @pytest.mark.slow
@@ -163,7 +163,7 @@ def test_store_of_a_killed_run_is_read(tmp_path):
 
         if __name__ == "__main__":
             found = bf.sweep(square, x=range(8), store="store.jsonl")
-            print(found.computed, found["value"].tolist())
+            print(found.computed, found["square"].tolist())
         """)
     )
     run = partial(subprocess.run, cwd=tmp_path, capture_output=True, text=True)

@@ -32,7 +32,7 @@ def stiffness(height):
 
 if __name__ == "__main__":
     found = bf.sweep(stiffness, height=[0.1, 0.2], store="store")
-    print(found.computed, found["value"].tolist())
+    print(found.computed, found["stiffness"].tolist())
 """
 
 

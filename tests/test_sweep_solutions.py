@@ -63,7 +63,7 @@ def test_a_store_keeps_solutions_as_files_and_computes_again_what_is_lost(tmp_pa
         first = bf.sweep(function, force=[1.0, 2.0], store=store)
         again = bf.sweep(function, force=[1.0, 2.0], store=store)
         assert (first.computed, again.computed) == (2, 0)
-        column = "solution" if function is named else "value"
+        column = "solution" if function is named else "whole"
         for number in (0, 1):
             require_same(again[column][number], first[column][number])
     files = sorted((tmp_path / "sweep").glob("*.h5"))

@@ -30,6 +30,7 @@ def test_a_table_of_a_motion_has_the_values_of_its_points():
         **dict.fromkeys(("rotation", "shear_angle"), "rad"),
         **dict.fromkeys(("normal", "shear"), "N"),
         **dict.fromkeys(("kinetic_energy", "strain_energy", "potential_energy"), "J"),
+        **{f"stress_{name}": "Pa" for name in ("lower", "upper", "shear", "von_mises")},
         "moment": "N m",
         "axial_strain": "1",
         "beam": "1",

@@ -55,7 +55,7 @@ def run_sweep(
     elif not quiet:
         print(job.title)
         print(f"{job.kind}: {seconds:.2f} s")
-        print(found)
+        print(found.report())
         for path in written:
             print(f"wrote {path}")
     if found.failures:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.convergence.extrapolation import Extrapolation, extrapolate
 from beamfem.convergence.orders import (
     OrderFit,
@@ -47,6 +48,8 @@ class Curve:
     texts: Mapping[str, str] = field(default_factory=dict)
     others: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
     seconds: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    __repr__ = brief
 
 
 def judge(

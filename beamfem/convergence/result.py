@@ -11,6 +11,7 @@ import numpy as np
 
 from beamfem import tabulate
 from beamfem.convergence.curve import Curve
+from beamfem.sweeps.parameters import is_solution
 from beamfem.sweeps.tasks import Failure
 from beamfem.validation import flag
 
@@ -22,6 +23,10 @@ EXPLANATION = (
     "the relative error that needs no reference but takes the order of three values as it is. Estimated error: of the "
     "finest value; it trusts an order only where four values agree on it, else it is the change between levels."
 )
+
+_ROWS_PRINTED = 5
+_LEFT_OUT = (2, 3)  # columns of the summary, where several curves are printed: how their orders were found
+_PRINTED = 110  # characters of a sentence
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +58,36 @@ class Convergence:
 
     @property
     def error_name(self) -> str:
+        """What the errors are: relative, or not where a limit is zero."""
         return "relative error" if all(curve.relative for curve in self.curves) else "error"
 
+    @property
+    def _counted(self) -> str:
+        points = sum(len(curve.refinement) for curve in self.curves)
+        curves = "1 curve" if len(self.curves) == 1 else f"{len(self.curves)} curves"
+        return f"{curves} of {points} points, {len(self.failures)} failed"
+
+    def __repr__(self) -> str:
+        return f"Convergence({self.quantity} over {self.refine}: {self._counted})"
+
     def __str__(self) -> str:
+        failed = [tabulate.cut(str(failure), _PRINTED) for failure in self.failures[:1]]
+        header, rows = self.summary()
+        said: list[str] = []
+        if len(self.curves) == 1:
+            _, order, band, over, *about = rows[0]
+            found = f"order {' '.join([order, band]).strip()} over {over}" if order else "no order"
+            limit, error, remark = about
+            said = [tabulate.cut(f"{found}, limit {limit}, estimated error {error or 'not known'}; {remark}", _PRINTED)]
+            table = self.points(rounded=True)
+        else:
+            lines = [[text for i, text in enumerate(line) if i not in _LEFT_OUT] for line in (header, *rows)]
+            table = lines[0], lines[1:]
+        title = tabulate.cut(f"{self.title}: {self._counted}; all by report()", _PRINTED)
+        return "\n".join([title, tabulate.as_brief(*table, _ROWS_PRINTED), *said, *failed])
+
+    def report(self) -> str:
+        """Return the tables of all points and curves, what their columns mean, and every failure, as text."""
         points = tabulate.as_text(*self.points(rounded=True), title=self.title)
         curves = tabulate.as_text(*self.summary())
         return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])
@@ -66,15 +98,19 @@ class Convergence:
 
     @property
     def title(self) -> str:
+        """What the study is of, in words."""
         return f"Convergence of {self.quantity} over {self.refine}"
 
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
         """Return header and rows, one per point: parameters, refinement, value, error, order, GCI, others, seconds.
 
-        rounded: errors and orders as short text instead of numbers.
+        rounded: errors and orders as short text instead of numbers. Whole solutions are omitted; `curves` holds them.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
-        others = list(dict.fromkeys(name for curve in self.curves for name in curve.others))
+        whole = {
+            name for curve in self.curves for name, values in curve.others.items() if any(map(is_solution, values))
+        }
+        others = [name for name in dict.fromkeys(n for curve in self.curves for n in curve.others) if name not in whole]
         flag("rounded", rounded)
         header = [*names, self.refine, self.quantity, self.error_name, "order", "GCI", *others, "seconds"]
         rows = []
@@ -125,8 +161,18 @@ class Convergence:
         tabulate.write_csv(path, *self.points())
 
     def to_pandas(self) -> Any:
-        """Return the table of points as a pandas.DataFrame. Raises MissingPackageError."""
+        """Return the table of points, without whole solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self.points())
+
+    def to_xarray(self) -> Any:
+        """Return an xarray.Dataset over curves and refinement; nan where a curve has no such point.
+
+        Value, error, order, GCI, seconds and the other numbers (curve, refinement); fitted_order, limit and
+        estimated_error (curve,). Raises MissingPackageError.
+        """
+        from beamfem.convergence.grid import as_grid
+
+        return as_grid(self)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
         """Draw the error against the refinement on logarithmic axes and return the figure; path: file to write."""

@@ -11,8 +11,9 @@ from beamfem.convergence.curve import Curve, judge
 from beamfem.convergence.expected import highest_order
 from beamfem.convergence.result import Convergence
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
-from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, name_of, split
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import finite, optional, positive, require_known, shown
@@ -31,6 +32,7 @@ class _Line:
     ended: str = ""
 
 
+@keywords_checked
 def converge(
     function: Callable[..., Any],
     /,
@@ -97,7 +99,8 @@ def converge(
     refinement, counts = _from_coarse_to_fine(refine, varied.pop(refine))
     reference, goal = optional(finite)("reference", reference), optional(positive)("until", until)
     lines = _lines(function, varied, fixed)
-    check_call(function, lines[0].parameters | {refine: refinement[0]})
+    given = lines[0].parameters | {refine: refinement[0]}
+    check_call(function, given, ("quantity", "refine", "reference", "until", "executor"))
     with TaskRunner(function, executor) as runner:
         quantity = _call(runner, [(line, value) for line in lines for value in refinement], refine, quantity)
         last, doublings = refinement[-1], 0
@@ -113,7 +116,7 @@ def converge(
             quantity = _call(runner, [(line, last) for line in going], refine, quantity)
     curves = [curve for line in lines if (curve := _curve(line, quantity, counts, reference))]
     failures = [failure for line in lines for failure in _failures(line, refine)]
-    name = getattr(function, "__name__", type(function).__name__)
+    name = name_of(function)
     return Convergence(name, quantity or name, refine, reference, tuple(curves), tuple(failures))
 
 

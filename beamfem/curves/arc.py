@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.curves.curve import warn_of_turns
 from beamfem.errors import InputError
 from beamfem.validation import convert, finite, positive, vector
 
@@ -28,6 +29,11 @@ class Arc:
     InputError
         If the radius is not positive or the angles are equal.
 
+    Warns
+    -----
+    SeveralTurnsWarning
+        Of more than one full turn, which angles in degrees make.
+
     Examples
     --------
     >>> quarter = bf.Arc(center=(0, 0), radius=2.0, start_angle=0.0, end_angle=np.pi / 2)
@@ -46,20 +52,25 @@ class Arc:
         convert(self, finite, "start_angle", "end_angle")
         if self.start_angle == self.end_angle:
             raise InputError(f"an Arc needs two different angles, start_angle and end_angle are both {self.end_angle}")
+        warn_of_turns("the arc", self.end_angle - self.start_angle)
 
     @property
     def length(self) -> float:
+        """Length [m]."""
         return self.radius * abs(self.end_angle - self.start_angle)
 
     @property
     def corners(self) -> tuple[float, ...]:
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
         angle = self._angle(arc_length)
         return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
         angle = self._angle(arc_length)
         return self._sense * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import numbers, points, turned, unit
 from beamfem.errors import InputError
@@ -51,6 +52,8 @@ class BSpline:
     control_points: tuple[tuple[float, float], ...]
     weights: tuple[float, ...] | None = None
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         convert(self, count, "degree")
         object.__setattr__(self, "knots", numbers("knots", self.knots))
@@ -62,19 +65,23 @@ class BSpline:
 
     @property
     def length(self) -> float:
+        """Length [m]."""
         return self._arc_length.length
 
     @cached_property
     def corners(self) -> tuple[float, ...]:
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
         inner = self.breaks[1:-1]
         ends = inner[[self.multiplicity(u) == self.degree for u in inner]] if len(inner) else inner
         jumps = turned(unit(self.derivative(np.nextafter(ends, -np.inf))), unit(self.derivative(ends)))
         return tuple(self._arc_length.at(ends[jumps]).tolist())
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
         return self.evaluate(self.parameter(arc_length))
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
         return unit(self.derivative(self.parameter(arc_length)))
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:

@@ -5,13 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamfem.curves.bspline import BSpline
-from beamfem.curves.curve import points
+from beamfem.curves.curve import points, warn_of_turns
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.validation import finite, vector
 
 _MOST_TURNS = 1000
 
 
+@keywords_checked
 def elliptic_arc(
     center: Sequence[float], first: Sequence[float], second: Sequence[float], start: float, end: float
 ) -> BSpline:
@@ -39,6 +41,11 @@ def elliptic_arc(
     InputError
         If start equals end or the half diameters are parallel.
 
+    Warns
+    -----
+    SeveralTurnsWarning
+        Of more than one full turn, which angles in degrees make.
+
     Examples
     --------
     >>> quarter = bf.elliptic_arc((0, 0), (2, 0), (0, 1), 0.0, np.pi / 2)
@@ -60,6 +67,7 @@ def elliptic_arc(
             f"an elliptic arc turns at most {_MOST_TURNS} times, got {abs(turn) / (2.0 * np.pi):.3g} turns from start "
             f"({start:g}) to end ({end:g}); angles are in rad"
         )
+    warn_of_turns("the elliptic arc", turn)
     pieces = max(1, int(np.ceil(abs(turn) / (np.pi / 2) - 1e-12)))
     angles = begin + turn * np.arange(2 * pieces + 1) / (2 * pieces)
     weights = np.ones(len(angles))

@@ -5,6 +5,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from beamfem.errors import SeveralTurnsWarning, warn
 from beamfem.validation import finite, items, vector
 
 # A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
@@ -12,6 +13,8 @@ CORNER = 1e-8
 
 # Ends that meet may be apart by this fraction of the length, as drawings rounded to 6 decimals leave them.
 GAP = 1e-5
+
+_FULL_TURN = 2.0 * np.pi * (1.0 + 1e-9)  # beyond round-off
 
 
 @runtime_checkable
@@ -35,15 +38,15 @@ class Curve(Protocol):
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths strictly inside at which the tangent jumps [m]."""
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
         ...
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
         ...
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return unit tangents (n, 2) at arc lengths (n,) [m]."""
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
         ...
 
 
@@ -56,6 +59,16 @@ def turned(before: np.ndarray, after: np.ndarray, limit: float = CORNER) -> np.n
     """Return where unit tangents before and after a point (n, 2) differ by more than `limit` [rad] (n,)."""
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.abs(np.arctan2(cross, np.sum(before * after, axis=1))) > limit
+
+
+def warn_of_turns(what: str, turn: float) -> None:
+    """Warn of an arc that turns by more than one full turn [rad], as angles in degrees do."""
+    if abs(turn) > _FULL_TURN:
+        warn(
+            f"{what} turns by {abs(turn):g} rad, more than one full turn; angles are in radians: for {abs(turn):g} "
+            f"degrees give np.radians({abs(turn):g})",
+            SeveralTurnsWarning,
+        )
 
 
 def points(name: str, values: Sequence[Any] | np.ndarray) -> tuple[tuple[float, float], ...]:

@@ -65,16 +65,20 @@ class Parametric:
 
     @property
     def length(self) -> float:
+        """Length [m]."""
         return self._arc_length.length
 
     @property
     def corners(self) -> tuple[float, ...]:
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
         return self._panels.columns(slice(0, 2))(self._arc_length.parameter(arc_length))
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
         return unit(self._rate(self._arc_length.parameter(arc_length)))
 
     def spline(self) -> BSpline:

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
 
@@ -31,6 +32,8 @@ class Polyline:
 
     points: tuple[tuple[float, float], ...]
 
+    __repr__ = brief
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", points("points", self.points))
         if len(self.points) < 2:
@@ -41,19 +44,23 @@ class Polyline:
 
     @property
     def length(self) -> float:
+        """Length [m]."""
         return float(self._ends[-1])
 
     @property
     def corners(self) -> tuple[float, ...]:
+        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
         return tuple(self._ends[1:-1][turned(self._directions[:-1], self._directions[1:])].tolist())
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
         piece = self._piece(arc_length)
         fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
         return (1.0 - fraction) * table[piece] + fraction * table[piece + 1]
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
         return self._directions[self._piece(arc_length)]
 
     @cached_property

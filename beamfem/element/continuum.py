@@ -26,18 +26,22 @@ class _Body:
 
     @property
     def code(self) -> int:
+        """Number of the law in compiled code."""
         return GREEN_LAGRANGE
 
     @property
     def turns_with(self) -> str:
+        """Nodal vector with which the section turns."""
         return "r_y"
 
     @property
     def fills_body(self) -> bool:
+        """Whether the strain is that of every point of the body."""
         return True
 
     @property
     def shear_measures(self) -> tuple[bool, ...]:
+        """Which of the six measures are shear (6,)."""
         return (False, False, False, False, True, True)
 
     @property

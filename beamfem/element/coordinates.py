@@ -60,10 +60,12 @@ class ShearFree:
 
     @property
     def name(self) -> str:
+        """Name in the names of elements."""
         return "stretch" if self.stretchable else "shear-rigid"
 
     @property
     def code(self) -> int:
+        """Number of the coordinates in compiled code."""
         return STRETCH if self.stretchable else SHEAR_RIGID
 
 

@@ -11,6 +11,7 @@ from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearF
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.quadrature import gauss
 from beamfem.validation import flag, fulfils, one_of, optional, shown, text
 
@@ -91,6 +92,7 @@ class Element:
 
     @property
     def coordinates_per_node(self) -> int:
+        """Number of coordinates of a node."""
         return len(labels(self.coordinates.code, self.field.vectors))
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
@@ -148,6 +150,7 @@ def _counted(element: Element) -> np.ndarray | None:
     return None if counted.all() else counted[:, :, None] & counted[:, None, :]
 
 
+@keywords_checked
 def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF element: cubic field with gradients as coordinates, 6 coordinates per node.
 
@@ -176,6 +179,7 @@ def ANCF(forces: Forces | None = None, integration: Integration | None = None) -
     return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
 
 
+@keywords_checked
 def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
     """Return the ANCF-CRBF element: cubic field with rotations as coordinates, 5 coordinates per node.
 
@@ -204,6 +208,7 @@ def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = Non
     return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
 
 
+@keywords_checked
 def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear ANCF element: bilinear field with gradients as coordinates, 4 coordinates per node.
 
@@ -232,6 +237,7 @@ def BilinearANCF(forces: Forces | None = None, integration: Integration = "full"
     return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
 
 
+@keywords_checked
 def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
     """Return the bilinear CRBF element: bilinear field with rotations as coordinates, 3 coordinates per node.
 
@@ -260,6 +266,7 @@ def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full"
     return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
 
 
+@keywords_checked
 def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
     """Return the CRBF element: field of any order in r and r_y with rotations as coordinates, 3 coordinates per node.
 
@@ -295,6 +302,7 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
 
 
+@keywords_checked
 def ShearRigid(
     stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
 ) -> Element:

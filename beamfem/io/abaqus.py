@@ -6,7 +6,6 @@ Source: Abaqus keywords reference (*NODE, *ELEMENT, *NSET, *ELSET, *INCLUDE); no
 """
 
 import re
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain
@@ -14,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamfem.errors import InputError, NotReadWarning
+from beamfem.errors import InputError, NotReadWarning, warn
 from beamfem.files import readable
 from beamfem.io.mesh_file import MeshFile
 
@@ -111,12 +110,11 @@ def read_abaqus(path: Path) -> MeshFile:
     found = _assembled(path, nodes, cells, node_sets, element_sets)
     if others:
         named, more = list(others)[:_NAMED], len(others) - _NAMED
-        warnings.warn(
+        warn(
             f"{path}: nodes, elements and sets are read, and nothing else; left out: {', '.join(named)}"
             f"{f' and {more} more' if more > 0 else ''}. Give section and material to mesh.frame(...), "
             "supports and loads to Model(...)",
             NotReadWarning,
-            stacklevel=3,
         )
     return found
 

@@ -1,13 +1,12 @@
 """The cells of ParaView files: bodies or centrelines of all beams, and what is written of them."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
-from beamfem.errors import UnknownStressWarning
+from beamfem.errors import UnknownStressWarning, warn
 from beamfem.io.samples import Samples, body, centreline
 from beamfem.material import Material
 from beamfem.model.classes import by_value
@@ -154,12 +153,11 @@ class Cells:
         if unknown:
             shown = ", ".join(map(str, unknown[:_NAMED])) + (", ..." if len(unknown) > _NAMED else "")
             what = "left out" if len(unknown) == len(self.meshes) else "nan"
-            warnings.warn(
+            warn(
                 f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
                 "sections are given by a stiffness, a law of their own, or moments without a height; "
                 "Section(..., height=) gives it",
                 UnknownStressWarning,
-                stacklevel=5,
             )
 
     def names(self, solution: "Solution") -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves import BSpline, Chain, Curve, Line, Polyline
 from beamfem.errors import InputError
 from beamfem.io.chains import Piece, chains
@@ -52,6 +53,8 @@ class Frame:
     mesh: "LineMesh"
     owner: np.ndarray
     places: tuple[tuple[Point, ...], ...]
+
+    __repr__ = brief
 
     def members(self, name: str) -> tuple[Beam, ...]:
         """Return the beams of a member set.

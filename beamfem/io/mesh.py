@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError
@@ -15,6 +16,7 @@ from beamfem.io.abaqus import read_abaqus
 from beamfem.io.frame import Frame, Members, build_frame
 from beamfem.io.mesh_file import MeshFile, read_through_meshio
 from beamfem.io.touching import divided, merged, parts_of, warn_of_gaps
+from beamfem.keywords import keywords_checked
 from beamfem.material import Material
 from beamfem.validation import LARGEST, flag, holds_truth_values, items, number_table, shown, text
 
@@ -58,6 +60,8 @@ class LineMesh:
     cells: np.ndarray
     member_sets: Mapping[str, np.ndarray]
     point_sets: Mapping[str, np.ndarray]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         nodes, cells = (
@@ -126,6 +130,7 @@ class LineMesh:
         return build_frame(self, elements, element, section, material, members, hinges)
 
 
+@keywords_checked
 def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
     """Return the lines of a mesh file, in its units.
 

@@ -14,6 +14,7 @@ from beamfem.io.axes_in_hdf5 import save_axes
 from beamfem.io.critical import load_factors, load_path, save_critical
 from beamfem.io.description import describe, rebuild
 from beamfem.io.hdf5 import checksum, read_checked, read_label, required_h5py, write_checked, write_label, written_hdf5
+from beamfem.keywords import keywords_checked
 from beamfem.results.path import Path as EquilibriumPath
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
@@ -62,6 +63,7 @@ def save(solution: Solution, path: str | PathLike[str]) -> None:
         save_axes(file, solution, require_written)
 
 
+@keywords_checked
 def load(path: str | PathLike[str]) -> Solution:
     """Return the solution stored in a file.
 

@@ -9,66 +9,107 @@ import numpy as np
 from beamfem.extras import needed_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
-from beamfem.results.along import QUANTITIES, AxisPoints
+from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
+from beamfem.results.beam_stress import stress_at
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _PIECES = 4  # of an element between neighbouring points
+_STRESSES = {
+    "lower": "normal stress at the lower face",
+    "upper": "normal stress at the upper face",
+    "shear": "largest shear stress over the height",
+    "von_mises": "largest von Mises stress over the height",
+}
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
+Variables = dict[str, Variable]
 
 
-def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[str, Variable]]:
+def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
-    of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; of the model
-    (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam, arc_length
-    [m], x0, y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where
-    section forces may jump.
+    of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; stress_lower,
+    stress_upper, stress_shear, stress_von_mises [Pa] where sections have them, see `BeamStress`; of the model (time,):
+    kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam, arc_length [m], x0,
+    y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where section forces
+    may jump.
     """
-    mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(_about, solution.model)
-    points = AxisPoints(mesh, _PIECES)
+    mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
+    points, along_beam = stations(solution.model, beam)
     rows = np.arange(len(solution))
     at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
     over = (at[0],)
     along = (*over, "station")
     r = points.positions(solution.p)[0]
     moved = r - points.reference
-    data: dict[str, Variable] = {}
+    data: Variables = {}
     for axis, name in enumerate("xy"):
         data[name] = along, r[..., axis], about(f"position {name}", "m")
         data[f"u{name}"] = along, moved[..., axis], about(f"displacement {name}", "m")
         if not solution.static:
             rate = points.velocities(solution.p, solution.v)[..., axis]
             data[f"v{name}"] = along, rate, about(f"velocity {name}", "m/s")
+    forces = section_forces(points, solution, rows)
     for name in ("rotation", "normal", "shear", "moment", "axial_strain", "shear_angle"):
         quantity = QUANTITIES[name]
-        values = quantity.values(points, solution, rows)
+        values = forces[name] if name in forces else quantity.values(points, solution, rows)
         data[name] = along, values, about(quantity.label, quantity.unit)
+    stresses = stress_at(solution, mesh, points.element, points.xi, rows)
+    for name, label in _STRESSES.items():
+        if np.isfinite(stresses[name]).any():
+            data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
     energy = solution.energy()
     for name in ("kinetic", "strain", "potential"):
         data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
-    number = np.full(len(points.element), solution.model.number_of(beam))
-    coordinates: dict[str, Variable] = {
-        at[0]: (over, solution.at, about(at[1], at[2])),
-        "beam": (("station",), number, about("number of the beam", "1")),
-        "arc_length": (("station",), points.arc_length, about("arc length in the reference", "m")),
-        "x0": (("station",), points.reference[:, 0], about("reference x", "m")),
-        "y0": (("station",), points.reference[:, 1], about("reference y", "m")),
+    return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
+
+
+def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
+    """Return the stations of a beam, and their coordinates by name, see `arrays`."""
+    number, about = model.number_of(beam), partial(named, model)
+    mesh = model.meshes[number]
+    points = AxisPoints(mesh, _PIECES)
+    # elements agree on the arc length of their common end, to the last digit
+    arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
+    arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
+    found = {
+        "beam": (np.full(len(points.element), number), about("number of the beam", "1")),
+        "arc_length": (arc, about("arc length in the reference", "m")),
+        "x0": (points.reference[:, 0], about("reference x", "m")),
+        "y0": (points.reference[:, 1], about("reference y", "m")),
     }
-    return data, coordinates
+    return points, {name: (("station",), *own) for name, own in found.items()}
 
 
 def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
     """Return an xarray.Dataset of the `arrays` of a beam, or of all beams in succession; statistics are its attributes.
 
-    Raises InputError for a beam of another model; MissingPackageError without xarray.
+    Of one beam, arc_length is a dimension, so that `sel`, `interp` and `plot` go by it. No arc length is there twice,
+    and no value is lost where section forces jump: the station before an end that two elements share stands one unit of
+    the last digit before it, so that the arc length itself has the side towards the end of the beam, as in `fields`. Of
+    all beams the dimension is station, since their arc lengths overlap. Raises InputError for a beam of another model;
+    MissingPackageError without xarray.
     """
+    data, coordinates = _of_beams(solution, beam)
+    # files hold texts and numbers
+    words = {"status": solution.status.name, "warnings": "\n".join(solution.statistics.warnings)}
+    return as_dataset(data, coordinates, asdict(solution.statistics) | words, single=beam is not None)
+
+
+def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, Any], single: bool) -> Any:
+    """Return an xarray.Dataset over stations, or, of a single beam, over its arc length, where none is twice."""
     with needed_for("to_xarray"):
         import xarray
-    data, coordinates = _of_beams(solution, beam)
-    return xarray.Dataset(data, coordinates, asdict(solution.statistics))
+    found = xarray.Dataset(data, coordinates, attributes)
+    if not single:
+        return found
+    arc = found["arc_length"].to_numpy()
+    before = np.append(arc[:-1] == arc[1:], False)
+    found["arc_length"] = "station", np.where(before, np.nextafter(arc, -np.inf), arc), found["arc_length"].attrs
+    found["beam"] = (), found["beam"].to_numpy()[0], found["beam"].attrs
+    return found.swap_dims(station="arc_length")
 
 
 def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
@@ -87,20 +128,24 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
     return pandas.DataFrame(columns).set_index([over, "beam", "arc_length"])
 
 
-def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[dict[str, Variable], dict[str, Variable]]:
+def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
     """Return the `arrays` of a beam, or of all beams joined along their stations."""
     parts = [arrays(solution, own) for own in (solution.model.beams if beam is None else (beam,))]
-    data, coordinates = (_side_by_side([part[kind] for part in parts]) for kind in (0, 1))
-    return data, coordinates
+    return side_by_side([data for data, _ in parts]), side_by_side([coordinates for _, coordinates in parts])
 
 
-def _side_by_side(parts: list[dict[str, Variable]]) -> dict[str, Variable]:
-    joined = dict(parts[0])
-    for name, (dimensions, _, about) in parts[0].items():
-        if "station" in dimensions and len(parts) > 1:
-            joined[name] = dimensions, np.concatenate([part[name][1] for part in parts], axis=-1), about
+def side_by_side(parts: list[Variables]) -> Variables:
+    """Return the variables of beams joined along their stations; nan where a beam has none of a name."""
+    joined = {name: variable for part in parts for name, variable in part.items()}
+    counts = [next(values.shape[-1] for over, values, _ in part.values() if "station" in over) for part in parts]
+    for name, (over, values, about) in joined.items():
+        if "station" in over and len(parts) > 1:
+            missing = [np.full((*values.shape[:-1], count), np.nan) for count in counts]
+            own = [part[name][1] if name in part else empty for part, empty in zip(parts, missing, strict=True)]
+            joined[name] = over, np.concatenate(own, axis=-1), about
     return joined
 
 
-def _about(model: Model, name: str, unit: str) -> dict[str, str]:
+def named(model: Model, name: str, unit: str) -> dict[str, str]:
+    """Return the attributes of a variable: its name in words, and its unit in that of the model."""
     return {"long_name": name, "units": "1" if unit in ("-", "1") else model.unit(unit)}

@@ -1,12 +1,11 @@
 """Lines of a mesh that end inside another line: the straight one is divided there, so that the two are joined."""
 
-import warnings
 from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
 
-from beamfem.errors import InputError, NotJoinedWarning
+from beamfem.errors import InputError, NotJoinedWarning, warn
 
 
 def merged(nodes: np.ndarray, ends: np.ndarray, near: float) -> np.ndarray:
@@ -63,11 +62,10 @@ def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
         return
     x, y = nodes[loose[0]]
     others = f" (and {len(loose) - 1} more)" if len(loose) > 1 else ""
-    warnings.warn(
+    warn(
         f"the end at ({x:g}, {y:g}){others} is within {reach:.2g} of another line but not joined to it: nothing is "
         "carried over the gap. Where they shall be joined, let them meet",
         NotJoinedWarning,
-        stacklevel=4,
     )
 
 

@@ -5,11 +5,12 @@ for it nor compile it again.
 """
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
 from functools import cached_property
-from threading import RLock
-from time import process_time
+from threading import RLock, local
+from time import perf_counter, process_time
 from typing import Any, ClassVar
 
 from numpy import dtype, float64, int32, int64, ndarray
@@ -28,6 +29,32 @@ if hasattr(os, "register_at_fork"):  # a process that is forked meanwhile would 
     os.register_at_fork(
         before=_compiling.acquire, after_in_parent=_compiling.release, after_in_child=_compiling.release
     )
+
+
+class _Waiting(local):
+    """How long this thread has waited for machine code, and whether it does now."""
+
+    seconds, now = 0.0, False
+
+    @contextmanager
+    def counted(self) -> Iterator[None]:
+        """Count the time of a block once, also where it asks for further kernels."""
+        if self.now:
+            yield
+            return
+        begun, self.now = perf_counter(), True
+        try:
+            yield
+        finally:
+            self.seconds, self.now = self.seconds + perf_counter() - begun, False
+
+
+_waiting = _Waiting()
+
+
+def seconds_waited() -> float:
+    """Return how long this thread has waited for kernels to be compiled or loaded so far [s]."""
+    return _waiting.seconds
 
 
 class Routine:
@@ -77,7 +104,7 @@ class Routine:
     @cached_property
     def address(self) -> int:
         """Where compiled code, C and Python call it."""
-        with _compiling:
+        with _waiting.counted(), _compiling:
             if self.loaded:  # by another thread, while this one waited
                 return vars(self)["address"]
             begun = process_time()

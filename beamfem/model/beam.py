@@ -190,12 +190,12 @@ class Beam:
 
     @property
     def start(self) -> "Point":
-        """Point at the start of the axis."""
+        """Point at the start of the axis, fraction 0."""
         return Point(self, 0.0)
 
     @property
     def end(self) -> "Point":
-        """Point at the end of the axis."""
+        """Point at the end of the axis, fraction 1."""
         return Point(self, 1.0)
 
 

@@ -6,6 +6,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.model.beam import Point, require_point
 from beamfem.validation import count, finite, flag, items
@@ -41,6 +42,8 @@ class At:
     reference: np.ndarray
     time: float
     gravity: np.ndarray
+
+    __repr__ = brief
 
 
 @runtime_checkable

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
 from beamfem.validation import function_of_one
@@ -35,6 +36,8 @@ class Interpolated:
     """
 
     points: Sequence[Sequence[float]]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", points("points", self.points))
@@ -84,6 +87,8 @@ class Piecewise:
 
     function: Callable[[float], Any]
     kinks: Sequence[float]
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         function_of_one("function", self.function, "time or arc length")

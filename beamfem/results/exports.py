@@ -65,7 +65,9 @@ class Exports:
         Returns
         -------
         xarray.Dataset
-            Positions, rotations, section forces and energies; the statistics are its attributes.
+            Positions, rotations, section forces, stresses if sections have them, and energies; the statistics are its
+            attributes. Of one beam the arc length is a dimension: at an end that two elements share, the station before
+            it stands one last digit lower, so that both sides are kept.
 
         Raises
         ------
@@ -78,7 +80,7 @@ class Exports:
         --------
         >>> data = solution.to_xarray(beam)
         >>> data["uy"].dims
-        ('load_factor', 'station')
+        ('load_factor', 'arc_length')
         """
         return offered(Exports.to_xarray)(self, beam)
 

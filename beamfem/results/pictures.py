@@ -24,8 +24,10 @@ class Pictures:
         ----------
         path : path
             File to write, .html.
-        **options
-            title : heading of the page; frames : largest number of steps, by default 60.
+        title : str, optional
+            Heading of the page.
+        frames : int, default 60
+            Largest number of steps.
 
         Returns
         -------
@@ -44,18 +46,24 @@ class Pictures:
         return offered(Pictures.to_html)(self, path, **options)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ShapeOptions]) -> Any:
-        """Draw the deformed body at several steps, later ones darker.
+        """Draw the deformed body, at several steps later ones darker.
 
         Parameters
         ----------
         path : path, optional
             File to write (PNG, SVG, PDF); folders are created.
-        **options
-            colour : None for the time or load factor, or a field along the beams: "moment" [N m], "normal", "shear"
-            [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-], "shear_angle" [rad], "stress"
-            [Pa] (largest von Mises stress of a section) or "utilisation" [-] of the strength; shapes : number of steps,
-            by default 9; undeformed : draw the reference axes dashed; supports, loads : draw their symbols, each load
-            on the shape at which it is largest.
+        colour : str, optional
+            By default the time or load factor; or a field along the beams, whose extreme value is marked: "moment"
+            [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-],
+            "shear_angle" [rad]; of the stress of a section [Pa] "stress" or "von_mises" (its largest von Mises stress),
+            "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression", "shear_stress"; or
+            "utilisation" [-] of the strength.
+        shapes : int, optional
+            Number of steps, one of them the last; by default the last alone, of motions and paths 9.
+        undeformed : bool, default True
+            Whether to draw the reference axes dashed.
+        supports, loads : bool, default True
+            Whether to draw their symbols, each load on the shape at which it is largest.
 
         Returns
         -------
@@ -115,8 +123,9 @@ class Pictures:
         """Plot one quantity against another, one point per row.
 
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
-        "rotation" [rad], "vx", "vy" [m/s] and, at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time"
-        [s]; or a pair of a label and numbers (steps,); or numbers.
+        "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
+        at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
+        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers.
 
         Parameters
         ----------
@@ -187,9 +196,18 @@ class Pictures:
         ----------
         path : path
             File to write, .gif or .mp4; folders are created.
-        **options
-            fps, seconds : frames per second and duration, by default 15 and 4; colour : a field as in `plot`;
-            undeformed, supports, loads : what else to draw; dpi : pixels per inch, of a frame 4 to 8 inches wide.
+        fps : float, default 15.0
+            Frames per second.
+        seconds : float, [s], default 4.0
+            Duration.
+        colour : str, optional
+            A field along the beams, see `plot`.
+        undeformed : bool, default True
+            Whether to draw the reference axes dashed.
+        supports, loads : bool, default True
+            Whether to draw their symbols.
+        dpi : int, default 100
+            Pixels per inch, of a frame 4 to 8 inches wide.
 
         Returns
         -------
@@ -216,8 +234,10 @@ class Pictures:
 
         Parameters
         ----------
-        **options
-            colour : a field as in `plot`; size : width and height in pixels.
+        colour : str, optional
+            A field along the beams, see `plot`.
+        size : (int, int), default (1400, 900)
+            Width and height in pixels.
 
         Returns
         -------
@@ -245,9 +265,12 @@ class Pictures:
         ----------
         path : path
             File to write, .png; folders are created.
-        **options
-            row : row of the solution, by default the last; colour : a field as in `plot`; size : width and height in
-            pixels.
+        colour : str, optional
+            A field along the beams, see `plot`.
+        size : (int, int), default (1400, 900)
+            Width and height in pixels.
+        row : int, default -1
+            Row of the solution, the last by default.
 
         Returns
         -------

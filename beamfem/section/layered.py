@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.quadrature import gauss_between
@@ -80,6 +81,8 @@ class Layered:
     width: float
     axis: float | None = None
     shear_factor: float = 5 / 6
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         layers = tuple(items("layers of a Layered section", self.layers))

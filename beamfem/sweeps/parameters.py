@@ -5,12 +5,15 @@ import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.memory import SHARE, in_gib, installed_memory
+from beamfem.results.solution import Solution
+from beamfem.validation import nearest
 
 _POINT = 1000  # bytes of a point; 1100 were measured with one parameter
 
@@ -53,8 +56,8 @@ def combinations(varied: Mapping[str, Sequence[Any]], fixed: Mapping[str, Any]) 
     return [dict(zip(varied, values, strict=True)) | dict(fixed) for values in itertools.product(*varied.values())]
 
 
-def check_call(function: Callable[..., Any], point: Mapping[str, Any]) -> None:
-    """Raise InputError if `function` cannot be called with these parameters."""
+def check_call(function: Callable[..., Any], point: Mapping[str, Any], options: Sequence[str]) -> None:
+    """Raise InputError if `function` cannot be called with these parameters; options: those of the study itself."""
     if not callable(function):
         raise InputError(f"the first argument must be a function, got {function!r}")
     try:
@@ -65,7 +68,23 @@ def check_call(function: Callable[..., Any], point: Mapping[str, Any]) -> None:
         signature.bind(**point)
     except TypeError as error:
         name = getattr(function, "__name__", repr(function))
-        raise InputError(f"{name}{signature} cannot be called with {', '.join(point) or 'nothing'}: {error}") from None
+        sentence = f"{name}{signature} cannot be called with {', '.join(point) or 'nothing'}: {error}"
+        unknown = [each for each in point if each not in signature.parameters]
+        hint = f"; {nearest(unknown[0], [*signature.parameters, *options])}" if unknown else ""
+        raise InputError(f"{sentence}{hint}") from None
+
+
+def name_of(function: Callable[..., Any]) -> str:
+    """Return what a bare number of a function is called in tables: as the function, or "value" if that has no name."""
+    while isinstance(function, partial):
+        function = function.func
+    name = getattr(function, "__name__", "")
+    return name if name.isidentifier() else "value"
+
+
+def is_solution(value: Any) -> bool:
+    """Return whether a value is a whole solution, which tables of numbers omit."""
+    return isinstance(value, Solution)
 
 
 def labels(values: Sequence[Any]) -> tuple[str, ...]:

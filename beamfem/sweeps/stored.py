@@ -1,13 +1,12 @@
 """The stored calls of a sweep: which exist, by which code, and the new ones."""
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from beamfem.errors import ChangedCodeWarning, InputError, MissingPackageError, NotStoredWarning
+from beamfem.errors import ChangedCodeWarning, InputError, MissingPackageError, NotStoredWarning, warn
 from beamfem.sweeps.keys import function_form, point_key
 from beamfem.sweeps.sources import SCRIPT, Sources
 from beamfem.sweeps.store import Store
@@ -50,7 +49,7 @@ class StoredCalls:
                 changed |= other[1]
                 outcomes[i] = other[0] if keep_stale else None
         if stale:
-            warnings.warn(_said(stale, len(outcomes), changed, keep_stale), ChangedCodeWarning, stacklevel=3)
+            warn(_said(stale, len(outcomes), changed, keep_stale), ChangedCodeWarning)
         return outcomes
 
     def add(self, number: int, parameters: str, outcome: Outcome) -> None:
@@ -61,15 +60,14 @@ class StoredCalls:
         try:
             self._store.add(self._keys[number], self._code[number], about, outcome)
         except (InputError, MissingPackageError) as error:  # of the model of a solution
-            warnings.warn(f"not kept in the store {self._store.path}: {error}", NotStoredWarning, stacklevel=3)
+            warn(f"not kept in the store {self._store.path}: {error}", NotStoredWarning)
         except OSError as error:
             # no more lines: one that was written in part would spoil the next one
             self._writable = False
-            warnings.warn(
+            warn(
                 f"the store {self._store.path} cannot be written any more ({error.strerror or error}): the sweep goes "
                 "on, and what it computes from here on is in its result only",
                 NotStoredWarning,
-                stacklevel=3,
             )
 
 

@@ -12,15 +12,17 @@ from beamfem import tabulate
 from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.extras import needed_for
+from beamfem.keywords import keywords_checked
 from beamfem.progress import progress
-from beamfem.results.solution import Solution
-from beamfem.sweeps.parameters import assignments, check_call, combinations, labels, split
+from beamfem.sweeps.parameters import assignments, check_call, combinations, is_solution, labels, name_of, split
 from beamfem.sweeps.stored import StoredCalls
 from beamfem.sweeps.tasks import Failure, TaskRunner
 from beamfem.sweeps.workers import ExecutorFactory, Outcome
 from beamfem.validation import flag, require_known, shown
 
-_ROWS_PRINTED = 40
+_ROWS_REPORTED = 40
+_ROWS_PRINTED = 6
+_PRINTED = 110  # characters of a failure
 _NOT_REACHED = "NotComputed: the sweep was interrupted before"
 
 
@@ -37,13 +39,15 @@ class Sweep:
     failures : tuple of Failure
         The calls that failed.
     seconds : array, [s], (points,)
-        Duration of each call.
+        Duration of each call, without compilation; nan for points without a call.
     shape : tuple of int
         Number of values of each varied parameter; `sweep[name].reshape(sweep.shape)` is the grid.
     computed : int
         Number of points called in this run; the others were read from the store.
     labels : tuple of mapping
         Text of each varied parameter.
+    function : str
+        Name of the function.
 
     Examples
     --------
@@ -60,6 +64,7 @@ class Sweep:
     shape: tuple[int, ...]
     computed: int
     labels: tuple[Mapping[str, str], ...] = field(repr=False)
+    function: str = "value"
 
     __repr__ = brief
 
@@ -89,22 +94,28 @@ class Sweep:
     def table(self) -> list[dict[str, Any]]:
         """Return one mapping per point: varied parameters, named values (None if the call failed) and seconds.
 
-        A value with the name of a parameter is listed as `name (result)`, a bare number as `value`. Printed and written
-        tables omit whole solutions.
+        A value with the name of a parameter is listed as `name (result)`, a bare one by the name of the function, or as
+        `value` if that has none. Printed and written tables, to_pandas and to_xarray omit whole solutions, which
+        `values` and `sweep[name]` hold.
         """
-        names = dict.fromkeys(name for value in self.values for name in _named(value))
+        names = dict.fromkeys(name for value in self.values for name in self._named(value))
         varied = list(self.labels[0])
         titles = {name: f"{name} (result)" if name in (*varied, "seconds") else name for name in names}
         return [
             {name: point[name] for name in varied}
-            | {titles[name]: _named(value).get(name) for name in names}
+            | {titles[name]: self._named(value).get(name) for name in names}
             | {"seconds": float(seconds)}
             for point, value, seconds in zip(self.parameters, self.values, self.seconds, strict=True)
         ]
 
+    def _named(self, value: Any) -> Mapping[str, Any]:
+        if value is None:
+            return {}
+        return value if isinstance(value, Mapping) else {self.function: value}
+
     def _rows(self) -> tuple[list[str], list[list[Any]]]:
         rows = [row | dict(texts) for row, texts in zip(self.table(), self._texts(), strict=True)]
-        numbers = [name for name in rows[0] if not any(isinstance(row[name], Solution) for row in rows)]
+        numbers = [name for name in rows[0] if not any(is_solution(row[name]) for row in rows)]
         return numbers, [[row[name] for name in numbers] for row in rows]
 
     def _texts(self) -> list[dict[str, Any]]:
@@ -114,28 +125,36 @@ class Sweep:
             for point, texts in zip(self.parameters, self.labels, strict=True)
         ]
 
+    @property
+    def _note(self) -> str:
+        return f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
+
     def __str__(self) -> str:
+        failed = [tabulate.cut(str(failure), _PRINTED) for failure in self.failures[:1]]
+        return "\n".join([tabulate.as_brief(*self._rows(), _ROWS_PRINTED), f"{self._note}; all by report()", *failed])
+
+    def report(self) -> str:
+        """Return the table of up to 40 points, without whole solutions, and every failure, as text."""
         header, rows = self._rows()
-        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
-        return "\n".join([tabulate.as_text(header, _shortened(rows)), note, *map(str, self.failures)])
+        table = tabulate.as_text(header, tabulate.few(rows, _ROWS_REPORTED))
+        return "\n".join([table, self._note, *map(str, self.failures)])
 
     def _repr_html_(self) -> str:
         header, rows = self._rows()
-        note = f"{len(self)} points, {self.computed} computed now, {len(self.failures)} failed"
-        return f"<b>Sweep</b>{tabulate.as_html(header, _shortened(rows))}{note}"
+        return f"<b>Sweep</b>{tabulate.as_html(header, tabulate.few(rows, _ROWS_REPORTED))}{self._note}"
 
     def to_markdown(self) -> str:
-        """Return the table of all points as Markdown."""
+        """Return the table of all points as Markdown, without whole solutions."""
         return tabulate.as_markdown(*self._rows())
 
     def to_pandas(self) -> Any:
-        """Return the table of all points as a pandas.DataFrame. Raises MissingPackageError."""
+        """Return the table of all points, without whole solutions, as a DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self._rows())
 
     def to_xarray(self) -> Any:
         """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan for points that failed.
 
-        Arrays of equal shape add dimensions of their own. Raises MissingPackageError.
+        Arrays of equal shape add dimensions of their own; whole solutions are omitted. Raises MissingPackageError.
         """
         with needed_for("to_xarray"):
             import xarray
@@ -165,18 +184,11 @@ class Sweep:
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with all digits."""
+        """Write the table of all points with all digits, without whole solutions."""
         tabulate.write_csv(path, *self._rows())
 
 
-def _shortened(rows: list[list[Any]]) -> list[list[Any]]:
-    """Return the first and the last of many rows."""
-    if len(rows) <= _ROWS_PRINTED:
-        return rows
-    half = _ROWS_PRINTED // 2
-    return [*rows[:half], ["..."] * len(rows[0]), *rows[-half:]]
-
-
+@keywords_checked
 def sweep(
     function: Callable[..., Any],
     /,
@@ -236,7 +248,7 @@ def sweep(
     keep_stale = flag("keep_stale", keep_stale)
     varied, fixed = split(parameters)
     points = combinations(varied, fixed)
-    check_call(function, points[0])
+    check_call(function, points[0], ("executor", "store", "keep_stale"))
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
     with ExitStack() as stack:
@@ -255,10 +267,10 @@ def sweep(
                 report(done)
         except BaseException as error:
             if computed := sum(outcomes[i] is not None for i in todo):
-                error.sweep = _result(points, texts, outcomes, varied, computed)  # type: ignore[attr-defined]
+                error.sweep = _result(points, texts, outcomes, varied, computed, name_of(function))  # type: ignore[attr-defined]
                 error.add_note(f"The {computed} points computed before are in the `sweep` of this exception.")
             raise
-    return _result(points, texts, outcomes, varied, len(todo))
+    return _result(points, texts, outcomes, varied, len(todo), name_of(function))
 
 
 def _result(
@@ -267,8 +279,9 @@ def _result(
     found: list[Outcome | None],
     varied: Mapping[str, Sequence[Any]],
     computed: int,
+    name: str,
 ) -> Sweep:
-    outcomes = [outcome or Outcome(error=_NOT_REACHED) for outcome in found]
+    outcomes = [outcome or Outcome(seconds=np.nan, error=_NOT_REACHED) for outcome in found]
     failures = tuple(
         Failure(point, assignments(text), outcome.error, outcome.traceback)
         for point, text, outcome in zip(points, texts, outcomes, strict=True)
@@ -282,10 +295,5 @@ def _result(
         shape=tuple(len(values) for values in varied.values()),
         computed=computed,
         labels=tuple(texts),
+        function=name,
     )
-
-
-def _named(value: Any) -> Mapping[str, Any]:
-    if value is None:
-        return {}
-    return value if isinstance(value, Mapping) else {"value": value}

@@ -2,6 +2,7 @@
 
 import math
 import os
+import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
@@ -9,8 +10,11 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
+from beamfem.brief import brief
 from beamfem.sweeps.workers import ExecutorFactory, Outcome, Point, call, call_all, end_workers, open_executor, workers
+from beamfem.tabulate import cut
 
+_LONGEST = 600  # characters of a failure, whose `error` has all
 _CHUNK_SECONDS = 0.05  # sending a chunk costs about 0.3 ms
 
 
@@ -23,8 +27,10 @@ class Failure:
     error: str
     traceback: str = field(default="", repr=False)
 
+    __repr__ = brief
+
     def __str__(self) -> str:
-        return f"failed at {self.label}: {self.error}"
+        return cut(f"failed at {self.label}: {self.error}", _LONGEST)
 
 
 class TaskRunner:
@@ -102,13 +108,17 @@ class TaskRunner:
 
     def _alone(self, point: Point) -> Outcome:
         """Run a suspect point alone, so that the death of its worker can be attributed to it."""
+        begun = time.perf_counter()
         try:
-            return self._submit(self._open(1), [point]).result()[0]
+            executor = self._open(1)
+            begun = time.perf_counter()  # workers need a second to start
+            return self._submit(executor, [point]).result()[0]
         except BrokenExecutor:
             self._close()
-            return Outcome(error="WorkerDied: the worker process ended in this call, which ran alone")
-        except Exception as error:
-            return Outcome(error=f"{type(error).__name__}: {error}")
+            error = "WorkerDied: the worker process ended in this call, which ran alone"
+        except Exception as raised:
+            error = f"{type(raised).__name__}: {raised}"
+        return Outcome(seconds=time.perf_counter() - begun, error=error)
 
     def _submit(self, executor: Executor, points: list[Point]) -> "Future[list[Outcome]]":
         self._attempt += 1

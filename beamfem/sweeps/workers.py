@@ -12,12 +12,14 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache, partial
+from importlib import import_module
 from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import BeamfemError, InputError
+from beamfem.kernels.compiling import seconds_waited
 from beamfem.progress import no_progress
 from beamfem.results.solution import Solution
 
@@ -39,25 +41,35 @@ class Outcome:
 
 
 def call(function: Callable[..., Any], point: Point) -> Outcome:
-    """Call `function` with the parameters of a point; an exception becomes part of the outcome."""
-    begun = time.perf_counter()
+    """Call `function` with the parameters of a point; an exception becomes part of the outcome.
+
+    The time in which kernels are compiled or loaded, which the first call in a process would pay, is not that of the
+    point.
+    """
+    begun = _clock()
     try:
         value = _checked(function(**point))
     except Exception as error:
         sentence = f"{type(error).__name__}: {error}"
-        return Outcome(None, time.perf_counter() - begun, sentence, traceback.format_exc())
-    return Outcome(value, time.perf_counter() - begun)
+        return Outcome(None, _clock() - begun, sentence, traceback.format_exc())
+    return Outcome(value, _clock() - begun)
+
+
+def _clock() -> float:
+    """Return a time [s] that stands still while kernels are compiled or loaded."""
+    return time.perf_counter() - seconds_waited()
 
 
 def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, attempt: int) -> list[Outcome]:
     """Run calls one after the other, with one thread and without progress bars.
 
     home: process number of the caller. attempt: makes a repetition a new task for executors that merge equal ones
-    (dask).
+    (dask). The package is imported before any call is timed.
     """
     if os.getpid() != home:
         end_with_parent()
         _one_thread()
+    import_module("beamfem.public")
     with no_progress():
         return [call(function, point) for point in points]
 

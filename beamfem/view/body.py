@@ -1,6 +1,5 @@
 """The solid body with PyVista: a picture without a window, or a window with a slider over the steps."""
 
-import warnings
 from collections.abc import Sequence
 from functools import cached_property
 from os import PathLike
@@ -9,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.errors import InputError
+from beamfem.errors import InputError, warn
 from beamfem.files import path_of, whole
 from beamfem.model.reference import sections_at
 from beamfem.results.along import AxisPoints
@@ -47,7 +46,7 @@ def picture(
     number = number_below("row", row, len(solution), -len(solution)) % len(solution)
     _require_size(size)
     if not can_render():
-        warnings.warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}", stacklevel=4)
+        warn(f"VTK cannot render here, so {target} is drawn flat by matplotlib; {ADVICE}")
         plot_shapes(one_row(solution, number), target, colour)
         return WrittenFile(target)
     scene = _Scene(Shapes(solution, np.array([number]), colour, _POINTS), off_screen=True, size=size)
@@ -71,7 +70,7 @@ def show(solution: Solution, colour: str | None = None, size: tuple[int, int] = 
     reason = "there is no display" if not has_display() else "" if can_render() else f"VTK cannot render; {ADVICE}"
     if reason:
         message = f"no window can be opened: {reason}. A figure is returned; to_html writes a page with a slider"
-        warnings.warn(message, stacklevel=4)
+        warn(message)
         return plot_shapes(solution, colour=colour)
     plotter = slider_scene(solution, colour, size, off_screen=False)
     plotter.show()

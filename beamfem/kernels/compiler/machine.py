@@ -27,6 +27,7 @@ def _target() -> llvm.Target:
     return llvm.Target.from_triple(llvm.get_process_triple())
 
 
+@cache
 def _processor() -> tuple[str, str]:
     """Return the name and the features of the processor."""
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()

@@ -10,8 +10,10 @@ from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
 from beamfem.assembly.system import system_of
 from beamfem.errors import InputError
+from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.drawing_options import ModeOptions
@@ -165,6 +167,10 @@ class Modes:
         rows = list(zip(self.frequencies.tolist(), self.growth.tolist(), rigid, strict=True))
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return frequencies and shapes along a beam, or along all beams, as an xarray.Dataset over the modes."""
+        return offered(Modes.to_xarray)(self, beam)
+
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its frequency.
 
@@ -174,8 +180,8 @@ class Modes:
         ----------
         path : path, optional
             File to write (PNG, SVG, PDF).
-        **options
-            most : largest number of modes to draw.
+        most : int, default 6
+            Largest number of modes to draw.
 
         Returns
         -------
@@ -196,6 +202,7 @@ class Modes:
         return offered(Modes.plot)(self, path, **options)
 
 
+@keywords_checked
 def solve_modes(model: Model, count: int = 10, about: State | Solution | None = None) -> Modes:
     """Find the lowest modes of vibration, K phi = omega^2 M phi, including those of rigid motions.
 

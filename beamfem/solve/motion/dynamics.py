@@ -8,6 +8,7 @@ from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import turning_pairs
 from beamfem.results.solution import Solution, State
@@ -28,6 +29,7 @@ from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
 
 
+@keywords_checked
 def simulate(
     model: Model,
     duration: float,

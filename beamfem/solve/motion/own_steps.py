@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
+from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.motion_steps import count_turns
 from beamfem.linalg.tangent import UNROTATED, turning
@@ -38,12 +39,16 @@ class EquationsOfMotion:
     system: System
     counted: np.ndarray
 
+    __repr__ = brief
+
     @property
     def free(self) -> np.ndarray:
+        """Numbers (unknown,) of the unknown coordinates among all."""
         return self.system.free_dofs
 
     @property
     def scale(self) -> np.ndarray:
+        """What a correction of each unknown coordinate is measured by (unknown,)."""
         return self.system.scale[self.system.free_dofs]
 
     def residual(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:

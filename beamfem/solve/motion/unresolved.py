@@ -1,12 +1,12 @@
 """Functions of time that act on a model, and whether the steps resolve them."""
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamfem.assembly.system import System
+from beamfem.errors import warn
 from beamfem.model.beam import Beam
 from beamfem.model.load import Load
 from beamfem.model.model import Model
@@ -91,11 +91,10 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
         if bulging.any():
             first = int(np.argmax(bulging))
             found.append(course.name)
-            warnings.warn(
+            warn(
                 f"the {course.name} varies more within the step from {ends[first]:.6g} s to {ends[first + 1]:.6g} s "
                 f"than between its ends, where steps take it ({int(bulging.sum())} such steps): what happens in "
                 "between is not resolved. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
-                stacklevel=3,
             )
     return found
 

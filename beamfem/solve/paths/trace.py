@@ -9,6 +9,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.system import System, system_of
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.progress import progress
 from beamfem.results.path import Bifurcation, Path, PathState
@@ -30,6 +31,7 @@ _ITERATIONS = 15  # a shorter step is cheaper than more iterations
 Until = float | Callable[[PathState], bool] | None
 
 
+@keywords_checked
 def trace_equilibrium(
     model: Model,
     until: Until = None,

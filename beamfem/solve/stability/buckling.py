@@ -3,14 +3,15 @@
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, Unpack
-from warnings import warn
 
 import numpy as np
 
 from beamfem.assembly.equations import STATICS, linearise, load_slope
 from beamfem.assembly.system import System, system_of
-from beamfem.errors import ConvergenceError, InputError, RoundOffWarning
+from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
+from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
+from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.drawing_options import ModeOptions
@@ -35,6 +36,7 @@ _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move i
 _LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
 _LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
+_SHOWN = 6  # critical points in a text
 _UNCERTAIN = 1e-4  # of a load factor: a larger uncertainty gives a warning
 
 
@@ -83,9 +85,10 @@ class Buckling:
     status: Status = Status.COMPLETED
 
     def __repr__(self) -> str:
-        points = zip(self.kinds, self.load_factors, strict=True)
-        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points)
-        return f"Buckling({listed or 'no critical point'}; ended because {self.ended})"
+        points = list(zip(self.kinds, self.load_factors, strict=True))
+        listed = ", ".join(f"{kind} at load factor {value:.8g}" for kind, value in points[:_SHOWN])
+        more = f" and {len(self) - _SHOWN} more" if len(self) > _SHOWN else ""
+        return f"Buckling({listed or 'no critical point'}{more}; ended because {self.ended})"
 
     def _repr_html_(self) -> str:
         return offered(Buckling._repr_html_)(self)
@@ -151,6 +154,10 @@ class Buckling:
         rows = list(zip(self.load_factors.tolist(), self.kinds, self.uncertainty.tolist(), strict=True))
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
+    def to_xarray(self, beam: Beam | None = None) -> Any:
+        """Return load factors and shapes along a beam, or along all beams, as an xarray.Dataset over the points."""
+        return offered(Buckling.to_xarray)(self, beam)
+
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:
         """Draw the modes, each with its load factor.
 
@@ -160,8 +167,8 @@ class Buckling:
         ----------
         path : path, optional
             File to write (PNG, SVG, PDF).
-        **options
-            most : largest number of modes to draw.
+        most : int, default 6
+            Largest number of modes to draw.
 
         Returns
         -------
@@ -183,6 +190,7 @@ class Buckling:
         return offered(Buckling.plot)(self, path, **options)
 
 
+@keywords_checked
 def solve_buckling(model: Model, count: int = 1, about: State | Solution | None = None) -> Buckling:
     """Find the first points of the loading path at which the tangent stiffness is singular.
 
@@ -253,7 +261,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     if np.any(uncertainty > _UNCERTAIN):
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
         said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
-        warn(said, RoundOffWarning, stacklevel=2)
+        warn(said, RoundOffWarning)
     shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
     return Buckling(
         model,

@@ -1,11 +1,9 @@
 """Results of a static solve, and their conversion into a solution."""
 
-import warnings
-
 import numpy as np
 
 from beamfem.assembly.round_off import FEW_DIGITS
-from beamfem.errors import RoundOffWarning, UnstableWarning
+from beamfem.errors import RoundOffWarning, UnstableWarning, warn
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics, Status
@@ -68,12 +66,12 @@ class StaticRecord:
             elif unstable[-1]:
                 ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
             if complete:
-                warnings.warn(said[0], UnstableWarning, stacklevel=3)
+                warn(said[0], UnstableWarning)
         if self.digits < FEW_DIGITS:
             few = f"round-off leaves {self.digits:.0f} digits of the forces"
             ended += f"; {few}"
             said += (few,)
-            warnings.warn(few, RoundOffWarning, stacklevel=3)
+            warn(few, RoundOffWarning)
         statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, said, self.digits)
         return Solution(
             self.model,

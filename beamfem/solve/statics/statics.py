@@ -10,6 +10,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.results.solution import Solution
 from beamfem.results.turns import start_rotations
@@ -25,6 +26,7 @@ from beamfem.validation import count, finite, items, one_of, shown
 _NEWTON = Newton()
 
 
+@keywords_checked
 def solve_static(
     model: Model,
     steps: int = 1,

@@ -1,0 +1,83 @@
+"""Misspelt keywords of what is public: the call names the nearest and all that there are.
+
+Functions have the decorator where they are defined, so that they are found by their name in other processes; of classes
+`public` has all methods checked in place.
+"""
+
+from collections.abc import Callable, Iterable
+from functools import wraps
+from inspect import Parameter, Signature, isclass, signature
+from types import FunctionType
+from typing import Any, TypeVar, Unpack, get_args, get_origin, get_type_hints
+
+from beamfem.errors import UnknownKeywordError
+from beamfem.validation import nearest
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def keywords_checked(function: _Function) -> _Function:
+    """Return the function, which raises UnknownKeywordError for a keyword that it does not have."""
+
+    @wraps(function)
+    def call(*arguments: Any, **keywords: Any) -> Any:
+        try:
+            return function(*arguments, **keywords)
+        except TypeError as error:
+            # of the call itself: a frame further in has a traceback of its own
+            if keywords and error.__traceback__ is not None and error.__traceback__.tb_next is None:
+                _refuse_unknown(function, keywords)
+            raise
+
+    return call  # type: ignore[return-value]
+
+
+def require_keywords(name: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise UnknownKeywordError for the first keyword that is none of those known; name: of what is called."""
+    known = list(known)
+    for keyword in given:
+        if keyword not in known:
+            said = nearest(keyword, known) if known else "it takes none"
+            raise UnknownKeywordError(f"{name} has no parameter {keyword!r}; {said}")
+
+
+def check_keywords_of(kind: type) -> None:
+    """Have the constructor and the public methods that a class itself defines checked."""
+    for name, item in list(vars(kind).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
+        if isinstance(item, FunctionType):
+            setattr(kind, name, keywords_checked(item))
+        elif isinstance(item, staticmethod):
+            setattr(kind, name, staticmethod(keywords_checked(item.__func__)))
+
+
+def check_classes(items: Iterable[Any]) -> None:
+    """Have every class among these checked, but for errors and for protocols, which others implement."""
+    for item in items:
+        if isclass(item) and not issubclass(item, Exception) and not getattr(item, "_is_protocol", False):
+            check_keywords_of(item)
+
+
+def with_options_listed(own: Signature) -> Signature:
+    """Return a signature with each option of `**options: Unpack[...]` by its name, where its dictionary has defaults.
+
+    A default is what Annotated[type, default] says beside the type.
+    """
+    listed: list[Parameter] = []
+    for parameter in own.parameters.values():
+        if get_origin(parameter.annotation) is not Unpack:
+            listed.append(parameter)
+            continue
+        (options,) = get_args(parameter.annotation)
+        for name, hint in get_type_hints(options, include_extras=True).items():
+            kind, default = get_args(hint)
+            listed.append(Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=kind))
+    return own.replace(parameters=listed)
+
+
+def _refuse_unknown(function: Callable[..., Any], given: Iterable[str]) -> None:
+    parameters = list(signature(function).parameters.values())
+    named = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
+    method = "." in function.__qualname__ and named[:1] == ["self"]
+    require_keywords(function.__qualname__.removesuffix(".__init__"), given, named[1:] if method else named)

@@ -304,7 +304,7 @@ def test_what_remembers_is_refused_where_it_cannot_be_taken():
     for solve in (bf.solve_buckling, bf.trace_equilibrium):
         with pytest.raises(bf.InputError, match="does not support section laws with history, such as Plastic"):
             solve(model)
-    with pytest.raises(bf.InputError, match="a section law remembers, Plastic, which an integrator of one's own"):
+    with pytest.raises(bf.InputError, match="the section law Plastic has history, which user-defined integrators"):
         bf.simulate(model, 0.1, 1e-3, Radau())
 
 

@@ -231,7 +231,8 @@ def refuse_what_own_steps_lack(system: System) -> None:
         )
     for law, _ in system.history.laws:
         raise InputError(
-            f"a section law remembers, {law.name}, which an integrator of one's own does not take: use GeneralizedAlpha"
+            f"the section law {law.name} has history, which user-defined integrators do not support: use "
+            "GeneralizedAlpha"
         )
     if len(system.connectors.multipliers):
         raise InputError(

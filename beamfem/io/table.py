@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.extras import needed_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.model.named import names
 from beamfem.results.along import QUANTITIES, AxisPoints
 
 if TYPE_CHECKING:
@@ -23,9 +24,9 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
     of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; of the model
-    (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam, arc_length
-    [m], x0, y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where
-    section forces may jump.
+    (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam (with the
+    `names` of all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the reference (station,).
+    Adjacent elements each have a station at their common end, where section forces may jump.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(_about, solution.model)
     points = AxisPoints(mesh, _PIECES)
@@ -49,10 +50,12 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[dict[str, Variable], dict[
     energy = solution.energy()
     for name in ("kinetic", "strain", "potential"):
         data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
+    called = names(solution.model.beams)
+    named = {"names": ", ".join(called)} if any(one.name for one in solution.model.beams) else {}
     number = np.full(len(points.element), solution.model.number_of(beam))
     coordinates: dict[str, Variable] = {
         at[0]: (over, solution.at, about(at[1], at[2])),
-        "beam": (("station",), number, about("number of the beam", "1")),
+        "beam": (("station",), number, about("number of the beam", "1") | named),
         "arc_length": (("station",), points.arc_length, about("arc length in the reference", "m")),
         "x0": (("station",), points.reference[:, 0], about("reference x", "m")),
         "y0": (("station",), points.reference[:, 1], about("reference y", "m")),

@@ -31,6 +31,8 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE (bulges as arcs of a Chain), SPLINE and ELLIPSE (rational splines) are
     exact, except a SPLINE with fit points only, which the file does not define: it is drawn as ezdxf draws it. Texts,
     dimensions, leaders, tolerances and hatches are skipped as annotation.
+    Coordinates are taken as they are drawn; the unit in the header ($INSUNITS) converts nothing. The model has to be in
+    the units of the drawing, such as `Model(..., units="N, mm")` for one in millimetres.
     Raises FileError, FileNotFoundError; InputError for a file that is not DXF, an entity of another kind or off the
     plane z = 0, or a file without curves; MissingPackageError without ezdxf.
     """

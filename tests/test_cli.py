@@ -316,6 +316,7 @@ def test_doctor(monkeypatch):
 
 
 def test_plain_values():
+    assert plain(bf.Status.ROUND_OFF) == "round off"
     assert plain({("a", 1): np.array([1.0, np.nan]), "b": (np.int64(2), 1 + 2j, Path("x"))}) == {
         "a, 1": [1.0, None],
         "b": [2, [1.0, 2.0], "x"],

@@ -15,6 +15,6 @@ def called(name: str) -> Callable[..., Beam]:
     def make(
         curve: Curve, elements: int | Sequence[float], element: Element, section: Any, material: Material | None = None
     ) -> Beam:
-        return Beam(curve, elements, element, section, material, name)  # type: ignore[arg-type]
+        return Beam(curve, elements, element, section, material, name)
 
     return make

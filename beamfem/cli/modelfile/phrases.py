@@ -124,7 +124,7 @@ def told_in_keys() -> Iterator[None]:
                 else:
                     others(message, category, *place)
 
-            warnings.showwarning = show
+            warnings.showwarning = show  # type: ignore[assignment]
             yield
     except ConvergenceError as error:
         error.args = (in_keys(str(error)), *error.args[1:])

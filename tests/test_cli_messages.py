@@ -115,3 +115,16 @@ def test_tables_have_the_units_of_the_file(tmp_path):
     found = json.loads(invoke("run", tmp_path / "lee.toml", "--json").stdout)
     assert found["outputs"][0]["units"] == {"ux": "mm", "uy": "mm"}
     assert set(found["outputs"][0]["rows"][0]) == {"load_factor", "ux", "uy"}
+
+
+def test_what_is_written_is_told_of_in_keys_too(tmp_path):
+    """The flying beam has a stiffness and no height, and so no stress."""
+    flying = ROOT / "examples" / "flying_beam.toml"
+    (tmp_path / "a.toml").write_text(
+        flying.read_text().replace("duration = 6.0", "duration = 0.1").replace("at = [4.0]", "")
+    )
+    command = [sys.executable, "-m", "beamfem", "run", "a.toml", "--vtk", "a.pvd"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("warning: the stress of 1 of 1 beams (rod) is not known")
+    assert "their key `height` gives it" in line

@@ -51,6 +51,7 @@ def run(
         from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
         from beamfem.cli.modelfile.files import require_saved
+        from beamfem.cli.modelfile.phrases import told_in_keys
         from beamfem.cli.targets import require_target
         from beamfem.errors import ConvergenceError
 
@@ -77,13 +78,14 @@ def run(
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun
-        written = _write(found.solution, out, vtk, plot, colour)
-        for curve in job.curves:
-            curve.draw(found.solution)
-            written.append(str(curve.file))
-        for file in job.files:
-            file.write(found)
-            written.append(str(file.file))
+        with told_in_keys():
+            written = _write(found.solution, out, vtk, plot, colour)
+            for curve in job.curves:
+                curve.draw(found.solution)
+                written.append(str(curve.file))
+            for file in job.files:
+                file.write(found)
+                written.append(str(file.file))
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)

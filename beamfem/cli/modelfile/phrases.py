@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from beamfem import errors
-from beamfem.errors import ConvergenceError
+from beamfem.errors import BeamfemError
 
 # longer phrases before those that they contain
 _PHRASES = (
@@ -113,7 +113,7 @@ def in_keys(message: str) -> str:
 
 @contextmanager
 def told_in_keys() -> Iterator[None]:
-    """Let a solve that fails say so in the keys of model files, and tell its warnings without lines of Python."""
+    """Let what fails say so in the keys of model files, and tell its warnings without lines of Python."""
     try:
         with warnings.catch_warnings():
             others = warnings.showwarning
@@ -126,6 +126,6 @@ def told_in_keys() -> Iterator[None]:
 
             warnings.showwarning = show  # type: ignore[assignment]
             yield
-    except ConvergenceError as error:
-        error.args = (in_keys(str(error)), *error.args[1:])
+    except BeamfemError as error:
+        error.args = tuple(in_keys(part) if isinstance(part, str) else part for part in error.args)
         raise

@@ -12,6 +12,7 @@ FORCES = ("N", "mN", "uN", "nN", "daN", "kN", "MN", "lbf", "kip", "kgf")
 LENGTHS = ("m", "mm", "um", "nm", "cm", "dm", "km", "in", "ft")
 TIMES = ("s", "ms", "us", "ns", "min")
 _STRESS = {("N", "m"): "Pa", ("N", "mm"): "MPa", ("kN", "m"): "kPa", ("MN", "m"): "MPa", ("kN", "mm"): "GPa"}
+_MASS = {("N", "m"): "kg", ("N", "mm"): "t", ("kN", "m"): "t", ("mN", "mm"): "kg", ("uN", "um"): "kg"}
 _STRESS |= {("lbf", "in"): "psi", ("kip", "in"): "ksi", ("uN", "um"): "MPa", ("mN", "mm"): "kPa"}
 
 
@@ -24,13 +25,17 @@ class Units:
     time: str = "s"
 
     def of(self, unit: str) -> str:
-        """Return what takes the place of an SI unit such as "N m", "m/s", "Pa" or "J"; others stay as they are."""
+        """Return what takes the place of an SI unit such as "N m", "Pa", "kg" or "J"; others stay as they are."""
+        mass = _MASS.get((self.force, self.length)) if self.time == "s" else None
+        if mass is None and unit == "kg/m^3":
+            return f"{self.force} {self.time}^2/{self.length}^4"
         parts = {
             "N": self.force,
             "m": self.length,
             "s": self.time,
             "J": "J" if (self.force, self.length) == ("N", "m") else f"{self.force} {self.length}",
             "Pa": _STRESS.get((self.force, self.length), f"{self.force}/{self.length}^2"),
+            "kg": mass or f"{self.force} {self.time}^2/{self.length}",
             "Hz": "Hz" if self.time == "s" else f"1/{self.time}",
         }
         return re.sub(r"[A-Za-z]+", lambda found: parts.get(found[0], found[0]), unit)

@@ -69,7 +69,8 @@ def _of_examples(page: Path, text: str, keep: Path) -> list[tuple[int, str]]:
             with contextlib.redirect_stdout(printed):
                 runpy.run_path(str(page.parent / example[1]), run_name="__main__")
             seconds = time.perf_counter() - begun
-            words = f"It prints, in {seconds:.1f} s with all files:\n\n```text\n{printed.getvalue()}```"
+            took = f"{1e3 * seconds:.0f} ms" if seconds < 1.0 else f"{seconds:.1f} s"
+            words = f"It prints, in {took} with all files:\n\n```text\n{printed.getvalue()}```"
             shown = [words, *_pictures(Path("out/examples"), keep, set())]
             found += [(example.end(), own) for own in shown]
     return found

@@ -18,6 +18,7 @@ model = bf.Model(
     supports=[bf.Pin(column.start), bf.Pin(bar.end)],
     joints=[bf.Rigid(column.end, bar.start)],
     loads=[bf.PointForce(loaded, (0, -1.0))],
+    units="N, cm",
 )
 path = bf.trace_equilibrium(model, until=lambda state: state.displacement(loaded)[1] < -90.0)
 

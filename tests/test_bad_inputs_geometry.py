@@ -197,7 +197,7 @@ BEAMS = {
     "section by number": (lambda: a_beam(section=0.01), BAD, "section of a Beam must be a section"),
     "section as a class": (lambda: a_beam(section=bf.Section), BAD, "section of a Beam must be a section"),
     "section of two": (lambda: a_beam(section=lambda s, t: SECTION), BAD, "section .* of arc length alone"),
-    "section of nothing": (lambda: a_beam(section=lambda s: None), BAD, "section at arc length 0 m must be a section"),
+    "section of nothing": (lambda: a_beam(section=lambda s: None), BAD, "section at arc length 0 must be a section"),
     "section that raises": (lambda: a_beam(section=lambda s: 1 / 0), BAD, r"section\(0\) cannot be computed: Zero"),
     "material by name": (lambda: a_beam(material="steel"), BAD, "material of a Beam must be a Material"),
     "no material": (lambda: a_beam(material=None), BAD, "needs a material"),
@@ -222,9 +222,9 @@ BEAMS = {
 
 # double precision cannot square what solvers form of these beams
 MAGNITUDES = {
-    "a length of 1e300": (lambda: a_beam(curve=bf.Line((0, 0), (1e300, 0))), BAD, "length of Beam.* 1e.300 m"),
-    "a length of 1e-300": (lambda: a_beam(curve=bf.Line((0, 0), (1e-300, 0))), BAD, "length of Beam.* 1e-300 m"),
-    "a length that overflows": (lambda: a_beam(curve=bf.Line((-1e308, 0), (1e308, 0))), BAD, "length of Beam.* inf m"),
+    "a length of 1e300": (lambda: a_beam(curve=bf.Line((0, 0), (1e300, 0))), BAD, "length of Beam.* 1e.300"),
+    "a length of 1e-300": (lambda: a_beam(curve=bf.Line((0, 0), (1e-300, 0))), BAD, "length of Beam.* 1e-300"),
+    "a length that overflows": (lambda: a_beam(curve=bf.Line((-1e308, 0), (1e308, 0))), BAD, "length of Beam.* inf"),
     "a place of 1e160": (lambda: a_beam(curve=bf.Line((0, 1e160), (1e160, 1e160))), BAD, "the length of"),
     "a radius of 1e300": (lambda: a_beam(curve=bf.Arc((0, 0), 1e300, 0, 1)), BAD, "the length of"),
     "an angle of 1e300": (lambda: a_beam(curve=bf.Arc((0, 0), 1.0, 0, 1e300)), BAD, "the length of"),
@@ -234,7 +234,7 @@ MAGNITUDES = {
     "a modulus of 1e-300": (lambda: a_beam(material=bf.Material(1e-300, 0.3, 1.0)), BAD, "E A of"),
     "a density of 1e300": (lambda: a_beam(material=bf.Material(1.0, 0.3, 1e300)), BAD, "mass of an element"),
     "a density of 1e-300": (lambda: a_beam(material=bf.Material(1.0, 0.3, 1e-300)), BAD, "mass of an element"),
-    "an area of 1e300": (lambda: a_beam(section=bf.Section(1e300, 1.0)), BAD, "E A of .* inf N"),
+    "an area of 1e300": (lambda: a_beam(section=bf.Section(1e300, 1.0)), BAD, "E A of .* inf"),
     "a shear factor of 1e-300": (lambda: a_beam(section=bf.Rectangle(0.1, 0.1, 1e-300)), BAD, "k_s G A of"),
     "a stiffness of 1e300": (
         lambda: a_beam(section=bf.Section.from_stiffness(1, 1, 1e300, 1, 1)),

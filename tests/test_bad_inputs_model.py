@@ -55,14 +55,14 @@ LOADS = {
     "a line load of text": (
         lambda: bf.DistributedLoad(BEAM, lambda s: "ab"),
         BAD,
-        "vector of DistributedLoad at arc length 0 m",
+        "vector of DistributedLoad at arc length 0",
     ),
     "a line load that raises": (lambda: bf.DistributedLoad(BEAM, lambda s: 1 / 0), BAD, "ZeroDivisionError"),
     "pressure of a vector": (lambda: bf.Pressure(BEAM, (0, 1)), BAD, "value of Pressure must be a number"),
     "pressure of nan along": (
         lambda: bf.Pressure(BEAM, lambda s: NAN),
         BAD,
-        "value of Pressure at arc length 0 m must be finite",
+        "value of Pressure at arc length 0 must be finite",
     ),
     "pressure on a class": (lambda: bf.Pressure(bf.Beam, 1.0), BAD, "beam of Pressure must be a Beam"),
     "a table of one point": (lambda: bf.Interpolated([(0, 0)]), BAD, "at least two pairs"),

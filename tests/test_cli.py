@@ -127,7 +127,7 @@ def test_a_free_model_is_bad_input_of_its_file(tmp_path):
     file.write_text(CANTILEVER.read_text().replace('kind = "clamp"', 'kind = "pin"').replace('"fx", "fy", "m"', '"fx"'))
     done = invoke("run", file)
     assert done.exit_code == 2
-    assert done.stderr.startswith(f"error: {file}: beam 0 can move freely: it turns")
+    assert done.stderr.startswith(f"error: {file}: beam 'arm' can move freely: it turns")
 
 
 @pytest.mark.parametrize(
@@ -185,11 +185,17 @@ def test_info_export_and_plot_of_a_results_file(results, tmp_path):
     found = json.loads(invoke("info", path, "--json").stdout)
     assert (found["kind"], found["states"], found["load_factor"]) == ("static", 2, [0.0, 1.0])
     assert found["statistics"]["iterations"] > 1
-    assert found["model"]["supports"] == ["Clamp: point beam 0 at 0 (0, 0)"]
+    assert found["model"]["supports"] == ["Clamp: arm.start, at (0, 0) m"]
     assert "4 x CRBF-4 (structural)" in found["model"]["beams"][0]
     text = invoke("info", path).stdout
     assert "load factor  0 to 1\n" in text
-    assert "PointForce: point beam 0 at 1 (1, 0), vector (0.0, 833.333" in text
+    assert "PointForce: arm.end, at (1, 0) m, vector (0, 833.333) N" in text
+    assert "solve        completed: the " in text
+    assert "Newton iterations in 1 step\n" in text
+    assert " digits of the forces are sure\n" in text
+    assert "arm: Line, 1 m long, 4 x CRBF-4 (structural), rectangle 0.01 x 0.01 m, E = 2e+11 Pa, nu = 0.3" in text
+    for raw in ("Status.", "\niterations", "[]", "None", "Section("):
+        assert raw not in text
     assert "joints: none" in text
     exported = invoke("export", path, tmp_path / "x" / "a.pvd")
     assert (exported.exit_code, exported.stdout) == (0, f"wrote {tmp_path / 'x' / 'a.pvd'}\n")
@@ -310,6 +316,7 @@ def test_doctor(monkeypatch):
 
 
 def test_plain_values():
+    assert plain(bf.Status.ROUND_OFF) == "round off"
     assert plain({("a", 1): np.array([1.0, np.nan]), "b": (np.int64(2), 1 + 2j, Path("x"))}) == {
         "a, 1": [1.0, None],
         "b": [2, [1.0, 2.0], "x"],

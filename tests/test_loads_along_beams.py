@@ -54,9 +54,9 @@ BAD = {
     "a pair": (lambda b: bf.Pressure(b, (0.0, 1.0)), "value of Pressure must be a number"),
     "no pair": (
         lambda b: bf.DistributedLoad(b, lambda s: s),
-        "vector of DistributedLoad at arc length 0 m must be two",
+        "vector of DistributedLoad at arc length 0 must be two",
     ),
-    "not finite": (lambda b: bf.Pressure(b, lambda s: 1.0 / s if s else np.inf), "at arc length 0 m must be finite"),
+    "not finite": (lambda b: bf.Pressure(b, lambda s: 1.0 / s if s else np.inf), "at arc length 0 must be finite"),
     "two arguments": (lambda b: bf.Pressure(b, lambda x, y: 1.0), "function of arc length alone"),
     "a point": (lambda b: bf.Pressure(b.end, lambda s: 1.0), "beam of Pressure must be a Beam"),
 }

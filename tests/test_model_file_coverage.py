@@ -14,6 +14,7 @@ from beamfem.cli.modelfile import (
     actions,
     analyses,
     axes,
+    beams,
     elements,
     files,
     frames,
@@ -35,7 +36,6 @@ ITSELF = {
     *(make for kinds in (actions.SUPPORTS, actions.LOADS, actions.JOINTS) for make in kinds.values()),
     bf.Material,
     bf.Layer,
-    bf.Beam,
     bf.Newton,
     bf.RigidVelocity,
 }
@@ -48,6 +48,7 @@ BY = {
     bf.SplitContinuum: elements.FORCES["split-continuum"],
     bf.ElasticLine: elements.FORCES["elastic-line"],
     bf.Structural: elements.FORCES["structural"],
+    bf.Beam: beams.called("NAME"),
     bf.Model: KEYS,
     bf.Model.with_imperfection: Imperfection,
     bf.Model.plot: files.Undeformed,
@@ -98,6 +99,7 @@ NAMED = {
 }
 # what is no key, and why: a name, or a parameter of one
 NO_KEY = {
+    (bf.Beam, "name"): "the NAME of [beams.NAME]",
     (bf.sweep, "function"): "the function of a sweep is the file itself",
     (bf.sweep, "executor"): "points are solved one after the other, in the process of the command",
     (bf.sweep, "store"): "the command writes the table with --out; who keeps results for years has a script",

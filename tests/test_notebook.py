@@ -32,7 +32,8 @@ def test_solution_tells_how_it_ended():
     rows = rows_of(solution._repr_html_())
     assert rows["rows"] == "2"
     assert rows["load factor"] == "0 to 1"
-    assert rows["ended"] == solution.statistics.ended
+    assert rows["ended"] == f"completed: {solution.statistics.ended}"
+    assert rows["solved in"] == f"{solution.iterations} Newton iterations in 1 step"
     moved = np.linalg.norm(solution.displacement(solution.model.beams[0].end)[-1])
     assert rows["largest displacement"].startswith(f"{moved:.4g} m")
     assert rows["largest displacement"].endswith("at (1, 0), load factor 1")

@@ -243,7 +243,7 @@ BAD = {
     "stiffness of zero": (lambda: bf.Section.from_stiffness(1.0, 0.0, 1.0, 1.0, 1.0), "shear"),
     "stiffness for a body": (lambda: a_beam(bf.Section.from_stiffness(1, 1, 1, 1, 1), bf.ANCF()), "Structural"),
     "no material": (lambda: a_beam(SQUARE, material=None), "needs a material"),
-    "a function that gives a number": (lambda: a_beam(lambda s: 0.1), r"arc length 0 m must be a section"),
+    "a function that gives a number": (lambda: a_beam(lambda s: 0.1), r"arc length 0 must be a section"),
     "a height below zero at the end": (
         lambda: a_beam(lambda s: bf.Rectangle(0.1, 0.1 - 0.2 * s)),
         r"section\(0\.5\) .*height",
@@ -252,7 +252,7 @@ BAD = {
         lambda: run(lambda s: bf.Rectangle(0.1, 1.0 if abs(s - 0.7) > 0.1 else -1.0)),
         r"section\(0\.\d+\) .*height",
     ),
-    "no material somewhere": (lambda: run(lambda s: LAYERS if s > 0.5 else "steel"), "arc length 0 m"),
+    "no material somewhere": (lambda: run(lambda s: LAYERS if s > 0.5 else "steel"), "arc length 0"),
     "elements that fall": (lambda: a_beam(SQUARE, elements=[0.0, 0.5, 0.4, 1.0]), "rise"),
     "elements that stop short": (lambda: a_beam(SQUARE, elements=[0.0, 0.5]), "from 0 to 1"),
     "elements of words": (lambda: a_beam(SQUARE, elements=["a", "b"]), "elements"),

@@ -114,7 +114,10 @@ def test_materials_and_sections_have_numbers_and_a_legend(tmp_path):
     assert cells(body, "beam") == [0, 1, 1, 1, 2, 3]
     assert cells(body, "material") == [0, 0, 1, 0, 1, 0]
     assert cells(body, "section") == [0, 1, 1, 1, 0, 2]
-    assert legend(body, "materials") == [str(steel), str(rubber), "of the section"]
-    assert legend(body, "sections") == [str(flat), str(sandwich), "varies along the beam"]
+    of_steel, of_rubber = "E = 2e+11 Pa, nu = 0.3, density 7800 kg/m^3", "E = 1e+07 Pa, nu = 0.3, density 1200 kg/m^3"
+    layers = "layers of 0.002, 0.006, 0.002 m from below, 0.01 m wide"
+    assert legend(body, "materials") == [of_steel, of_rubber, "of the section"]
+    assert legend(body, "sections") == ["rectangle 0.01 x 0.01 m", layers, "varies along the beam"]
+    assert body.GetFieldData().GetAbstractArray("beams") is None  # none has a name
     assert [set(cells(line, "material")[12 * i : 12 * (i + 1)]) for i in range(4)] == [{0}, {2}, {1}, {0}]
     assert line.GetFieldData().GetAbstractArray("materials") is None  # meshio could not read the file

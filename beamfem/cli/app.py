@@ -6,6 +6,7 @@ import typer
 
 from beamfem.cli import files, study
 from beamfem.cli.doctor import doctor
+from beamfem.cli.examples import examples
 from beamfem.cli.new import new
 from beamfem.cli.run import run
 
@@ -40,6 +41,7 @@ def _root(
 app.command()(new)
 app.command()(run)
 app.command(context_settings={"allow_interspersed_args": False, "allow_extra_args": True})(study.study)
+app.command()(examples)
 app.command()(files.info)
 app.command()(files.export)
 app.command()(files.plot)

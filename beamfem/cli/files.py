@@ -7,6 +7,7 @@ import typer
 
 from beamfem.cli.pictures import Colour, draw
 from beamfem.cli.report import AsJson, Quiet, print_json, reported
+from beamfem.units import units_of
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -23,19 +24,7 @@ def info(results: Results, as_json: AsJson = False) -> None:
         if as_json:
             print_json(found)
             return
-        model = found["model"]
-        for name in ("file", "written_by", "kind", "states", "load_factor", "time", "coordinates"):
-            if name in found:
-                value = found[name]
-                text = f"{value[0]:g} to {value[1]:g}" if isinstance(value, list) else value
-                print(f"{name.replace('_', ' '):12s} {text}")
-        for name, value in found["statistics"].items():
-            print(f"{name:12s} {value}")
-        print(f"{'units':12s} {found['units']}")
-        for part, items in model.items():
-            print(f"\n{part}" + ("" if items else ": none"))
-            for item in items:
-                print(f"  {item}")
+        _print(found)
 
 
 def export(
@@ -97,50 +86,46 @@ def _wrote(path: Path, as_json: bool, quiet: bool) -> None:
 def _described(path: Path, solution: "Solution") -> dict[str, Any]:
     import h5py
 
+    from beamfem.cli.model_in_words import beam_lines, part_line
     from beamfem.cli.plain import summary
     from beamfem.io.hdf5 import read_label
 
     with h5py.File(path, "r") as file:
         version = read_label(file, "beamfem_version")
-    model = solution.model
-    beams = [
-        f"{number}: {type(beam.curve).__name__}, length {beam.curve.length:.6g}, "
-        f"{model.meshes[number].elements} x {beam.element.name} ({beam.element.forces.name}), "
-        f"{beam.section}, {beam.material}"
-        for number, beam in enumerate(model.beams)
-    ]
+    model, statistics = solution.model, solution.statistics
     return {
         "file": str(path),
         "written_by": f"beamfem {version}",
         **summary(solution),
+        "outcome": statistics.outcome,
+        "effort": statistics.effort,
         "units": model.units,
         "model": {
-            "beams": beams,
-            "supports": [_acting(item, solution) for item in model.supports],
-            "joints": [_acting(item, solution) for item in model.joints],
-            "loads": [_acting(item, solution) for item in model.loads],
+            "beams": beam_lines(model),
+            "supports": [part_line(item, model) for item in model.supports],
+            "joints": [part_line(item, model) for item in model.joints],
+            "loads": [part_line(item, model) for item in model.loads],
         },
     }
 
 
-def _acting(item: Any, solution: "Solution") -> str:
-    """Return a support, joint or load as one line, with its places by beam number and fraction."""
-    from dataclasses import fields
-
-    from beamfem.model.beam import Beam, Point
-    from beamfem.model.sampled import Sampled
-
-    words = []
-    for field in fields(item):
-        value = getattr(item, field.name)
-        if value == field.default:
-            continue
-        if isinstance(value, Point):
-            x, y = value.reference
-            value = f"beam {solution.model.number_of(value.beam)} at {value.fraction:g} ({x:g}, {y:g})"
-        elif isinstance(value, Beam):
-            value = f"{solution.model.number_of(value)}"
-        elif isinstance(value, Sampled):
-            value = f"function saved at {len(value.at)} values"
-        words.append(f"{field.name} {value}")
-    return f"{type(item).__name__}: {', '.join(words)}"
+def _print(found: dict[str, Any]) -> None:
+    """Print what a results file holds, as a person would say it."""
+    statistics = found["statistics"]
+    second = f" {units_of(found['units']).of('s')}"
+    for name in ("file", "written_by", "kind", "units", "coordinates", "states", "load_factor", "time"):
+        if name in found:
+            value = found[name]
+            text = f"{value[0]:g} to {value[1]:g}{second * (name == 'time')}" if isinstance(value, list) else value
+            print(f"{name.replace('_', ' '):12s} {text}")
+    print(f"{'solve':12s} {found['outcome']}")
+    if statistics["iterations"]:
+        print(f"{'effort':12s} {found['effort']}")
+    if statistics["digits"] is not None:
+        print(f"{'accuracy':12s} {statistics['digits']:.0f} digits of the forces are sure")
+    for warning in statistics["warnings"]:
+        print(f"{'warning':12s} {warning}")
+    for part, items in found["model"].items():
+        print(f"\n{part}" + ("" if items else ": none"))
+        for item in items:
+            print(f"  {item}")

@@ -12,7 +12,9 @@ FILMS, PAGE = (".gif", ".mp4"), ".html"
 
 Colour = Annotated[
     str | None,
-    typer.Option(help="Colour of the body: moment, stress, utilisation, speed ...", show_default=False),
+    typer.Option(
+        "--colour", "--color", help="Colour of the body: moment, stress, utilisation, speed ...", show_default=False
+    ),
 ]
 
 

@@ -54,15 +54,19 @@ def print_json(value: Any) -> None:
     print(json.dumps(plain(value), indent=2, allow_nan=False))
 
 
-def print_table(title: str, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Print rows with the same keys as a table; lists in them become several lines, side by side."""
+def print_table(title: str, rows: Sequence[Mapping[str, Any]], units: Mapping[str, str] | None = None) -> None:
+    """Print rows with the same keys as a table; lists in them become several lines, side by side.
+
+    units: of columns, by name.
+    """
     lines = [line for row in rows for line in _lines(row)]
     if not lines:
         return
     from beamfem.tabulate import as_text
 
     print(f"\n{title}" if title else "")
-    print(as_text(list(lines[0]), [[_text(value) for value in line.values()] for line in lines]))
+    heads = [f"{name} [{units[name]}]" if units and name in units else name for name in lines[0]]
+    print(as_text(heads, [[_text(value) for value in line.values()] for line in lines]))
 
 
 def _lines(row: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -16,15 +16,16 @@ if TYPE_CHECKING:
     from beamfem.cli.modelfile.read import Job
     from beamfem.results.solution import Solution
 
+# and the units of the numbers
 _TITLES = {
-    "load_factors": "Critical load factors",
-    "kinds": "Kinds",
-    "linearised": "Linearised about the start",
-    "frequencies": "Frequencies [Hz]",
-    "growth": "Growth [1/s]",
-    "rigid": "Rigid motions",
-    "limit_points": "Limit points, load factor",
-    "bifurcations": "Bifurcations, load factor",
+    "load_factors": ("Critical load factors", ""),
+    "kinds": ("Kinds", ""),
+    "linearised": ("Linearised about the start", ""),
+    "frequencies": ("Frequencies", "Hz"),
+    "growth": ("Growth", "1/s"),
+    "rigid": ("Rigid motions", ""),
+    "limit_points": ("Limit points, load factor", ""),
+    "bifurcations": ("Bifurcations, load factor", ""),
 }
 
 
@@ -50,6 +51,7 @@ def run(
         from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
         from beamfem.cli.modelfile.files import require_saved
+        from beamfem.cli.modelfile.phrases import told_in_keys
         from beamfem.cli.targets import require_target
         from beamfem.errors import ConvergenceError
 
@@ -72,22 +74,23 @@ def run(
             if found_before is not None and out is not None:
                 found_before.save(out)
                 last = float(found_before.at[-1])
-                at = f"load factor {last:g}" if found_before.static else f"{last:g} s"
+                at = f"load factor {last:g}" if found_before.static else f"{last:g} {job.model.unit('s')}"
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
         seconds = time.perf_counter() - begun
-        written = _write(found.solution, out, vtk, plot, colour)
-        for curve in job.curves:
-            curve.draw(found.solution)
-            written.append(str(curve.file))
-        for file in job.files:
-            file.write(found)
-            written.append(str(file.file))
+        with told_in_keys():
+            written = _write(found.solution, out, vtk, plot, colour)
+            for curve in job.curves:
+                curve.draw(found.solution)
+                written.append(str(curve.file))
+            for file in job.files:
+                file.write(found)
+                written.append(str(file.file))
         result = _result(model, job, found, seconds, written)
         if as_json:
             print_json(result)
         elif not quiet:
-            _print(result)
+            _print(result, found.solution)
 
 
 def _write(
@@ -105,12 +108,16 @@ def _write(
 def _result(file: Path, job: "Job", found: "Found", seconds: float, written: list[str]) -> dict[str, Any]:
     """Return all that is printed."""
     from beamfem.cli.modelfile.outputs import critical
+    from beamfem.cli.modelfile.phrases import in_keys
+    from beamfem.cli.modelfile.quantities import UNITS
     from beamfem.cli.plain import summary
     from beamfem.results.path import Path as EquilibriumPath
 
     outputs = []
     for output in job.outputs:
-        entry: dict[str, Any] = {"name": output.name, "rows": output.rows(found.solution)}
+        rows = output.rows(found.solution)
+        units = {name: job.model.unit(UNITS[name]) for name in rows[0] if name in UNITS}
+        entry: dict[str, Any] = {"name": output.name, "units": units, "rows": rows}
         if isinstance(found.solution, EquilibriumPath):
             entry |= critical(output, found.solution)
         outputs.append(entry)
@@ -122,31 +129,33 @@ def _result(file: Path, job: "Job", found: "Found", seconds: float, written: lis
         **summary(found.solution),
         "seconds": seconds,
         **found.values,
-        "warnings": list(found.solution.warnings),
+        "warnings": [in_keys(warning) for warning in found.solution.warnings],
         "outputs": outputs,
         "written": written,
     }
 
 
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")
+def _print(result: dict[str, Any], solution: "Solution") -> None:
+    from beamfem.results.status import counted
 
-
-def _print(result: dict[str, Any]) -> None:
     print(result["title"])
-    statistics = result["statistics"]
-    effort = f"{_counted(statistics['iterations'], 'iteration')}, " if statistics["iterations"] else ""
-    sizes = ", ".join(_counted(result[f"{what}s"], what) for what in ("beam", "coordinate", "state"))
-    print(f"{result['analysis']}: {sizes}, {effort}{result['seconds']:.2f} s; {statistics['ended']}")
-    for name, title in _TITLES.items():
+    statistics, unit = solution.statistics, solution.model.unit
+    effort = f"{counted(statistics.iterations, 'iteration')}, " if statistics.iterations else ""
+    sizes = ", ".join(counted(result[f"{what}s"], what) for what in ("beam", "coordinate", "state"))
+    print(f"{result['analysis']}: {sizes}, {effort}{result['seconds']:.2f} s; {statistics.outcome}")
+    for name, (title, si) in _TITLES.items():
         if result.get(name):
-            print_table(title, [{"": number, name: value} for number, value in enumerate(result[name], 1)])
+            print_table(
+                f"{title} [{unit(si)}]" if si else title,
+                [{"": number, name: value} for number, value in enumerate(result[name], 1)],
+            )
     for output in result["outputs"]:
-        print_table(output["name"], output["rows"])
+        print_table(output["name"], output["rows"], output["units"])
         for critical in ("limit_points", "bifurcations"):
             if output.get(critical):
-                print_table(f"{output['name']}, at {critical.replace('_', ' ')}", output[critical])
-    for warning in result["warnings"]:
+                print_table(f"{output['name']}, at {critical.replace('_', ' ')}", output[critical], output["units"])
+    told = len(statistics.warnings)  # as they were found
+    for warning in result["warnings"][told:]:
         print(f"warning: {warning}", file=sys.stderr)
     if result["written"]:
         print()

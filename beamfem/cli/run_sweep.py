@@ -54,7 +54,7 @@ def run_sweep(
         print_json(_result(job, found, seconds, written))
     elif not quiet:
         print(job.title)
-        print(f"{job.kind}: {seconds:.2f} s")
+        print(f"{job.kind}: {seconds:.2f} s; numbers are in {job.model.units}")
         print(found.report())
         for path in written:
             print(f"wrote {path}")

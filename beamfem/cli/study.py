@@ -26,12 +26,19 @@ class Study:
 def study(
     context: typer.Context,
     name: Annotated[str | None, typer.Argument(help="The study to run; without it, all are listed.")] = None,
-    folder: Annotated[Path, typer.Option(help="Folder of the studies; given before NAME.")] = Path("studies"),
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the studies; given before NAME. By default: studies, here or else of beamfem.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
     """List the studies, or run one with its own options: `beamfem study NAME --help` shows them."""
     with reported(as_json, quiet):
+        folder = _folder() if folder is None else folder
         studies = find_studies(folder)
         if name is None:
             if as_json:
@@ -44,11 +51,19 @@ def study(
         _run(name, main, context.args, as_json, quiet)
 
 
+def _folder() -> Path:
+    """Return the folder of studies here, else that which comes with beamfem."""
+    from beamfem.cli.shipped import shipped
+
+    here = Path("studies")
+    return here if here.is_dir() else shipped("studies") or here
+
+
 def find_studies(folder: Path) -> list[Study]:
     """Return the files with a function main in a folder and its sub-folders. Raises InputError if there are none."""
     from beamfem.errors import InputError
 
-    right = "give the folder of the studies with --folder, or start beamfem where it is; they come with the sources"
+    right = "give the folder of the studies with --folder, or start beamfem where it is"
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder} here ({Path.cwd()}): {right}")
     found = []

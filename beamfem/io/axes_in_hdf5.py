@@ -5,31 +5,39 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.results.along import AxisPoints, rotation
+from beamfem.results.along import QUANTITIES, AxisPoints, rotation, section_forces
 from beamfem.results.solution import Solution
 
 AXES = "beams"
 _BLOCK_BYTES = 2**20
+_MOST = 100_000  # elements times rows whose section forces are written, in a second or two
 
 
 def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
-    """Write groups beams/0, beams/1, ...: positions of element ends and rotations of the sections there.
+    """Write groups beams/0, beams/1, ...: positions of element ends, rotations of sections and forces in them there.
 
     x, y [m] and rotation [rad] (rows, stations) over the dimension scales `time` [s] or `load_factor` (rows,) and
-    `arc_length` [m] (stations,), with the attributes `units`, those of the model, and `long_name`.
+    `arc_length` [m] (stations,); normal, shear [N] and moment [N m] (rows, 2 elements) over `element_end` [m], where
+    each element has ends of its own, since forces jump at loads; long motions of large models have no forces, which
+    would take longer than the solve. All have the attributes `units`, those of the model, and `long_name`; a group has
+    the `name` of its beam, where it has one.
     """
     unit = solution.model.unit
     over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
+    small = len(solution) * sum(mesh.elements for mesh in solution.model.meshes) <= _MOST
     for number, mesh in enumerate(solution.model.meshes):
         points = AxisPoints(mesh, 1)
         ends = np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
         group = file.create_group(f"{AXES}/{number}", track_order=True)
         group.attrs["curve"] = type(mesh.beam.curve).__name__
         group.attrs["element"] = mesh.beam.element.name
+        if mesh.beam.name is not None:
+            group.attrs["name"] = mesh.beam.name
         scales = (
             _scale(group, over, solution.at, over.replace("_", " "), of_rows),
             _scale(group, "arc_length", points.arc_length[ends], "arc length in the reference", unit("m")),
         )
+        forces = _forces(group, points, solution, scales[0]) if small else {}
         shape = len(solution), len(ends)
         x, y, turned = (
             _variable(group, *about, shape, scales)
@@ -45,7 +53,17 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
             r = points.positions(solution.p[rows])[0][:, ends]
             x[rows], y[rows] = r[..., 0], r[..., 1]
             turned[rows] = rotation(points, solution, rows)[:, ends]
+            for name, found in section_forces(points, solution, rows).items() if forces else ():
+                forces[name][rows] = found
             require_written()
+
+
+def _forces(group: Any, points: AxisPoints, solution: Solution, over: Any) -> dict[str, Any]:
+    """Return the empty variables of the section forces."""
+    unit, shape = solution.model.unit, (len(solution), len(points.xi))
+    ends = _scale(group, "element_end", points.arc_length, "arc length of the ends of each element", unit("m"))
+    about = {name: (QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in ("normal", "shear", "moment")}
+    return {name: _variable(group, name, *each, shape, (over, ends)) for name, each in about.items()}
 
 
 def _scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:

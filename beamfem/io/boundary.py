@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.io.cells import VERTEX, Content, by_precision
+from beamfem.io.cells import VERTEX, Content, by_precision, legend_of_beams
 from beamfem.io.vertices import ROLES, vertices
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
@@ -24,7 +24,7 @@ class Boundary:
     cell_type = VERTEX
 
     def __init__(self, model: Model, content: Content) -> None:
-        self.content = content
+        self.content, self.beams, self.unit = content, model.beams, model.unit
         self.groups = vertices(model)
         numbers = {id(mesh): number for number, mesh in enumerate(model.meshes)}
         self.kinds = list(dict.fromkeys(group.kind for group in self.groups))
@@ -68,7 +68,7 @@ class Boundary:
     @property
     def legend(self) -> dict[str, list[str]]:
         """What the numbers of kinds and roles stand for, by name."""
-        return {"kinds": self.kinds, "roles": list(ROLES)}
+        return {**legend_of_beams(self.beams), "kinds": self.kinds, "roles": list(ROLES)}
 
     @property
     def names(self) -> list[str]:

@@ -34,6 +34,9 @@ def read_dxf(path: str | PathLike[str], layer: str | None = None) -> tuple[Curve
     exact, except a SPLINE with fit points only, which the file does not define: it is drawn as ezdxf draws it. Texts,
     dimensions, leaders, tolerances and hatches are skipped as annotation.
 
+    Coordinates are taken as they are drawn; the unit in the header ($INSUNITS) converts nothing. The model has to be in
+    the units of the drawing, such as `Model(..., units="N, mm")` for one in millimetres.
+
     Parameters
     ----------
     path : path

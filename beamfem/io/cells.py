@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from beamfem.errors import UnknownStressWarning, warn
+from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.io.samples import Samples, body, centreline
 from beamfem.material import Material
+from beamfem.model.beam import Beam
 from beamfem.model.classes import by_value
 from beamfem.model.model import Model
+from beamfem.model.named import names
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 
@@ -81,6 +84,10 @@ class Grid(Protocol):
         """Cell data (cells,) by name."""
         ...
 
+    def unit(self, unit: str) -> str:
+        """Return the name of the model's unit for one of SI."""
+        ...
+
     @property
     def legend(self) -> dict[str, list[str]]:
         """What numbers of cells stand for, by name."""
@@ -99,6 +106,7 @@ class Cells:
 
     def __init__(self, model: Model, whole: bool, alike: bool = False, content: Content = WHOLE) -> None:
         self.whole, self.meshes, self.content = whole, model.meshes, content
+        self.beams, self.unit = model.beams, model.unit
         by_beam = [body(mesh, alike) if whole else centreline(mesh) for mesh in model.meshes]
         self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
         numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
@@ -141,17 +149,23 @@ class Cells:
 
     @property
     def legend(self) -> dict[str, list[str]]:
-        """What the numbers of materials and sections stand for; lines have none, since meshio reads no texts."""
-        if not self.whole:
-            return {}
-        return {"materials": list(map(_written, self.materials)), "sections": list(map(_written, self.sections))}
+        """What the numbers of materials and sections stand for, and those of beams where some have names."""
+        unit = self.unit
+        return {
+            **legend_of_beams(self.beams),
+            "materials": [material_in_words(each, unit) for each in self.materials],
+            "sections": [section_in_words(each, unit) for each in self.sections],
+        }
 
     def warn_of_unknown_stress(self) -> None:
         """Warn of beams whose stress is left out, or nan beside that of others."""
         number = {id(mesh): i for i, mesh in enumerate(self.meshes)}
         unknown = sorted({number[id(part.mesh)] for part in self.samples if not part.known["stress_xx"]})
         if unknown:
-            shown = ", ".join(map(str, unknown[:_NAMED])) + (", ..." if len(unknown) > _NAMED else "")
+            called = names(self.beams)
+            shown = ", ".join(called[number] for number in unknown[:_NAMED]) + (
+                ", ..." if len(unknown) > _NAMED else ""
+            )
             what = "left out" if len(unknown) == len(self.meshes) else "nan"
             warn(
                 f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
@@ -209,10 +223,9 @@ def _numbers(items: Sequence[Any], distinct: Sequence[Any]) -> list[int]:
     return [places[by_value(item)] for item in items]
 
 
-def _written(part: Any) -> str:
-    if part is None:
-        return "of the section"
-    return "varies along the beam" if callable(part) else str(part)
+def legend_of_beams(beams: Sequence[Beam]) -> dict[str, list[str]]:
+    """Return the names of beams as the legend of their numbers, nothing where none has a name."""
+    return {"beams": names(beams)} if any(beam.name is not None for beam in beams) else {}
 
 
 def times(at: np.ndarray) -> np.ndarray:

@@ -136,16 +136,17 @@ def build_frame(
     material: Any,
     members: Members,
     hinges: str | Sequence[str],
+    name: str | None = None,
 ) -> Frame:
-    """Return the frame of a mesh; see `LineMesh.frame`."""
+    """Return the frame of a mesh; see `LineMesh.frame`. name: of its beams, with their numbers from 1."""
     one_of("members", members, ("cells", "chains"))
     hinged = np.zeros(len(mesh.nodes), dtype=bool)
-    for name in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
-        nodes = _named(mesh.point_sets, "point", name)
+    for hinge in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
+        nodes = _named(mesh.point_sets, "point", hinge)
         hinged[nodes[nodes >= 0]] = True
     given = {
-        name: _each(mesh, name, value)
-        for name, value in (("elements", elements), ("element", element), ("section", section), ("material", material))
+        what: _each(mesh, what, value)
+        for what, value in (("elements", elements), ("element", element), ("section", section), ("material", material))
     }
     lines = [[(cell, False)] for cell in range(len(mesh.cells))] if members == "cells" else chains(mesh, hinged)
     owner = np.empty(len(mesh.cells), dtype=np.int64)
@@ -154,10 +155,11 @@ def build_frame(
     beams = []
     for number, line in enumerate(lines):
         first = line[0][0]
-        own = {name: values[first] for name, values in given.items()}
+        own = {what: values[first] for what, values in given.items()}
         curve, ends = _axis([_curve(points, cells, piece) for piece in line])
         parts = count("elements", own.pop("elements"))
-        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **own)
+        called = None if name is None else f"{name}[{number + 1}]"
+        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **own, name=called)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
         for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):

@@ -136,7 +136,8 @@ def read_mesh(path: str | PathLike[str], *, merge: bool = False) -> LineMesh:
 
     Read are Gmsh .msh (physical groups of curves and points are the sets, by number if they have no name), Abaqus and
     CalculiX .inp (beams and trusses, elsets and nsets), VTU, XDMF and whatever else meshio reads. Whole numbers on
-    cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k.
+    cells or points, as VTU and XDMF hold them, are sets too: `name` where they are not zero, `name=k` where they are k;
+    of the centre lines that `Solution.to_vtk` writes only `beam=k`, `material=k` and `section=k`.
 
     A line that ends inside another straight one, to 1e-5 of the size of the mesh, divides it into two cells that share
     its end.

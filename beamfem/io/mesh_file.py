@@ -13,6 +13,7 @@ from beamfem.extras import needed_for
 from beamfem.io.ending_file import opened
 
 _DIMENSION = {"vertex": 0, "line": 1, "line3": 1}
+_NUMBERINGS = {"beam", "material", "section"}  # of the cells of centre lines that `Solution.to_vtk` wrote
 _WITHOUT_LINES = {"off": "triangles", "tetgen": "tetrahedra", "wkt": "triangles"}  # what meshio reads of these formats
 
 
@@ -55,9 +56,10 @@ def read_through_meshio(path: Path) -> MeshFile:
     cell_sets = _groups(mesh)
     cell_sets |= {name: _counted(parts, sizes) for name, parts in mesh.cell_sets.items() if not _internal(name)}
     point_sets = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in mesh.point_sets.items()}
+    counted = _NUMBERINGS if set(mesh.cell_data) >= _NUMBERINGS else set()
     for name, values in mesh.cell_data.items():
         if values:
-            cell_sets |= _by_value(name, np.concatenate(values))
+            cell_sets |= _by_value(name, np.concatenate(values), name in counted)
     for name, values in mesh.point_data.items():
         point_sets |= _by_value(name, np.asarray(values))
     return MeshFile(np.asarray(mesh.points, dtype=float), blocks, cell_sets, point_sets)
@@ -91,12 +93,15 @@ def _groups(mesh: Any) -> dict[str, np.ndarray]:
     return result
 
 
-def _by_value(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the sets that whole numbers on cells or points define: `name` if nonzero, `name=k` for the value k."""
+def _by_value(name: str, values: np.ndarray, counted: bool = False) -> dict[str, np.ndarray]:
+    """Return the sets that whole numbers on cells or points define: `name` if nonzero, `name=k` for the value k.
+
+    counted: the numbers count from 0, so that zero is one of them and `name` is no set.
+    """
     if _internal(name) or values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
         return {}
     sets = {f"{name}={value}": np.flatnonzero(values == value) for value in np.unique(values)}
-    return {name: np.flatnonzero(values), **sets}
+    return sets if counted else {name: np.flatnonzero(values), **sets}
 
 
 def _advice(path: Path) -> str:

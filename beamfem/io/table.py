@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.extras import needed_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
+from beamfem.model.named import names
 from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
 
@@ -32,9 +33,9 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
     of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; stress_lower,
     stress_upper, stress_shear, stress_von_mises [Pa] where sections have them, see `BeamStress`; of the model (time,):
-    kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam, arc_length [m], x0,
-    y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where section forces
-    may jump.
+    kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam (with the `names` of
+    all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the reference (station,). Adjacent elements
+    each have a station at their common end, where section forces may jump.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
     points, along_beam = stations(solution.model, beam)
@@ -74,8 +75,9 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
     # elements agree on the arc length of their common end, to the last digit
     arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
     arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
+    called = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
     found = {
-        "beam": (np.full(len(points.element), number), about("number of the beam", "1")),
+        "beam": (np.full(len(points.element), number), about("number of the beam", "1") | called),
         "arc_length": (arc, about("arc length in the reference", "m")),
         "x0": (points.reference[:, 0], about("reference x", "m")),
         "y0": (points.reference[:, 1], about("reference y", "m")),

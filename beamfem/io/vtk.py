@@ -10,14 +10,15 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
 from beamfem.errors import FileError, InputError
 from beamfem.files import make_folder, path_of, whole
 from beamfem.io.boundary import Boundary
-from beamfem.io.cells import Cells, Content, Geometry, Grid, times
+from beamfem.io.cells import LINE, Cells, Content, Geometry, Grid, times
+from beamfem.io.field_units import UNITS
 from beamfem.validation import items
 
 if TYPE_CHECKING:
@@ -102,7 +103,8 @@ class _Series:
             self.grid.GetCellData().SetHigherOrderDegrees(_named("HigherOrderDegrees", cells.degrees))
         for name_of_cells, values in cells.numbers.items():
             self.grid.GetCellData().AddArray(_named(name_of_cells, values.astype(np.int32)))
-        for name_of_legend, texts in cells.legend.items():
+        # meshio reads no texts, and lines are what it is to read
+        for name_of_legend, texts in cells.legend.items() if cells.cell_type != LINE else ():
             self.grid.GetFieldData().AddArray(_texts(name_of_legend, texts))
         self.writer = vtkXMLUnstructuredGridWriter()
         self.writer.SetInputData(self.grid)
@@ -116,6 +118,8 @@ class _Series:
             self.grid.GetPoints().SetData(now.pop("points"))
             for name, array in now.items():
                 array.SetName(name)
+                if name in UNITS:
+                    array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), self.cells.unit(UNITS[name]))
                 self.grid.GetPointData().AddArray(array)
             self.grid.GetFieldData().AddArray(_named(self.name, np.array([value])))
             file = self.folder / f"{len(self.lines):04d}.vtu"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamfem.io.cells import Grid, times
+from beamfem.io.field_units import UNITS
 from beamfem.io.hdf5 import written_hdf5
 
 if TYPE_CHECKING:
@@ -65,6 +66,8 @@ def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_wri
                     compression="gzip",
                     shuffle=True,
                 )
+                if array in UNITS:
+                    place[key].attrs["units"] = cells.unit(UNITS[array])
             flat = values.reshape(-1, *values.shape[2:])
             place[key][first * cells.points : first * cells.points + len(flat)] = flat
         root.file.flush()

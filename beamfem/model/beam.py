@@ -21,7 +21,7 @@ from beamfem.registry import offered
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expansion
-from beamfem.validation import called, count, finite, fulfils, function_of_one, shown
+from beamfem.validation import called, count, finite, fulfils, function_of_one, shown, text
 
 Tapered = Callable[[float], CrossSection]
 _SAMPLES = 32
@@ -44,6 +44,8 @@ class Beam:
         A section, or a function of the arc length [m] from the start that returns one.
     material : Material, optional
         Material of the section; not needed if the section has its own.
+    name : str, optional
+        What messages, tables and files call the beam, by default its number in the model.
 
     Raises
     ------
@@ -68,6 +70,7 @@ class Beam:
     element: Element
     section: CrossSection | Tapered
     material: Material | None = None
+    name: str | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.elements, str):
@@ -82,6 +85,8 @@ class Beam:
             raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")
         if self.material is not None and not isinstance(self.material, Material):
             raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}")
+        if self.name is not None and not text("name of a Beam", self.name).strip():
+            raise InputError("name of a Beam must not be empty; leave it out for a beam without one")
         if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
             raise InputError(
                 f"section of a Beam must be a section or a function of arc length, got {shown(self.section)}"
@@ -96,7 +101,9 @@ class Beam:
 
     def __repr__(self) -> str:
         count = self.elements if isinstance(self.elements, int | str) else len(self.elements) - 1
-        return f"Beam({type(self.curve).__name__} of length {self.curve.length:g}, {count} x {self.element.name})"
+        called = "" if self.name is None else f"{self.name!r}, "
+        curve = f"{type(self.curve).__name__} of length {self.curve.length:g}"
+        return f"Beam({called}{curve}, {count} x {self.element.name})"
 
     def _repr_html_(self) -> str:
         return offered(Beam._repr_html_)(self)
@@ -128,7 +135,7 @@ class Beam:
             return cast(CrossSection, self.section)
         section = called("section", cast(Tapered, self.section), arc_length)
         if not fulfils(section, CrossSection):
-            raise InputError(f"the section at arc length {arc_length:g} m must be a section, got {shown(section)}")
+            raise InputError(f"the section at arc length {arc_length:g} must be a section, got {shown(section)}")
         return section
 
     @cached_property
@@ -239,7 +246,8 @@ class Point:
 
     def __str__(self) -> str:
         x, y = self.reference
-        return f"({x:g}, {y:g}), fraction {self.fraction:g} of its beam"
+        beam = "its beam" if self.beam.name is None else f"beam {self.beam.name!r}"
+        return f"({x:g}, {y:g}), fraction {self.fraction:g} of {beam}"
 
 
 def require_point(kind: str, point: object, name: str = "point") -> None:

@@ -1,5 +1,7 @@
 """Check that the body of a beam is possible: sections must not overlap, on the curve and on its interpolation."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from beamfem.element.axis import cross
@@ -11,10 +13,11 @@ from beamfem.section.protocol import CrossSection, HasParts
 _SAMPLES = 33  # along an element
 
 
-def require_body(grid: Grid) -> None:
+def require_body(grid: Grid, unit: Callable[[str], str]) -> None:
     """Raise InputError if a face of a section of known shape lies at or beyond the centre of curvature.
 
-    The axis and its sections are interpolated between nodes: elements that turn too far are refused as well.
+    The axis and its sections are interpolated between nodes: elements that turn too far are refused as well. unit: see
+    `Model.unit`.
     """
     if grid.straight:
         return
@@ -28,17 +31,19 @@ def require_body(grid: Grid) -> None:
     reach = (bend[:, None] * faces).max(axis=1)
     worst = int(np.argmax(reach))
     if reach[worst] >= 1.0:
-        at = float(grid.arc_length(element, xi)[worst])
+        at, metre = float(grid.arc_length(element, xi)[worst]), unit("m")
         face = float(np.broadcast_to(faces, (len(bend), 2))[worst, int(bend[worst] > 0.0)])
         raise InputError(
-            f"at arc length {at:g} m the axis of {grid.beam!r} has a radius of curvature of {1.0 / abs(bend[worst]):g} "
-            f"m, and its section reaches {abs(face):g} m towards the centre: the body would overlap itself; take a "
-            "larger radius or a lower section"
+            f"at arc length {at:g} {metre} the axis of {grid.beam!r} has a radius of curvature of "
+            f"{1.0 / abs(bend[worst]):g} {metre}, and its section reaches {abs(face):g} {metre} towards the centre: "
+            "the body would overlap itself; take a larger radius or a lower section"
         )
-    _require_short(grid, element, xi, faces)
+    _require_short(grid, element, xi, faces, unit)
 
 
-def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray) -> None:
+def _require_short(
+    grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.ndarray, unit: Callable[[str], str]
+) -> None:
     """Raise InputError if the interpolated body has det J = (r0' + y d') x d <= 0.
 
     At its axis, and at its faces (2,) or (n, 2) where forces are integrated over the body.
@@ -55,8 +60,9 @@ def _require_short(grid: Grid, element: np.ndarray, xi: np.ndarray, faces: np.nd
         arc = grid.arc_length(own, along)
         turn = np.degrees(np.abs(np.trapezoid(curvature(grid, own, along), arc)))
         raise InputError(
-            f"elements of {grid.beam!r} are too long: that from arc length {arc[0]:g} m to {arc[-1]:g} m turns by "
-            f"{turn:.0f} degrees, and the sections that it interpolates between its nodes overlap; take more elements"
+            f"elements of {grid.beam!r} are too long: that from arc length {arc[0]:g} {unit('m')} to {arc[-1]:g} "
+            f"{unit('m')} turns by {turn:.0f} degrees, and the sections that it interpolates between its nodes "
+            "overlap; take more elements"
         )
 
 

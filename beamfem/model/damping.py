@@ -25,7 +25,7 @@ def _time(section: CrossSection, material: Material | None) -> float:
         return 0.0 if material is None else material.retardation_time
     if len(times) > 1:
         raise InputError(
-            f"the materials of a {type(section).__name__} section have different retardation times {sorted(times)} s; "
+            f"the materials of a {type(section).__name__} section have different retardation times {sorted(times)}; "
             "a beam has one: damping is proportional to its stiffness"
         )
     return times.pop()

@@ -208,7 +208,7 @@ class ImposedStrain(AlongBeam, Load):
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(given):
             return np.full(len(arc_length), given)
-        return np.array([finite(f"{what} at arc length {s:g} m", called(what, given, s)) for s in arc_length.tolist()])
+        return np.array([finite(f"{what} at arc length {s:g}", called(what, given, s)) for s in arc_length.tolist()])
 
     @property
     def place(self) -> Beam:

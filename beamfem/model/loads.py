@@ -109,7 +109,7 @@ class DistributedLoad(LineLoad):
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
         given, name = self.vector, "vector of DistributedLoad"
-        found = [vector(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()]
+        found = [vector(f"{name} at arc length {s:g}", called(name, given, s)) for s in arc_length.tolist()]
         return np.array(found).reshape(-1, 2)
 
 
@@ -171,7 +171,7 @@ class Pressure(LineLoad):
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given, name = self.value, "value of Pressure"
-        return np.array([finite(f"{name} at arc length {s:g} m", called(name, given, s)) for s in arc_length.tolist()])
+        return np.array([finite(f"{name} at arc length {s:g}", called(name, given, s)) for s in arc_length.tolist()])
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
         """Return (0, p) [N/m] at arc lengths (n,) [m] as (n, 2)."""

@@ -26,10 +26,10 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     found = _formed(beam, section)
     if all(SMALLEST <= value <= LARGEST for value in found):
         return
-    for (name, unit), value in zip(_names(beam, section), found, strict=True):
+    for name, value in zip(_names(beam, section), found, strict=True):
         if not SMALLEST <= value <= LARGEST:
             raise InputError(
-                f"{name} of {beam!r} is {value:g} {unit}, beyond what double precision can square ({SMALLEST:.1g} to "
+                f"{name} of {beam!r} is {value:g}, beyond what double precision can square ({SMALLEST:.1g} to "
                 f"{LARGEST:.1g}); give all lengths, forces and masses in units in which they are closer to 1"
             )
 
@@ -71,15 +71,14 @@ def _resistance(section: CrossSection, material: Material | None) -> tuple[float
 _known_resistance = lru_cache(maxsize=64)(_resistance)
 
 
-def _names(beam: "Beam", section: CrossSection) -> list[tuple[str, str]]:
-    names = [("the length", "m"), ("the largest coordinate", "m"), ("the length h of the shortest element", "m")]
+def _names(beam: "Beam", section: CrossSection) -> list[str]:
+    names = ["the length", "the largest coordinate", "the length h of the shortest element"]
     if not beam.curve.length * beam.shortest > 0.0:
         return names
     for stiffness in ("E A", "k_s G A"):
-        names += [(stiffness, "N"), (f"{stiffness} / h", "N/m"), (f"{stiffness} h", "N m")]
-    names += [("E I / h", "N m"), ("E I / h^3", "N/m"), ("the mass of an element", "kg")]
-    names.append(("the rotary inertia of an element over h^2", "kg"))
+        names += [stiffness, f"{stiffness} / h", f"{stiffness} h"]
+    names += ["E I / h", "E I / h^3", "the mass of an element", "the rotary inertia of an element over h^2"]
     if beam.element.forces.fills_body:
         for _ in section.moments(beam.material):
-            names += [(f"E times the moment of order {order} over h^{order + 1}", "N/m") for order in (0, 2, 4)]
+            names += [f"E times the moment of order {order} over h^{order + 1}" for order in (0, 2, 4)]
     return names

@@ -24,6 +24,7 @@ from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model_outputs import ModelOutputs
+from beamfem.model.named import require_different_names
 from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
@@ -110,6 +111,7 @@ class Model(ModelOutputs):
             raise InputError("a Model needs at least one beam")
         if len({id(beam) for beam in self.beams}) < len(self.beams):
             raise InputError("a Model lists the same beam twice; make a second Beam for a second one")
+        require_different_names(self.beams)
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
         for part in (*parts, *self.joints):
             require_part(part)
@@ -140,15 +142,14 @@ class Model(ModelOutputs):
         for joint, gap in zip(self.joints, gaps, strict=True):
             self._require_touch(joint, gap)
 
-    @staticmethod
-    def _require_touch(joint: Joint, gap: float) -> None:
+    def _require_touch(self, joint: Joint, gap: float) -> None:
         kind = type(joint).__name__
         if joint.a.beam is joint.b.beam and joint.a.fraction == joint.b.fraction:
             raise InputError(f"{kind} joins the point {joint.a} with itself")
         if gap > GAP * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
             raise InputError(
-                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} m apart; a joint needs points that coincide, "
-                f"to {GAP:g} of the longer beam"
+                f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} {self.unit('m')} apart; a joint needs points "
+                f"that coincide, to {GAP:g} of the longer beam"
             )
 
     @cached_property
@@ -185,7 +186,7 @@ class Model(ModelOutputs):
         turning, moving = self._joined(grids)
         grids = close_gaps(grids, moving)
         for grid in grids:
-            require_body(grid)
+            require_body(grid, self.unit)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         block_of = {kind: number for number, kind in enumerate(self._kinds)}

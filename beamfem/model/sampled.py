@@ -80,8 +80,8 @@ class SampledSection:
             section = _between(self.values[after - 1], self.values[after], (arc_length - low) / (high - low))
         except ValueError:
             raise InputError(
-                f"the section was saved as its values, which are of different kinds at the arc lengths {low:g} m and "
-                f"{high:g} m; to evaluate it at {arc_length:g} m, give the function itself again"
+                f"the section was saved as its values, which are of different kinds at the arc lengths {low:g} and "
+                f"{high:g}; to evaluate it at {arc_length:g}, give the function itself again"
             ) from None
         assert isinstance(section, CrossSection)
         return section

@@ -17,10 +17,14 @@ _ROWS = 100  # rows at which the exchanged energy is evaluated
 
 @dataclass(frozen=True)
 class EnergyDrift:
-    """Change of the total energy from start to end of a motion, and the largest energy exchanged, both [J]."""
+    """Change of the total energy from start to end of a motion, and the largest energy exchanged, both [J].
+
+    unit: what energies are measured in, that of the model.
+    """
 
     change: float
     exchanged: float
+    unit: str = "J"
 
     @property
     def digits(self) -> float:
@@ -30,7 +34,7 @@ class EnergyDrift:
         return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0
 
     def __str__(self) -> str:
-        return f"energy drifts by {self.change:.2g} J of {self.exchanged:.3g} J"
+        return f"energy drifts by {self.change:.2g} {self.unit} of {self.exchanged:.3g} {self.unit}"
 
 
 def energy_drift(solution: "Solution") -> EnergyDrift | None:
@@ -45,7 +49,7 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
     some = replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
     energy = some.energy()
     total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
-    return EnergyDrift(float(total[-1] - total[0]), float(max(parts)))
+    return EnergyDrift(float(total[-1] - total[0]), float(max(parts)), solution.model.unit("J"))
 
 
 def drift_warnings(solution: "Solution") -> tuple[str, ...]:
@@ -54,8 +58,9 @@ def drift_warnings(solution: "Solution") -> tuple[str, ...]:
     if drift is None or not drift.change > _MUCH * drift.exchanged:
         return ()
     return (
-        f"the energy rises by {drift.change:.3g} J, compared with {drift.exchanged:.3g} J exchanged at most, although "
-        "no work is done on the motion: the time steps do not resolve its high-frequency vibration. Use smaller steps",
+        f"the energy rises by {drift.change:.3g} {drift.unit}, compared with {drift.exchanged:.3g} {drift.unit} "
+        "exchanged at most, although no work is done on the motion: the time steps do not resolve its high-frequency "
+        "vibration. Use smaller steps",
     )
 
 

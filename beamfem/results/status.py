@@ -30,3 +30,19 @@ class Statistics:
     status: Status = Status.COMPLETED
     warnings: tuple[str, ...] = ()
     digits: float = nan
+
+    @property
+    def outcome(self) -> str:
+        """Whether the solve completed, with the reason for its end behind it."""
+        return f"{'stopped' if self.status is Status.STOPPED else 'completed'}: {self.ended}"
+
+    @property
+    def effort(self) -> str:
+        """Iterations and steps in words."""
+        cut = f", {counted(self.cuts, 'step')} cut" if self.cuts else ""
+        return f"{counted(self.iterations, 'Newton iteration')} in {counted(self.steps, 'step')}{cut}"
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things in words, such as "1 step"."""
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -83,8 +83,8 @@ class Section:
         largest = self.area * centroid * (height - centroid)
         if self.second_moment > largest * (1.0 + _ROUNDING):
             raise InputError(
-                f"a section of height {height:g} m with its centroid at {centroid:g} m has a second moment of at most "
-                f"A c (h - c) = {largest:g} m^4, got {self.second_moment:g}"
+                f"a section of height {height:g} with its centroid at {centroid:g} has a second moment of at most "
+                f"A c (h - c) = {largest:g}, got {self.second_moment:g}"
             )
 
     @staticmethod

@@ -129,7 +129,7 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
     diameter, thickness = positive("diameter of Tube", diameter), positive("thickness of Tube", thickness)
     positive("shear_factor of Tube", shear_factor)
     if thickness > 0.5 * diameter:
-        raise InputError(f"the wall of a Tube ({thickness:g} m) is at most half its diameter ({diameter:g} m)")
+        raise InputError(f"the wall of a Tube ({thickness:g}) is at most half its diameter ({diameter:g})")
     inner = diameter - 2.0 * thickness
     powers = (_power(diameter, n) - _power(inner, n) for n in (2, 4, 6))
     area, second, fourth = (np.pi * power / by for power, by in zip(powers, (4.0, 64.0, 512.0), strict=True))

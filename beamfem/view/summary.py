@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.model import Model
+from beamfem.model.named import names
 from beamfem.tabulate import as_html
 from beamfem.view.places import place
 
@@ -44,8 +45,8 @@ def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
     if len(solution):
         rows.append((name, f"{solution.at[0]:.6g} to {solution.at[-1]:.6g}{unit}"))
     rows += [
-        ("Newton iterations", f"{statistics.iterations} in {statistics.steps} steps, {statistics.cuts} cut"),
-        ("ended", statistics.ended),
+        ("solved in", statistics.effort),
+        ("ended", statistics.outcome),
     ]
     if solution.energy_drift is not None:
         rows.append(("energy", str(solution.energy_drift)))
@@ -112,14 +113,14 @@ def buckling_table(buckling: "Buckling") -> str:
 def _beams(model: Model) -> str:
     unit = model.unit("m")
     head = ("beam", f"from [{unit}]", f"to [{unit}]", f"length [{unit}]", "element", "elements", "forces")
-    lines = []
+    lines, called = [], names(model.beams)
     for number, (beam, mesh) in enumerate(zip(model.beams, model.meshes, strict=True)):
         if number == _BEAMS:
             lines.append(("…", f"{len(model.beams) - _BEAMS} more", *[""] * 5))
             break
         ends = [place(model, at) for at in (mesh.position[0], mesh.position[-1])]
         kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
-        lines.append((str(number), *ends, f"{beam.curve.length:.4g}", *kind))
+        lines.append((called[number], *ends, f"{beam.curve.length:.4g}", *kind))
     return as_html(head, lines)
 
 

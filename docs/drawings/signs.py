@@ -31,7 +31,8 @@ def faces(axes):
     arrow(axes, (2.54, 0.25), (2.54, -0.5))
     moment(axes, (1.6, 0.0), 1, 1)
     moment(axes, (2.6, 0.0), -1, -1)
-    labels = {(2.1, 0.08): "N", (1.5, 0.58): "Q", (2.6, -0.72): "Q", (1.86, -0.58): "M", (2.2, 0.5): "M"}
+    axes.text(2.1, 0.13, "$N$", color=RED, fontsize=13, ha="center")
+    labels = {(1.5, 0.58): "Q", (2.6, -0.72): "Q", (1.86, -0.58): "M", (2.2, 0.5): "M"}
     for at, text in labels.items():
         axes.text(*at, f"${text}$", color=RED, fontsize=13)
     arrow(axes, (0.15, -0.95), (0.95, -0.95), INK)
@@ -64,6 +65,7 @@ def main():
         axes.axis("off")
     left.set(xlim=(-0.1, 4.3), ylim=(-1.2, 0.9))
     right.set(xlim=(-2.0, 2.4), ylim=(-0.8, 0.9))
+    figure.get_layout_engine().set(h_pad=0.12)
     figure.savefig("signs.png", dpi=110)
 
 

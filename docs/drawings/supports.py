@@ -31,9 +31,9 @@ def supported(name):
     }[name]()
 
 
-def hinged():
+def joined(joint):
     one, other = beam((0, 0), (0.15, 0.04)), beam((0.15, 0.04), (0.3, 0))
-    return bf.Model([one, other], [bf.Clamp(one.start), bf.Clamp(other.end)], joints=[bf.Hinge(one.end, other.start)])
+    return bf.Model([one, other], [bf.Clamp(one.start), bf.Clamp(other.end)], joints=[joint(one.end, other.start)])
 
 
 def panel(axes, name, model):
@@ -53,13 +53,13 @@ def panel(axes, name, model):
 
 
 def main():
-    names = ["Clamp", "Pin", "Roller", "Roller(normal=...)", "Prescribed", "Spring", "Foundation", "Hinge"]
+    names = ["Clamp", "Pin", "Roller", "Roller(normal=...)", "Prescribed", "Spring", "Foundation", "Rigid", "Hinge"]
     names += ["PointForce", "PointMoment", "DistributedLoad", "Pressure", "Gravity"]
     figure, grid = plt.subplots(4, 4, figsize=(12.0, 4.6), layout="constrained")
     for axes in grid.flat[len(names) :]:
         axes.axis("off")
     for axes, name in zip(grid.flat, names, strict=False):
-        panel(axes, name, hinged() if name == "Hinge" else supported(name))
+        panel(axes, name, joined(getattr(bf, name)) if name in ("Rigid", "Hinge") else supported(name))
     figure.savefig("supports.png", dpi=110)
 
 

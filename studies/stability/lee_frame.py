@@ -28,6 +28,7 @@ def trace(element: bf.Element | None = None, elements: int = 10, youngs_modulus:
         supports=[bf.Pin(column.start), bf.Pin(beam.end)],
         joints=[bf.Rigid(column.end, beam.start)],
         loads=[bf.PointForce(beam.at(0.2), (0.0, -1.0))],
+        units="N, cm",
     )
     return bf.trace_equilibrium(model, until=lambda state: state.displacement(beam.at(0.2))[1] < -95.0)
 

@@ -36,7 +36,7 @@ def toggle(deflection: float | None, elements: int, order: int) -> bf.Model:
     loads = [bf.PointForce(left.end, (0.0, -1.0))] if deflection is None else []
     if deflection is not None:
         supports.append(bf.Prescribed(left.end, uy=-deflection))
-    return bf.Model([left, right], supports, loads, [bf.Rigid(left.end, right.start)])
+    return bf.Model([left, right], supports, loads, [bf.Rigid(left.end, right.start)], units="lbf, in")
 
 
 def thrust(found: bf.Path | bf.PathState | bf.Solution) -> np.ndarray:

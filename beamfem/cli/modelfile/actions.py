@@ -7,6 +7,7 @@ from typing import Any
 
 from beamfem.assembly.system import System
 from beamfem.cli.modelfile import axes, parts
+from beamfem.cli.modelfile.beams import called
 from beamfem.cli.modelfile.elements import elements
 from beamfem.cli.modelfile.frames import frame
 from beamfem.cli.modelfile.functions import Components
@@ -76,8 +77,8 @@ def structure(root: Table, function: Named) -> Structure:
         "section": section,
         "material": material,
     }
-    found = {name: build(table, Beam, readers) for name, table in root.named("beams").items()}
-    frames = {name: frame(table, readers) for name, table in root.named("frames").items()}
+    found = {name: build(table, called(name), readers) for name, table in root.named("beams").items()}
+    frames = {name: frame(table, readers, name) for name, table in root.named("frames").items()}
     for name, own in frames.items():
         found |= {f"{name}[{number}]": beam for number, beam in enumerate(own.beams, 1)}
     if not found:

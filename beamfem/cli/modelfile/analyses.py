@@ -134,7 +134,7 @@ class Dynamics:
     def __post_init__(self) -> None:
         positive("duration", self.duration)
         if positive("step", self.step) > self.duration:
-            raise InputError(f"step ({self.step:g} s) must not exceed duration ({self.duration:g} s)")
+            raise InputError(f"step ({self.step:g}) must not exceed duration ({self.duration:g})")
         count("save_every", self.save_every)
         _ = self._rule
         if self.integrator is not None:

@@ -1,19 +1,24 @@
 """Frames of a model file: beams along the lines of a mesh file, with the joints between them."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from beamfem.cli.modelfile.table import Reader, Table, build
 from beamfem.errors import FileError, InputError
-from beamfem.io.frame import Frame
+from beamfem.io.frame import Frame, build_frame
 from beamfem.io.mesh import LineMesh, read_mesh
 from beamfem.validation import items, require_known
 
 _OF_PART = ("kind", "class", "youngs_modulus")  # keys of a part of its own, not names of member sets
 
 
-def frame(table: Table, readers: dict[str, Reader]) -> Frame:
-    """Return the frame of a table [frames.NAME]; readers: of element, section and material. Raises ModelFileError."""
+def frame(table: Table, readers: dict[str, Reader], name: str) -> Frame:
+    """Return the frame of a table [frames.NAME], its beams called NAME[1], NAME[2] and so on.
+
+    readers: of element, section and material. Raises ModelFileError.
+    """
 
     def by_set(read: Reader) -> Reader:
         def value(own: Table, key: str) -> Any:
@@ -33,8 +38,11 @@ def frame(table: Table, readers: dict[str, Reader]) -> Frame:
 
     made: dict[str, Reader] = {key: by_set(readers[key]) for key in ("element", "section", "material")}
     made |= {"elements": by_set(plain), "file": file}
-    found: Frame = build(table, _of_file, made)
-    return found
+    called: Callable[[str], Frame] = build(table, _of_file, made)
+    try:
+        return called(name)
+    except InputError as error:
+        raise table.refused(error) from None
 
 
 def _of_file(
@@ -46,7 +54,7 @@ def _of_file(
     members: str = "cells",
     hinges: Any = (),
     merge: bool = False,
-) -> Frame:
+) -> Callable[[str], Frame]:
     try:
         mesh: LineMesh = read_mesh(file, merge=merge)
     except FileError as error:
@@ -57,4 +65,4 @@ def _of_file(
             require_known(f"{key} has no member set {name!r}", name, mesh.member_sets)
     for name in [hinges] if isinstance(hinges, str) else items("hinges", hinges):
         require_known(f"hinges has no point set {name!r}", name, mesh.point_sets)
-    return mesh.frame(elements, element, section, material, members, hinges)  # type: ignore[arg-type]
+    return partial(build_frame, mesh, elements, element, section, material, members, hinges)  # type: ignore[arg-type]

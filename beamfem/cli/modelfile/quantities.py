@@ -25,6 +25,22 @@ QUANTITIES = {
 }
 
 
+# in SI, of quantities and of what tables print beside them; what is not here has none
+UNITS = {
+    **dict.fromkeys(("x", "y", "ux", "uy", "arc_length"), "m"),
+    **dict.fromkeys(("vx", "vy"), "m/s"),
+    **dict.fromkeys(("rotation", "shear_angle"), "rad"),
+    **dict.fromkeys(("fx", "fy", "normal", "shear"), "N"),
+    **dict.fromkeys(("m", "moment"), "N m"),
+    **dict.fromkeys(("stress_xx", "stress_yy", "stress_xy", "shear_stress"), "Pa"),
+    **dict.fromkeys(("lower", "upper", "tension", "compression", "von_mises"), "Pa"),
+    **dict.fromkeys(("kinetic", "strain", "potential", "total"), "J"),
+    **dict.fromkeys(("px", "py"), "N s"),
+    "angular_momentum": "N m s",
+    "time": "s",
+}
+
+
 def _at_point(method: str, component: int | None, solution: Solution, point: Any) -> np.ndarray:
     found: np.ndarray = getattr(solution, method)(point)
     return found if component is None else found[:, component]

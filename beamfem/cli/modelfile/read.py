@@ -17,6 +17,7 @@ from beamfem.cli.modelfile.files import OutputFile, files
 from beamfem.cli.modelfile.imperfection import Imperfection, imperfection
 from beamfem.cli.modelfile.lines import key_lines
 from beamfem.cli.modelfile.outputs import Output, outputs
+from beamfem.cli.modelfile.phrases import told_in_keys
 from beamfem.cli.modelfile.places import moved
 from beamfem.cli.modelfile.table import Source, Table
 from beamfem.cli.modelfile.varied import Varied, varied
@@ -81,7 +82,8 @@ class Job:
         if self.imperfection is None:
             return self
         try:
-            model = self.imperfection.of_model(self.model)
+            with told_in_keys():
+                model = self.imperfection.of_model(self.model)
         except InputError as error:
             raise self.root.table("imperfection").refused(error) from error
         return _job(self.root, replace(self.structure, moved=moved(self.model, model)), model, self.title, None)
@@ -89,7 +91,8 @@ class Job:
     def solve(self) -> Found:
         """Run the analysis and return its results. Raises ConvergenceError; ModelFileError for errors found late."""
         try:
-            return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
+            with told_in_keys():
+                return self.analysis.run(self.model, [at for output in self.outputs for at in output.asked])
         except ModelFileError:
             raise
         except InputError as error:

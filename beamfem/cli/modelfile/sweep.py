@@ -13,8 +13,8 @@ from beamfem.sweeps.sweep import Sweep, sweep
 
 _NUMBERED = {
     "load_factors": "load factor",
-    "frequencies": "frequency [Hz]",
-    "growth": "growth [1/s]",
+    "frequencies": "frequency [{Hz}]",
+    "growth": "growth [{rate}]",
     "limit_points": "limit point",
     "bifurcations": "bifurcation",
 }
@@ -53,8 +53,9 @@ def solve_sweep(job: Job) -> Sweep:
 
 def numbers(job: Job, found: Found) -> dict[str, Any]:
     """Return the outputs of a file by name, and the results of its analysis, numbered from 1."""
+    unit = job.model.unit
     named = {
-        f"{title} {number}": value
+        f"{title.format(Hz=unit('Hz'), rate=unit('1/s'))} {number}": value
         for key, title in _NUMBERED.items()
         for number, value in enumerate(found.values.get(key, ()), 1)
     }

@@ -57,7 +57,8 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
                 return squares[:below], vectors[:, :below]
             missing = max(missing, _SPARE)
         known = np.column_stack([known, more[1]])
-    raise ConvergenceError(f"modes below {np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} Hz were missed")
+    below_cut = f"{np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
+    raise ConvergenceError(f"modes below {below_cut} were missed")
 
 
 def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: float | None) -> Pairs:

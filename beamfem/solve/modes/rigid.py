@@ -6,6 +6,7 @@ from beamfem.assembly.equations import residual
 from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.round_off import round_off_floor
 from beamfem.linalg.lapack import cholesky, null_space, solve_triangular, svd
+from beamfem.model.named import beam_in_words
 from beamfem.solve.modes.mode_stiffness import stresses_of, weak_stiffness
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.modes.shapes import nodal_motion
@@ -105,4 +106,5 @@ def _words(pencil: Pencil, shape: np.ndarray) -> str:
     ]
     if len(set(said)) == 1:
         return said[0]
-    return ", ".join(f"beam {number} {words}" for number, words in enumerate(said))
+    beams = pencil.system.model.beams
+    return ", ".join(f"{beam_in_words(beams, number)} {words}" for number, words in enumerate(said))

@@ -36,7 +36,8 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
         if np.any(np.abs(rates[own]) > _MET * fastest):
             raise InputError(
                 f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[own]} "
-                "per second. Give all that it connects compatible velocities, such as one RigidVelocity"
+                f"per {system.model.unit('s')}. Give all that it connects compatible velocities, such as one "
+                "RigidVelocity"
             )
 
 

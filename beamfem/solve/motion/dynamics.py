@@ -79,7 +79,7 @@ def simulate(
     """
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
-        raise InputError(f"step ({step:g} s) must not exceed duration ({duration:g} s)")
+        raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     own = not isinstance(integrator, GeneralizedAlpha | None)
     if own and (isinstance(integrator, type) or not callable(getattr(integrator, "step", None))):
         raise InputError(
@@ -93,11 +93,11 @@ def simulate(
     require_memory(model.size, duration, step, save_every)
     integrator = integrator or GeneralizedAlpha()
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
-    acting = courses(system)
+    acting, second = courses(system), system.model.unit("s")
     parts = stretches(times, [course for course in acting if course.amplitude])
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
     prescribed = prescribed_motion(system, ends)
-    unresolved = name_unresolved(acting, ends, SIDE * step)
+    unresolved = name_unresolved(acting, ends, SIDE * step, second)
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
@@ -122,7 +122,8 @@ def simulate(
     solution = _solution(system, times, record, last, further, unresolved)
     if failed is not None:
         raise ConvergenceError(
-            f"the iteration of the step from {failed.begin:.6g} s to {failed.end:.6g} s did not converge: {failed.why}",
+            f"the iteration of the step from {failed.begin:.6g} {second} to {failed.end:.6g} {second} did not "
+            f"converge: {failed.why}",
             solution,
         )
     return solution
@@ -136,7 +137,7 @@ def _solution(
     states, turned = record.states[: len(kept_steps)], record.turned[: len(kept_steps)]
     if done % record.every:
         states[-1], turned[-1] = state, turned_by
-    ended = f"{done} steps of {times[1]:g} s"
+    ended = f"{done} step{'' if done == 1 else 's'} of {times[1]:g} {system.model.unit('s')}"
     if further:
         ended += f", divided {further} times at kinks of loads"
     for name in unresolved:

@@ -10,6 +10,7 @@ from beamfem.errors import warn
 from beamfem.model.beam import Beam
 from beamfem.model.load import Load
 from beamfem.model.model import Model
+from beamfem.model.named import beam_in_words
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
 
@@ -83,8 +84,11 @@ def courses(system: System) -> list[Course]:
     return list(found.values())
 
 
-def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> list[str]:
-    """Warn of every course that varies more within a step than between its ends (m + 1,) [s]; return their names."""
+def name_unresolved(courses: list[Course], ends: np.ndarray, side: float, second: str) -> list[str]:
+    """Warn of every course that varies more within a step than between its ends (m + 1,) [s]; return their names.
+
+    second: the unit of time.
+    """
     found = []
     for course in courses:
         bulging, _ = course.look(ends, side)
@@ -92,9 +96,10 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
             first = int(np.argmax(bulging))
             found.append(course.name)
             warn(
-                f"the {course.name} varies more within the step from {ends[first]:.6g} s to {ends[first + 1]:.6g} s "
-                f"than between its ends, where steps take it ({int(bulging.sum())} such steps): what happens in "
-                "between is not resolved. Take smaller steps, or let an amplitude declare its kinks, as Piecewise does",
+                f"the {course.name} varies more within the step from {ends[first]:.6g} {second} to "
+                f"{ends[first + 1]:.6g} {second} than between its ends, where steps take it ({int(bulging.sum())} "
+                "such steps): what happens in between is not resolved. Take smaller steps, or let an amplitude declare "
+                "its kinks, as Piecewise does",
             )
     return found
 
@@ -102,5 +107,5 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float) -> lis
 def _name(load: Load, model: Model) -> str:
     kind, place = type(load).__name__, load.place
     if isinstance(place, Beam):
-        return f"{kind} on beam {model.number_of(place)}"
+        return f"{kind} on {beam_in_words(model.beams, model.number_of(place))}"
     return kind if place is None else f"{kind} at {place}"

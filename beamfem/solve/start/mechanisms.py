@@ -4,6 +4,7 @@ import numpy as np
 
 from beamfem.assembly.system import System
 from beamfem.errors import FreeMotionError
+from beamfem.model.named import beam_in_words
 from beamfem.model.support import PointSupport
 from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
 
@@ -38,9 +39,9 @@ def require_support(system: System) -> None:
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     raise FreeMotionError(
-        f"beam {number} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) moves. A static solve needs "
-        "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "
-        "without them, use simulate"
+        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
+        "moves. A static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
+        "(Rigid instead of Hinge); without them, use simulate"
     )
 
 

@@ -10,6 +10,7 @@ from beamfem.errors import InputError
 from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model, block_key
+from beamfem.model.named import beam_in_words
 from beamfem.model.reference import reference_angle
 from beamfem.model.turns import uncounted
 from beamfem.results import postprocess
@@ -122,5 +123,5 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
 
 def _described(model: Model, mesh: BeamMesh) -> str:
     (x0, y0), (x1, y1) = mesh.position[[0, -1]]
-    number = model.number_of(mesh.beam)
-    return f"{mesh.nodes} nodes of {mesh.beam.element.name} on beam {number} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+    beam = beam_in_words(model.beams, model.number_of(mesh.beam))
+    return f"{mesh.nodes} nodes of {mesh.beam.element.name} on {beam} from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"

@@ -1,0 +1,96 @@
+"""The parts of a model in a line each, for `beamfem info`."""
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from beamfem.io.in_words import material_in_words, section_in_words
+from beamfem.model.beam import Beam, Point
+from beamfem.model.joints import Joint
+from beamfem.model.load import ImposedStrain
+from beamfem.model.model import Model
+from beamfem.model.named import names
+from beamfem.model.sampled import Sampled, SampledAlong
+from beamfem.results.status import counted
+
+# SI units of the numbers of supports and loads, by class and field
+_UNITS = {
+    ("Prescribed", "ux"): "m",
+    ("Prescribed", "uy"): "m",
+    ("Prescribed", "rotation"): "rad",
+    ("Spring", "stiffness"): "N/m",
+    ("Spring", "rotational"): "N m/rad",
+    ("Foundation", "stiffness"): "N/m^2",
+    ("Gravity", "vector"): "m/s^2",
+    ("DistributedLoad", "vector"): "N/m",
+    ("Pressure", "value"): "N/m",
+    ("PointForce", "vector"): "N",
+    ("PointMoment", "moment"): "N m",
+}
+
+
+def beam_lines(model: Model) -> list[str]:
+    """Return a line for each beam: its name, its axis, its elements, its section and its material."""
+    lines = []
+    for name, beam, mesh in zip(names(model.beams), model.beams, model.meshes, strict=True):
+        axis = f"{type(beam.curve).__name__}, {beam.curve.length:.6g} {model.unit('m')} long"
+        parts = [axis, f"{mesh.elements} x {beam.element.name} ({beam.element.forces.name})"]
+        parts.append(section_in_words(beam.section, model.unit))
+        if beam.material is not None:
+            parts.append(material_in_words(beam.material, model.unit))
+        lines.append(f"{name}: {', '.join(parts)}")
+    return lines
+
+
+def part_line(item: Any, model: Model) -> str:
+    """Return a support, joint or load in a line, with its places and what differs from its defaults."""
+    words = []
+    if isinstance(item, Joint):
+        (x, y), metre = item.a.reference, model.unit("m")
+        places = " and ".join(_place(point, model) for point in (item.a, item.b))
+        return f"{type(item).__name__}: {places}, at ({x:g}, {y:g}) {metre}"
+    for field in fields(item):
+        value = getattr(item, field.name)
+        if not isinstance(value, np.ndarray) and (value is None or value == field.default):
+            continue
+        words.append(_field(item, field.name, value, model))
+    return f"{type(item).__name__}: {', '.join(words)}"
+
+
+def _field(item: Any, name: str, value: Any, model: Model) -> str:
+    if isinstance(value, Point):
+        x, y = value.reference
+        where = f"{_place(value, model)}, at ({x:g}, {y:g}) {model.unit('m')}"
+        return where if name == "point" else f"{name} {where}"
+    if isinstance(value, Beam):
+        return f"along {names(model.beams)[model.number_of(value)]}"
+    if isinstance(value, Sampled | SampledAlong):
+        return f"{name} a function, saved at {counted(len(value.at), 'value')}"
+    if isinstance(value, bool):
+        return name if value else f"{name} false"
+    unit = _unit(item, name)
+    return f"{name} {_number(value)}" + (f" {model.unit(unit)}" if unit else "")
+
+
+def _place(point: Point, model: Model) -> str:
+    """Return a point as model files name it."""
+    name = names(model.beams)[model.number_of(point.beam)]
+    ends = {0.0: "start", 1.0: "end"}
+    return f"{name}.{ends.get(point.fraction, f'at({point.fraction:g})')}"
+
+
+def _unit(item: Any, name: str) -> str:
+    if isinstance(item, ImposedStrain) and name in item.along:
+        return item.units[item.along.index(name)]
+    return _UNITS.get((type(item).__name__, name), "")
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, int | float | np.number):
+        return f"{value:.6g}"
+    if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str):
+        return f"({', '.join(map(_number, value))})"
+    points = getattr(value, "points", None)  # of a table over time, which is saved as it is
+    return f"a table of {counted(len(points), 'point')}" if points is not None else str(value)

@@ -1,0 +1,11 @@
+"""Studies, examples and meshes: in the wheel they are in a folder of the package, in the sources beside it."""
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+def shipped(name: str) -> Path | None:
+    """Return the folder "studies", "examples" or "meshes" that comes with beamfem, None if it came without."""
+    places = (_PACKAGE / "shipped" / name, _PACKAGE.parent / name)
+    return next((place for place in places if place.is_dir()), None)

@@ -1,0 +1,50 @@
+"""Materials and sections in words, for the legends of files and for the command line."""
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from beamfem.material import Material
+from beamfem.section import Layered, Section, ShapedSection, StiffnessSection
+from beamfem.section.outline import RectangleOutline, TubeOutline
+
+Unit = Callable[[str], str]  # as `Model.unit`
+
+
+def material_in_words(material: Material | None, unit: Unit) -> str:
+    """Return a material with its numbers and units; what is left at its default is left out."""
+    if material is None:
+        return "of the section"
+    said = [
+        f"E = {material.youngs_modulus:g} {unit('Pa')}",
+        f"nu = {material.poisson_ratio:g}",
+        f"density {material.density:g} {unit('kg/m^3')}",
+    ]
+    further = {"retardation_time": "s", "thermal_expansion": "1/K", "strength": "Pa"}
+    for field in fields(material):
+        value = getattr(material, field.name)
+        if field.name in further and value != field.default:
+            said.append(f"{field.name.replace('_', ' ')} {value:g} {unit(further[field.name])}")
+    return ", ".join(said)
+
+
+def section_in_words(section: Any, unit: Unit) -> str:
+    """Return a section with its sizes and units; of the user's own class its text."""
+    metre = unit("m")
+    match section:
+        case ShapedSection(outline=RectangleOutline() as shape):
+            return f"rectangle {shape.breadth:g} x {shape.high - shape.low:g} {metre}"
+        case ShapedSection(outline=TubeOutline() as shape):
+            size = f"diameter {2.0 * shape.outer:g} {metre}"
+            wall = shape.outer - shape.inner
+            return f"circle, {size}" if shape.inner == 0.0 else f"tube, {size}, wall {wall:g} {metre}"
+        case Section():
+            height = "" if section.height is None else f", height {section.height:g} {metre}"
+            return f"A = {section.area:g} {unit('m^2')}, I = {section.second_moment:g} {unit('m^4')}{height}"
+        case Layered():
+            layers = ", ".join(f"{layer.thickness:g}" for layer in section.layers)
+            return f"layers of {layers} {metre} from below, {section.width:g} {metre} wide"
+        case StiffnessSection():
+            forces = f"E A = {section.axial:g} {unit('N')}, k_s G A = {section.shear:g} {unit('N')}"
+            return f"{forces}, E I = {section.bending:g} {unit('N m^2')}"
+    return "varies along the beam" if callable(section) else str(section)

@@ -1,0 +1,29 @@
+"""Beams as messages and tables call them: by their name, else by their number in the model."""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from beamfem.errors import InputError
+
+if TYPE_CHECKING:
+    from beamfem.model.beam import Beam
+
+
+def require_different_names(beams: Sequence["Beam"]) -> None:
+    """Raise InputError for a name that two beams have."""
+    counted = Counter(beam.name for beam in beams if beam.name is not None)
+    for name, number in counted.items():
+        if number > 1:
+            raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")
+
+
+def names(beams: Sequence["Beam"]) -> list[str]:
+    """Return the name of every beam, the number of those without one."""
+    return [str(number) if beam.name is None else beam.name for number, beam in enumerate(beams)]
+
+
+def beam_in_words(beams: Sequence["Beam"], number: int) -> str:
+    """Return "beam 'arm'" for a beam with a name, "beam 3" for one without."""
+    name = beams[number].name
+    return f"beam {number if name is None else repr(name)}"

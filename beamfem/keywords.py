@@ -26,7 +26,7 @@ def keywords_checked(function: _Function) -> _Function:
         except TypeError as error:
             # of the call itself: a frame further in has a traceback of its own
             if keywords and error.__traceback__ is not None and error.__traceback__.tb_next is None:
-                _refuse_unknown(function, keywords)
+                _refuse_unknown(function, arguments, keywords)
             raise
 
     return call  # type: ignore[return-value]
@@ -42,9 +42,16 @@ def require_keywords(name: str, given: Iterable[str], known: Iterable[str]) -> N
 
 
 def check_keywords_of(kind: type) -> None:
-    """Have the constructor and the public methods that a class itself defines checked."""
+    """Have the constructor and the public methods of a class checked, those of its bases in the package too."""
+    for base in kind.__mro__:
+        if base.__module__.startswith("beamfem."):
+            _check_keywords_of(base)
+
+
+def _check_keywords_of(kind: type) -> None:
     for name, item in list(vars(kind).items()):
-        if name.startswith("_") and name != "__init__":
+        made = item.__func__ if isinstance(item, staticmethod) else item
+        if (name.startswith("_") and name != "__init__") or hasattr(made, "__wrapped__"):
             continue
         if isinstance(item, FunctionType):
             setattr(kind, name, keywords_checked(item))
@@ -76,8 +83,18 @@ def with_options_listed(own: Signature) -> Signature:
     return own.replace(parameters=listed)
 
 
-def _refuse_unknown(function: Callable[..., Any], given: Iterable[str]) -> None:
+def _refuse_unknown(function: Callable[..., Any], arguments: tuple[Any, ...], given: Iterable[str]) -> None:
     parameters = list(signature(function).parameters.values())
     named = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
     method = "." in function.__qualname__ and named[:1] == ["self"]
-    require_keywords(function.__qualname__.removesuffix(".__init__"), given, named[1:] if method else named)
+    if not method:
+        require_keywords(function.__qualname__, given, named)
+        return
+    require_keywords(name_of(function, arguments[0]).removesuffix(".__init__"), given, named[1:])
+
+
+def name_of(method: Callable[..., Any], item: object) -> str:
+    """Return the name of a method of an object, by the class of the object, which may derive from that of the method."""
+    owner = method.__qualname__.rpartition(".")[0]
+    derives = any(base.__name__ == owner for base in type(item).__mro__)
+    return f"{type(item).__name__ if derives else owner}.{method.__name__}"

@@ -11,7 +11,7 @@ from inspect import signature, unwrap
 from typing import Any
 
 from beamfem.extras import needed_for
-from beamfem.keywords import require_keywords, with_options_listed
+from beamfem.keywords import name_of, require_keywords, with_options_listed
 
 _FUNCTIONS: dict[Callable[..., Any], str] = {}
 
@@ -45,7 +45,7 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
 
     @wraps(function)
     def call(*arguments: Any, **options: Any) -> Any:
-        require_keywords(method.__qualname__, options, known)
+        require_keywords(name_of(method, arguments[0]), options, known)
         with needed_for(method.__name__):
             return function(*arguments, **options)
 

@@ -20,4 +20,4 @@ if __name__ == "__main__":  # needed where executor=concurrent.futures.ProcessPo
     for load, slenderness, value in zip(table["load"], table["slenderness"], table["deflection"], strict=True):
         print(f"P L^2/EI = {load:g}, L/h = {slenderness:g}: v/L = {value:.6f}")
     table.to_csv("out/examples/sweep.csv")
-    table.plot("value", over="load", path="out/examples/sweep.png")
+    table.plot("deflection", over="load", path="out/examples/sweep.png")

@@ -140,7 +140,7 @@ def test_until_refines_each_curve_as_far_as_it_must():
     assert fast.refinement == (2, 4, 8, 16)  # an order that only three values show is not believed
     halved = bf.converge(step_power, refine="step", step=[0.1], until=1e-4, reference=LIMIT)
     assert halved.curves[0].refinement == (0.1, 0.05, 0.025, 0.0125)
-    assert "reached at step=0.0125" in str(halved)
+    assert "reached at step=0.0125" in halved.report()
 
 
 def test_until_stops_where_a_call_fails():

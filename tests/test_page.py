@@ -80,7 +80,7 @@ def test_page_is_complete_in_itself(falling, tmp_path):
     assert not re.search(r"https?://|<link|src=|@import|url\(", text)
     assert "<h1>Fall &amp; &lt;rise&gt;</h1>" in text
     assert f"<td>{len(falling)}</td>" in text
-    assert f"{falling.statistics.iterations} in {falling.statistics.steps} steps" in text
+    assert f"{falling.statistics.iterations} Newton iterations in {falling.statistics.steps} steps" in text
     assert not re.search(r"@[A-Z]+@", text)
 
 

@@ -65,11 +65,11 @@ def test_load_at_zero_alone_is_the_state_without_load():
 @pytest.mark.parametrize(
     ("at", "said"),
     [
-        ([], "must be load factors that rise"),
-        ([0.5, 0.25], "must be load factors that rise"),
-        ([0.5, 0.5], "must be load factors that rise"),
-        ([0.5, 1.5], "within 0 and 1"),
-        ([-0.5], "within 0 and 1"),
+        ([], "must be ascending load factors"),
+        ([0.5, 0.25], "must be ascending load factors"),
+        ([0.5, 0.5], "must be ascending load factors"),
+        ([0.5, 1.5], "between 0 and 1"),
+        ([-0.5], "between 0 and 1"),
         ([np.nan], r"at\[0\] must be finite"),
         (["1"], r"at\[0\] must be a number"),
         (0.5, "at must be a list"),

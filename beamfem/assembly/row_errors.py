@@ -38,7 +38,7 @@ def residual_errors(
                     slots.append(1)
                 # nodes that share a coordinate add what they leave in it
                 for part, values in zip(result, nodes, strict=True):
-                    np.add.at(part, block.dof[here, column], values[here][:, slots].sum(axis=1))
+                    part += np.bincount(block.dof[here, column], values[here][:, slots].sum(axis=1), size)
     np.add.at(result[0], springs.dof, springs.stiffness)
     return result
 
@@ -71,7 +71,7 @@ def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarr
     """Return the force (nc, nv) on nodal vectors that unit errors leave, of positions or of all other vectors."""
     per_node = len(names)
     slot = np.arange(block.scale.shape[1]) % per_node
-    along, across = slot < per_node - 1, slot == per_node - 1
+    along, across = np.flatnonzero(slot < per_node - 1), np.flatnonzero(slot == per_node - 1)
     slope, stress = np.abs(block.slope), np.moveaxis(stress_errors(block, names, positions), 2, 0)
     on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
     result = np.zeros(block.scale.shape)
@@ -108,9 +108,12 @@ def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
     own = errors.reshape(len(errors), errors.shape[1], count, -1)
     result = np.zeros((len(errors), nodes, own.shape[3]))
     for place in range(count):
-        found = own[:, :, place]
+        here, found = block.node[:, place], own[:, :, place]
+        if found.shape[1] == 1:  # all elements are of one class
+            result += np.bincount(here, minlength=nodes)[:, None] * found
+            continue
         for part, values in zip(result, found, strict=True):
-            spread = values[block.kind] if len(values) > 1 else np.broadcast_to(values, (len(block.kind), own.shape[3]))
+            spread = values[block.kind]
             for slot in range(own.shape[3]):
-                part[:, slot] += np.bincount(block.node[:, place], spread[:, slot], nodes)
+                part[:, slot] += np.bincount(here, spread[:, slot], nodes)
     return result

@@ -14,7 +14,7 @@ from beamfem.errors import BeamfemError
 _PHRASES = (
     ("trace_equilibrium follows the path around it", '`kind = "path"` in [analysis] follows the path around it'),
     ('snap="jump" goes', '`snap = "jump"` beside `kind = "static"` goes'),
-    ("let a Prescribed displacement lead", 'let a support of kind "prescribed" lead'),
+    ("prescribe a displacement (Prescribed)", 'prescribe a displacement (`kind = "prescribed"` in [[supports]])'),
     ("let a Prescribed support move", 'let a support of kind "prescribed" move'),
     (
         "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "

@@ -94,7 +94,7 @@ def _refuse_unknown(function: Callable[..., Any], arguments: tuple[Any, ...], gi
 
 
 def name_of(method: Callable[..., Any], item: object) -> str:
-    """Return the name of a method of an object, by the class of the object, which may derive from that of the method."""
+    """Return the name of a method of an object, by the class of the object, which may derive from the defining one."""
     owner = method.__qualname__.rpartition(".")[0]
     derives = any(base.__name__ == owner for base in type(item).__mro__)
     return f"{type(item).__name__ if derives else owner}.{method.__name__}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.loads_at import LoadsAt
+from beamfem.assembly.scratch import Scratch, new
 from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
@@ -129,12 +130,15 @@ class Assembler:
         )
         self.table[record.FACTORS] = room.addresses["factors"]
         self._tables = tuple(whole.arrays.values())
+        self._scratch = _NONE
         if not lent:
-            self.work_in(np.zeros(self.scratch))
+            self.work_in(new(self.scratch))
 
-    def work_in(self, memory: np.ndarray) -> None:
-        """Take memory (scratch,) or more for what passes work on; what it holds means nothing from call to call."""
-        self._scratch, place, places = memory, address_of(memory), {}
+    def work_in(self, scratch: Scratch) -> None:
+        """Take memory (scratch,) or more for what passes work on; it must not hold anything that counts."""
+        if scratch.user is self and self._scratch is scratch.memory:
+            return  # tables of elements are still there
+        self._scratch, place, places = scratch.memory, scratch.address, {}
         for own, size in self._spaces.items():
             place += -place % (8 * WIDTH)  # lanes do not lie across two lines of the cache
             places[own] = place
@@ -142,6 +146,7 @@ class Assembler:
         for work, own in zip(self.works, self._which, strict=True):
             work.table[record.SPACE] = places[own]
         self._filled[:] = 0
+        scratch.user = self
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:

@@ -1,7 +1,5 @@
 """The arrays that the compiled iteration of a band works on, kept for the next solve of the same model."""
 
-import numpy as np
-
 from beamfem.assembly import scratch
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.equations import STATICS
@@ -55,10 +53,10 @@ class BandSpace:
         if self._entries <= _KEPT:
             system.spare.append(self)
 
-    def take(self, memory: np.ndarray) -> None:
+    def take(self, lent: scratch.Scratch) -> None:
         """Take memory to work in until it is given back."""
-        self._scratch = memory
-        self.assembler.work_in(memory)
+        self._scratch = lent
+        self.assembler.work_in(lent)
 
 
 def band_space(system: System) -> BandSpace:

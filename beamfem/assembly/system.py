@@ -43,6 +43,7 @@ from beamfem.validation import shown
 # which carriers have r, the derivatives of r and r_y themselves as coordinates
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
 _KEPT_LOADS = 2  # load factors whose loads are kept
+_NOTHING = np.empty(0)
 _NO_MOVEMENT = 1e300  # what memories are measured by: whatever they change by, nothing moves
 _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
@@ -151,7 +152,8 @@ class System:
 
     def imposing(self, time: float) -> np.ndarray:
         """Factors (k,) of the loads that impose strains at a time."""
-        return np.array([factor(load, time, self.static) for _, load in self.model.imposing])
+        imposing = self.model.imposing
+        return np.array([factor(load, time, self.static) for _, load in imposing]) if imposing else _NOTHING
 
     def loads_at(self, time: float) -> LoadsAt:
         """Return what acts at a time, in statics at a load factor."""

@@ -242,3 +242,17 @@ def test_tables_of_studies_leave_out_whole_solutions_as_those_of_sweeps_do():
     assert "solution" not in study.points()[0]
     assert "Solution(" not in str(study)
     assert len(study.curves[0].others["solution"]) == 2
+
+
+def doubled(x: float) -> float:
+    return 2.0 * x
+
+
+def test_a_bare_number_is_found_as_value_too():
+    """As before it had the name of its function."""
+    sweep = bf.sweep(doubled, x=[1.0, 2.0])
+    np.testing.assert_array_equal(sweep["value"], sweep["doubled"])
+    assert sweep.plot("value", over="x").axes[0].get_ylabel() == "doubled"
+    assert list(sweep.to_pandas().columns) == ["x", "doubled", "seconds"]
+    named = bf.sweep(lambda x: {"value": 3.0 * x}, x=[1.0, 2.0])
+    np.testing.assert_array_equal(named["value"], [3.0, 6.0])

@@ -28,7 +28,7 @@ def plot_sweep(
     if not numeric or not results:
         what = "parameter that varies" if not numeric else "result"
         raise InputError(f"the sweep has no {what} whose values are numbers, so there is nothing to draw")
-    over, value = numeric[0] if over is None else over, results[0] if value is None else value
+    over, value = numeric[0] if over is None else over, results[0] if value is None else sweep.column(value)
     require_known(f"over is no parameter that varies and is a number, got {shown(over)}", over, numeric)
     require_known(f"value is no result of the sweep that is a number, got {shown(value)}", value, [*results, "seconds"])
     curves: dict[str, list[tuple[float, float]]] = {}

@@ -77,6 +77,7 @@ class Sweep:
         Solutions are returned as an array of objects, None for points that failed.
         """
         rows = self.table()
+        name = self.column(name)
         require_known(f"the sweep has no {shown(name)}", name, rows[0])
         column = [row[name] for row in rows]
         found = [value for value in column if value is not None]
@@ -107,6 +108,11 @@ class Sweep:
             | {"seconds": float(seconds)}
             for point, value, seconds in zip(self.parameters, self.values, self.seconds, strict=True)
         ]
+
+    def column(self, name: str) -> str:
+        """Return the name of a column: that of the function for "value", which a bare number is called as well."""
+        names = self.table()[0]
+        return self.function if name == "value" and name not in names and self.function in names else name
 
     def _named(self, value: Any) -> Mapping[str, Any]:
         if value is None:

@@ -24,10 +24,6 @@ EXPLANATION = (
     "finest value; it trusts an order only where four values agree on it, else it is the change between levels."
 )
 
-_ROWS_PRINTED = 5
-_LEFT_OUT = (2, 3)  # columns of the summary, where several curves are printed: how their orders were found
-_PRINTED = 110  # characters of a sentence
-
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
@@ -71,23 +67,10 @@ class Convergence:
         return f"Convergence({self.quantity} over {self.refine}: {self._counted})"
 
     def __str__(self) -> str:
-        failed = [tabulate.cut(str(failure), _PRINTED) for failure in self.failures[:1]]
-        header, rows = self.summary()
-        said: list[str] = []
-        if len(self.curves) == 1:
-            _, order, band, over, *about = rows[0]
-            found = f"order {' '.join([order, band]).strip()} over {over}" if order else "no order"
-            limit, error, remark = about
-            said = [tabulate.cut(f"{found}, limit {limit}, estimated error {error or 'not known'}; {remark}", _PRINTED)]
-            table = self.points(rounded=True)
-        else:
-            lines = [[text for i, text in enumerate(line) if i not in _LEFT_OUT] for line in (header, *rows)]
-            table = lines[0], lines[1:]
-        title = tabulate.cut(f"{self.title}: {self._counted}; all by report()", _PRINTED)
-        return "\n".join([title, tabulate.as_brief(*table, _ROWS_PRINTED), *said, *failed])
+        return self.report()
 
     def report(self) -> str:
-        """Return the tables of all points and curves, what their columns mean, and every failure, as text."""
+        """Return what is printed: tables of all points and curves, what their columns mean, and every failure."""
         points = tabulate.as_text(*self.points(rounded=True), title=self.title)
         curves = tabulate.as_text(*self.summary())
         return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import beamfem as bf
 from beamfem.section.stiffness import StiffnessSection
 
 
@@ -96,3 +97,27 @@ class Viscous(StiffnessSection):
 
     def energy(self, strain, material, history):
         return np.stack([0.5 * strain**2 @ self.moduli, history[:, 6]], axis=-1)
+
+
+SECTION = {"axial": 1e6, "shear": 4e5, "bending": 100.0, "mass": 1.0, "rotary_inertia": 1e-4}
+LIGHT = {**SECTION, "mass": 1e-5, "rotary_inertia": 1e-9}
+YIELDING = Plastic(**SECTION, limit=40.0, hardening=25.0)
+NEVER = Plastic(**SECTION, limit=1e30, hardening=25.0)
+LAWS = [YIELDING, Creeping(**SECTION, relaxation=0.3), Viscous(**SECTION, retardation=0.3)]
+ids = {"ids": lambda law: type(law).__name__}
+
+
+def arm(section, loads=lambda beam: [], order=3, elements=8, length=1.0, material=None):
+    beam = bf.Beam(bf.Line((0, 0), (length, 0)), elements, bf.CRBF(order=order), section, material)
+    return beam, bf.Model([beam], [bf.Clamp(beam.start)], loads(beam))
+
+
+def there_and_back(at):
+    """From 0 to 1, to -1 and back to 1, in five equal parts."""
+    return float(np.interp(at, [0.0, 0.2, 0.6, 1.0], [0.0, 1.0, -1.0, 1.0]))
+
+
+def bent_there_and_back(section, **options):
+    """A short arm under a moment of 90 N m, that of the limit and of the hardening of 2 /m."""
+    load = lambda beam: [bf.PointMoment(beam.end, 90.0, amplitude=there_and_back, scale=False)]  # noqa: E731
+    return arm(section, load, length=0.1, **options)

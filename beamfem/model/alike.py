@@ -1,0 +1,54 @@
+"""Which sections and materials are alike, in one model and from one model to the next."""
+
+from collections.abc import Hashable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import lru_cache
+
+_PLAIN = (float, int, str, type(None))
+
+
+def by_value(item: object) -> Hashable:
+    """Return the item itself, or its identity if comparing it by value does not tell all of it.
+
+    So it is for what has no hash, and for classes that add to a dataclass without being one: two of them are equal by
+    what their base knows.
+    """
+    try:
+        hash(item)
+    except TypeError:
+        return id(item)
+    return item if all(_tells_all(type(part)) for part in _parts(item)) else id(item)
+
+
+def lasting(*items: object) -> bool:
+    """Return whether all of these are of the package: what is the user's own may change from one model to the next."""
+    return all(_of_package(type(part)) for item in items for part in _parts(item))
+
+
+def _parts(item: object) -> Iterator[object]:
+    """Return an item and all that it is compared by, but for numbers and text."""
+    known, found = set(), [item]
+    while found:
+        part = found.pop()
+        if isinstance(part, tuple):
+            found += part
+        elif type(part) not in _PLAIN and id(part) not in known:
+            known.add(id(part))
+            yield part
+            found += [getattr(part, name) for name in _compared(type(part))]
+
+
+@lru_cache(maxsize=256)
+def _compared(kind: type) -> tuple[str, ...]:
+    """Return the names of the fields that a class is compared by."""
+    return tuple(own.name for own in fields(kind) if own.compare) if is_dataclass(kind) else ()
+
+
+@lru_cache(maxsize=256)
+def _tells_all(kind: type) -> bool:
+    return not is_dataclass(kind) or "__eq__" in vars(kind)
+
+
+@lru_cache(maxsize=256)
+def _of_package(kind: type) -> bool:
+    return kind.__module__.startswith("beamfem.")

@@ -242,3 +242,12 @@ def test_tables_of_studies_leave_out_whole_solutions_as_those_of_sweeps_do():
     assert "solution" not in study.points()[0]
     assert "Solution(" not in str(study)
     assert len(study.curves[0].others["solution"]) == 2
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(order=2), bf.ANCF()])
+def test_buckling_without_a_critical_point_is_an_empty_table(element):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, element, bf.Rectangle(0.01, 0.02), bf.Material(2e11, 0.3, 7850.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1.0))])
+    found = bf.solve_buckling(model)
+    assert not len(found)
+    assert found.to_xarray(beam).sizes["mode"] == found.to_xarray().sizes["mode"] == 0

@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Iterator
 from dataclasses import fields, is_dataclass
 from functools import lru_cache
+from typing import Any
 
 _PLAIN = (float, int, str, type(None))
 
@@ -17,17 +18,18 @@ def by_value(item: object) -> Hashable:
         hash(item)
     except TypeError:
         return id(item)
-    return item if all(_tells_all(type(part)) for part in _parts(item)) else id(item)
+    return item if all(_tells_all(type(part)) for part in _parts(item)) else id(item)  # type: ignore[arg-type]
 
 
 def lasting(*items: object) -> bool:
     """Return whether all of these are of the package: what is the user's own may change from one model to the next."""
-    return all(_of_package(type(part)) for item in items for part in _parts(item))
+    return all(_of_package(type(part)) for item in items for part in _parts(item))  # type: ignore[arg-type]
 
 
-def _parts(item: object) -> Iterator[object]:
+def _parts(item: object) -> Iterator[Any]:
     """Return an item and all that it is compared by, but for numbers and text."""
-    known, found = set(), [item]
+    known: set[int] = set()
+    found: list[Any] = [item]
     while found:
         part = found.pop()
         if isinstance(part, tuple):
@@ -35,7 +37,7 @@ def _parts(item: object) -> Iterator[object]:
         elif type(part) not in _PLAIN and id(part) not in known:
             known.add(id(part))
             yield part
-            found += [getattr(part, name) for name in _compared(type(part))]
+            found += [getattr(part, name) for name in _compared(type(part))]  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=256)

@@ -53,7 +53,7 @@ def element_classes(grid: Grid) -> Classes:
     # studies make like beams time and again
     if few and grid.straight and lasting(beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
-        like = _Like(beam.element, beam.section, beam.material, grid.lengths.tobytes(), x, y, grid)
+        like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
         return _classes_of_like(like)
     return _classes(grid)
 

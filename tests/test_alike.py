@@ -139,3 +139,44 @@ def test_what_derives_from_a_line_may_bend():
     model = bf.Model([beam], [bf.Clamp(beam.start)])
     assert model.meshes[0].position[6, 1] == pytest.approx(0.1)
     assert beam.at(0.5).reference == pytest.approx([0.5, 0.1])
+
+
+class Placed(bf.Lagrange):
+    """A quadratic field with its middle node anywhere: the same functions, whatever the nodes."""
+
+    def __init__(self, middle):
+        super().__init__(2)
+        object.__setattr__(self, "middle", middle)
+
+    @property
+    def nodes(self):
+        return np.array([0.0, self.middle, 1.0])
+
+    def centreline(self, xi, derivative=0):
+        powers = [np.polynomial.Polynomial(row) for row in np.linalg.inv(np.vander(self.nodes, increasing=True)).T]
+        return np.stack([(own.deriv(derivative) if derivative else own)(np.asarray(xi)) for own in powers], axis=-1)
+
+    director = centreline
+
+
+class Soft(bf.Structural):
+    def __init__(self, factor):
+        super().__init__()
+        object.__setattr__(self, "factor", factor)
+
+    def stiffness(self, *arguments):
+        return self.factor * super().stiffness(*arguments)
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_elements_of_what_derives_from_the_package_and_is_equal(together):
+    def placed(middle):
+        return bf.Element(Placed(middle), bf.Rotation(), bf.Structural(), "reduced")
+
+    assert Placed(0.3) == Placed(0.7)
+    assert bf.CRBF(order=2) == bf.CRBF(order=2)
+    elements = [placed(0.3), placed(0.7), bf.CRBF(order=2), *(bf.CRBF(2, forces=Soft(factor)) for factor in (1.0, 0.1))]
+    beams = [made(SECTION, STEEL, element=element) for element in elements]
+    found = deflections(*beams) if together else [deflections(beam)[0] for beam in beams]
+    assert found == pytest.approx(np.array([1.0, 1.0, 1.0, 1.0, 10.0]) * found[2], rel=2e-2)
+    assert found[:2] == pytest.approx([found[2]] * 2, rel=1e-6)

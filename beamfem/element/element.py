@@ -1,11 +1,13 @@
 """An element as a user chooses it, and the named combinations of the paper."""
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
+from beamfem.alike import whole
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, Rotation, ShearFree, labels
 from beamfem.element.fields import Cubic, Field, Lagrange
@@ -84,6 +86,17 @@ class Element:
                 f"the elastic line takes its curvature from r_xx, which the {self.field.name} field does not have "
                 "across elements; use the cubic field, or Structural forces"
             )
+
+    def __eq__(self, other: object) -> bool:
+        return self._compared == other._compared if type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._compared)
+
+    @property
+    def _compared(self) -> tuple[Hashable, ...]:
+        # what a user derives from a field or from forces may be more than these are compared by
+        return whole(self.field), whole(self.coordinates), whole(self.forces), self.integration, self.label
 
     @property
     def name(self) -> str:

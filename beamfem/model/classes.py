@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamfem.alike import by_value, lasting
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.material import Material
-from beamfem.model.alike import by_value, lasting
 from beamfem.model.damping import retardation_time
 from beamfem.model.grid import Grid
 from beamfem.model.reference import (
@@ -51,7 +51,7 @@ def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
     beam, few = grid.beam, grid.elements <= _FEW
     # studies make like beams time and again
-    if few and grid.straight and lasting(beam.section, beam.material):
+    if few and grid.straight and lasting(beam.element, beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
         like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
         return _classes_of_like(like)

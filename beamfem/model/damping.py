@@ -2,9 +2,9 @@
 
 from functools import lru_cache
 
+from beamfem.alike import lasting
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.model.alike import lasting
 from beamfem.section.protocol import CrossSection
 
 

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.alike import lasting
 from beamfem.curves import Line
 from beamfem.errors import InputError
 from beamfem.material import Material
-from beamfem.model.alike import lasting
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import LARGEST, SMALLEST
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.alike import by_value
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.kernels.block import NO_HISTORY
-from beamfem.model.alike import by_value
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body

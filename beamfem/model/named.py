@@ -18,9 +18,7 @@ def require_different_names(beams: Sequence["Beam"]) -> None:
             raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")
     for number, beam in enumerate(beams):
         if beam.name is None and str(number) in counted:
-            raise InputError(
-                f"a beam has the name {str(number)!r}, which is the number of one without a name; name both"
-            )
+            raise InputError(f"a beam has the name {str(number)!r}, the number of one without a name; name both")
 
 
 def names(beams: Sequence["Beam"]) -> list[str]:

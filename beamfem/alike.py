@@ -28,7 +28,16 @@ def whole(item: object) -> Hashable:
 
 def lasting(*items: object) -> bool:
     """Return whether all of these are of the package: what is the user's own may change from one model to the next."""
-    return all(_of_package(type(part)) for item in items for part in _parts(item))  # type: ignore[arg-type]
+    for item in items:
+        kind: Any = type(item)
+        if kind in _PLAIN:
+            continue
+        if kind is not tuple and not _of_package(kind):
+            return False
+        parts = item if isinstance(item, tuple) else [getattr(item, name) for name in _compared(kind)]
+        if parts and not lasting(*parts):
+            return False
+    return True
 
 
 def _parts(item: object) -> Iterator[Any]:
@@ -47,8 +56,11 @@ def _parts(item: object) -> Iterator[Any]:
 
 @lru_cache(maxsize=256)
 def _compared(kind: type) -> tuple[str, ...]:
-    """Return the names of the fields that a class is compared by."""
-    return tuple(own.name for own in fields(kind) if own.compare) if is_dataclass(kind) else ()
+    """Return the names of the fields that a class is compared by, but for those that the package sees to be numbers."""
+    if not is_dataclass(kind):
+        return ()
+    numbers = (float, float | None) if _of_package(kind) else ()
+    return tuple(own.name for own in fields(kind) if own.compare and own.type not in numbers)
 
 
 @lru_cache(maxsize=256)

@@ -17,9 +17,10 @@ from beamfem.curves import (
     without_removable_knots,
 )
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
-from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
+from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
+from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 from beamfem.errors import (
     BeamfemError,
     ChangedCodeWarning,

@@ -5,7 +5,7 @@ import pytest
 
 from beamfem.assembly.routines import MEASURE_PASSES
 from beamfem.element.axis import Axis
-from beamfem.element.element import ContinuumMechanics, ElasticLine, Structural
+from beamfem.element.forces import ContinuumMechanics, ElasticLine, Structural
 from beamfem.kernels import point
 from beamfem.kernels.record import ROW
 from beamfem.physics import generate

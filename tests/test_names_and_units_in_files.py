@@ -49,6 +49,8 @@ def test_messages_and_texts_call_beams_by_name():
         bf.solve_static(bf.Model([arm], [bf.Pin(arm.start)], [bf.PointForce(arm.end, (0, 1))]))
     with pytest.raises(bf.InputError, match="2 beams of a Model have the name 'arm'"):
         bf.Model([arm, replace(arm)])
+    with pytest.raises(bf.InputError, match="the name '1', the number of one without a name"):
+        bf.Model([replace(arm, name="1"), post])
     for name in ("", " ", 3):
         with pytest.raises(bf.InputError, match="name of a Beam must"):
             replace(arm, name=name)

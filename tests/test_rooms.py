@@ -42,6 +42,7 @@ ROOMS = (
     "section",
     "material",
     "curves",
+    "alike",
     "brief",
     "tabulate",
     "files",

@@ -256,3 +256,12 @@ def test_a_bare_number_is_found_as_value_too():
     assert list(sweep.to_pandas().columns) == ["x", "doubled", "seconds"]
     named = bf.sweep(lambda x: {"value": 3.0 * x}, x=[1.0, 2.0])
     np.testing.assert_array_equal(named["value"], [3.0, 6.0])
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(order=2), bf.ANCF()])
+def test_buckling_without_a_critical_point_is_an_empty_table(element):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, element, bf.Rectangle(0.01, 0.02), bf.Material(2e11, 0.3, 7850.0))
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1.0))])
+    found = bf.solve_buckling(model)
+    assert not len(found)
+    assert found.to_xarray(beam).sizes["mode"] == found.to_xarray().sizes["mode"] == 0

@@ -66,7 +66,7 @@ def first_solve() -> dict[str, Any]:
     """
     from beamfem.assembly.compiled import compiled_here
     from beamfem.curves import Line
-    from beamfem.element.element import CRBF
+    from beamfem.element.presets import CRBF
     from beamfem.material import Material
     from beamfem.model.beam import Beam
     from beamfem.model.loads import PointForce

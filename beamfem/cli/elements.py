@@ -3,7 +3,8 @@
 import re
 
 from beamfem.cli.modelfile.elements import PRESETS
-from beamfem.element.element import CRBF, Element
+from beamfem.element.element import Element
+from beamfem.element.presets import CRBF
 from beamfem.errors import InputError
 from beamfem.validation import nearest
 

@@ -115,7 +115,7 @@ def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.nd
     own = len(kind.coordinates)
     turned = kind.vectors(tuple(np.moveaxis(p[..., -own:], -1, 0)), c, s, frame[:, 2])
     components = np.concatenate([p[..., :-own], np.stack(turned, axis=-1)], axis=-1)
-    return components.reshape(*p.shape[:2], -1, 2)
+    return components.reshape(*p.shape[:2], components.shape[-1] // 2, 2)  # of no steps too
 
 
 def across(vector: np.ndarray) -> np.ndarray:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
+from beamfem.alike import by_value
 from beamfem.errors import UnknownStressWarning, warn
 from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.io.samples import Samples, body, centreline
 from beamfem.material import Material
 from beamfem.model.beam import Beam
-from beamfem.model.classes import by_value
 from beamfem.model.model import Model
 from beamfem.model.named import names
 from beamfem.section import Layered

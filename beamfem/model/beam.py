@@ -266,9 +266,9 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
     """Return the reference positions (n, 2) [m] of points, those on straight beams all at once."""
     result = np.empty((len(points), 2))
     curves = [point.beam.curve for point in points]
-    straight = [(i, curve) for i, curve in enumerate(curves) if isinstance(curve, Line)]
+    straight = [(i, curve) for i, curve in enumerate(curves) if type(curve) is Line]
     for i, curve in enumerate(curves):
-        if not isinstance(curve, Line):
+        if type(curve) is not Line:  # what derives from it may bend
             result[i] = points[i].reference
     if straight:
         own, lines = zip(*straight, strict=True)

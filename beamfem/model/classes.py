@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamfem.alike import by_value, lasting
 from beamfem.element.element import Element
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE
@@ -49,8 +50,8 @@ class Classes:
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
     beam, few = grid.beam, grid.elements <= _FEW
-    # studies make like beams time and again; what a user's own section is may change from one to the next
-    if few and grid.straight and type(beam.section).__module__.startswith("beamfem."):
+    # studies make like beams time and again
+    if few and grid.straight and lasting(beam.element, beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
         like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
         return _classes_of_like(like)
@@ -157,15 +158,6 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
             beam = grids[i].beam
             found[i] = size, own.tobytes(), by_value(beam.section), by_value(beam.material)
     return found
-
-
-def by_value(item: object) -> Hashable:
-    """Return the item itself, or its identity if it cannot be compared by value."""
-    try:
-        hash(item)
-    except TypeError:
-        return id(item)
-    return item
 
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

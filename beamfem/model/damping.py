@@ -2,6 +2,7 @@
 
 from functools import lru_cache
 
+from beamfem.alike import lasting
 from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.section.protocol import CrossSection
@@ -12,10 +13,8 @@ def retardation_time(section: CrossSection, material: Material | None) -> float:
 
     Raises InputError if layers have different ones.
     """
-    try:
-        return _known_time(section, material)  # type: ignore[arg-type]
-    except TypeError:  # a section of the user's that has no hash
-        return _time(section, material)
+    time = _known_time if lasting(section, material) else _time
+    return time(section, material)  # type: ignore[arg-type]
 
 
 def _time(section: CrossSection, material: Material | None) -> float:

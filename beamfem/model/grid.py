@@ -62,7 +62,7 @@ class Grid:
 
     @property
     def straight(self) -> bool:
-        return isinstance(self.beam.curve, Line) and not self.moved
+        return type(self.beam.curve) is Line and not self.moved
 
     def locate(self, fraction: float) -> tuple[int, float]:
         """Return element and xi in [0, 1] of a point of the beam."""

@@ -20,7 +20,7 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
     alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
     grids: dict[int, Grid] = {}
     for number, (beam, own) in enumerate(zip(beams, fractions, strict=True)):
-        if isinstance(beam.curve, Line) and isinstance(beam.elements, int) and _at_ends(own, beam.elements):
+        if type(beam.curve) is Line and isinstance(beam.elements, int) and _at_ends(own, beam.elements):
             alike[beam.elements, beam.element.field].append(number)
         else:
             grids[number] = make_grid(beam, own)
@@ -37,10 +37,11 @@ def _at_ends(fractions: Sequence[float], elements: int) -> bool:
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
     """Return the grids of straight beams with the same number of equal elements of one field."""
     lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
+    nodes = np.asarray(field.nodes, dtype=float)  # those of a user's field may be of any kind
     if len(lines) > 1 or elements > _FEW:
-        found = _divided(lines, elements, field.nodes)
+        found = _divided(lines, elements, nodes)
     else:
-        found = _divided_few(lines[0], elements, field.nodes.tobytes())
+        found = _divided_few(lines[0], elements, nodes.tobytes())
     parts = zip(beams, found.vertices, found.arc, found.position, found.tangent, strict=True)
     return [
         Grid(beam, ends, ends, 1.0, found.node, arc, position, tangent, found.speed)

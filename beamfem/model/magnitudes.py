@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.alike import lasting
 from beamfem.curves import Line
 from beamfem.errors import InputError
 from beamfem.material import Material
@@ -38,17 +39,15 @@ def _formed(beam: "Beam", section: CrossSection) -> list[float]:
     """Return the quantities as plain numbers, whose products and quotients overflow without an error."""
     curve = beam.curve
     length = float(curve.length)
-    if isinstance(curve, Line):
+    if type(curve) is Line:
         reach = max(*map(abs, curve.start), *map(abs, curve.end), 1.0)
     else:
         reach = max(float(np.abs(curve.position(np.linspace(0.0, length, _SAMPLES))).max()), 1.0)
     h = length * beam.shortest
     if not h > 0.0:
         return [length, reach, h]
-    try:
-        axial, shear, bending, mass, rotary = _known_resistance(section, beam.material)  # type: ignore[arg-type]
-    except TypeError:  # a section of the user's that has no hash
-        axial, shear, bending, mass, rotary = _resistance(section, beam.material)
+    resistance = _known_resistance if lasting(section, beam.material) else _resistance
+    axial, shear, bending, mass, rotary = resistance(section, beam.material)  # type: ignore[arg-type]
     found = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
     found += (bending / h, bending / h / h / h, mass * h, rotary / h)
     if beam.element.forces.fills_body:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.alike import by_value
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
@@ -15,7 +16,6 @@ from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
-from beamfem.model.classes import by_value
 from beamfem.model.contribution import Contribution, remembered, require_connector
 from beamfem.model.gaps import close_gaps
 from beamfem.model.grid import Grid

@@ -11,11 +11,14 @@ if TYPE_CHECKING:
 
 
 def require_different_names(beams: Sequence["Beam"]) -> None:
-    """Raise InputError for a name that two beams have."""
+    """Raise InputError for a name that two beams have, or that is the number of one without."""
     counted = Counter(beam.name for beam in beams if beam.name is not None)
     for name, number in counted.items():
         if number > 1:
             raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")
+    for number, beam in enumerate(beams):
+        if beam.name is None and str(number) in counted:
+            raise InputError(f"a beam has the name {str(number)!r}, the number of one without a name; name both")
 
 
 def names(beams: Sequence["Beam"]) -> list[str]:

@@ -137,7 +137,8 @@ def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray
 
 def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Interpolate nodal vectors (steps, nodes, vectors, 2) at points (element, xi), both (points,)."""
-    local = vectors[:, mesh.node[element]].reshape(len(vectors), len(element), -1, 2)
+    own = mesh.node[element]
+    local = vectors[:, own].reshape(len(vectors), len(element), own.shape[1] * vectors.shape[2], 2)
     return interpolate(mesh, local, element, xi)
 
 

@@ -6,9 +6,10 @@ from beamfem.cli.modelfile.named import Named
 from beamfem.cli.modelfile.own_parts import build_own_or_kind
 from beamfem.cli.modelfile.table import Kinds, Reader, Table, build_kind
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
-from beamfem.element.element import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, Element, ShearRigid
+from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, Forces, SplitContinuum, Structural
+from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
 
 
 def _continuum(plane_stress: bool = False) -> Forces:

@@ -1,0 +1,204 @@
+"""The named elements: combinations of the paper, and fields of any order carried by rotations."""
+
+from beamfem.element.coordinates import Gradients, Rotation, ShearFree
+from beamfem.element.element import Element, Integration
+from beamfem.element.fields import Cubic, Lagrange
+from beamfem.element.forces import ContinuumMechanics, Forces, SplitContinuum, Structural
+from beamfem.keywords import keywords_checked
+from beamfem.validation import flag
+
+
+@keywords_checked
+def ANCF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
+    """Return the ANCF element: cubic field with gradients as coordinates, 6 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Omar and Shabana 2001.
+
+    Examples
+    --------
+    >>> element = bf.ANCF(bf.Structural())
+    >>> element.coordinates_per_node, element.integration
+    (6, 'lobatto')
+    """
+    return Element(Cubic(), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "ANCF")
+
+
+@keywords_checked
+def ANCFCRBF(forces: Forces | None = None, integration: Integration | None = None) -> Element:
+    """Return the ANCF-CRBF element: cubic field with rotations as coordinates, 5 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, section 3.
+
+    Examples
+    --------
+    >>> element = bf.ANCFCRBF()
+    >>> element.coordinates_per_node, element.integration
+    (5, 'full')
+    """
+    return Element(Cubic(), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "ANCF-CRBF")
+
+
+@keywords_checked
+def BilinearANCF(forces: Forces | None = None, integration: Integration = "full") -> Element:
+    """Return the bilinear ANCF element: bilinear field with gradients as coordinates, 4 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced"}, default "full"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, eqs. (8) to (10).
+
+    Examples
+    --------
+    >>> element = bf.BilinearANCF()
+    >>> element.coordinates_per_node, element.integration
+    (4, 'full')
+    """
+    return Element(Lagrange(1), Gradients(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-ANCF")
+
+
+@keywords_checked
+def BilinearCRBF(forces: Forces | None = None, integration: Integration = "full") -> Element:
+    """Return the bilinear CRBF element: bilinear field with rotations as coordinates, 3 coordinates per node.
+
+    Parameters
+    ----------
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `ContinuumMechanics()`.
+    integration : {"full", "reduced"}, default "full"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, section 4.
+
+    Examples
+    --------
+    >>> element = bf.BilinearCRBF()
+    >>> element.coordinates_per_node, element.integration
+    (3, 'full')
+    """
+    return Element(Lagrange(1), Rotation(), _chosen(forces, ContinuumMechanics()), integration, "bilinear-CRBF")
+
+
+@keywords_checked
+def CRBF(order: int, forces: Forces | None = None, integration: Integration = "reduced") -> Element:
+    """Return the CRBF element: field of any order in r and r_y with rotations as coordinates, 3 coordinates per node.
+
+    Parameters
+    ----------
+    order : int
+        Polynomial order of the field, 1 to 8.
+    forces : ContinuumMechanics, SplitContinuum or Structural, optional
+        Elastic forces, by default `Structural()`.
+    integration : {"full", "reduced"}, default "reduced"
+        Integration of the strain energy, see `Element`.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    Raises
+    ------
+    InputError
+        For an order outside 1 to 8, or a combination that makes no sense.
+
+    References
+    ----------
+    Suggested in the paper, section 4.
+
+    Examples
+    --------
+    >>> element = bf.CRBF(order=3)
+    >>> element.name, element.coordinates_per_node
+    ('CRBF-3', 3)
+    """
+    return Element(Lagrange(order), Rotation(), _chosen(forces, Structural()), integration, f"CRBF-{order}")
+
+
+@keywords_checked
+def ShearRigid(
+    stretchable: bool = True, forces: Forces | None = None, integration: Integration | None = None
+) -> Element:
+    """Return the shear-rigid element: cubic field without shear at its nodes, 4 or 3 coordinates per node.
+
+    Full integration makes it 1.2 times too stiff in shear, and in stretch if the length of r_x is no coordinate;
+    without that coordinate, as any cubic field with full integration.
+
+    Parameters
+    ----------
+    stretchable : bool, default True
+        Whether the length of r_x is a coordinate (4 coordinates per node) or not (3).
+    forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural, optional
+        Elastic forces, by default `Structural()`.
+    integration : {"full", "reduced", "lobatto"}, optional
+        Integration of the strain energy, see `Element`; by default "reduced" with continuum forces.
+
+    Returns
+    -------
+    Element
+        Element for `Beam`.
+
+    References
+    ----------
+    Paper, sections 1.5 and 3.5.
+
+    Examples
+    --------
+    >>> element = bf.ShearRigid(stretchable=False)
+    >>> element.coordinates_per_node, element.integration
+    (3, 'lobatto')
+    """
+    label = "shear-rigid-stretchable" if flag("stretchable", stretchable) else "shear-rigid"
+    chosen = _chosen(forces, Structural())
+    if integration is None and isinstance(chosen, ContinuumMechanics | SplitContinuum):
+        integration = "reduced"
+    return Element(Cubic(), ShearFree(stretchable), chosen, integration, label)
+
+
+def _chosen(forces: Forces | None, usual: Forces) -> Forces:
+    return usual if forces is None else forces

@@ -1,5 +1,6 @@
 """Section laws with history: plasticity and creep by hand, and their history through solves, files and slices."""
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -393,3 +394,26 @@ def test_half_a_memory_is_refused():
     ):
         with pytest.raises(bf.InputError, match=said):
             arm(law)
+
+
+class Same(Plastic):
+    """A law that is compared by what its base knows."""
+
+
+@pytest.mark.parametrize("kind", [Plastic, Same])
+def test_a_history_that_is_not_continued_is_warned_of(kind):
+    def bent(limit):
+        section = kind(**SECTION, limit=limit, hardening=30.0)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(order=3), section)
+        load = bf.PointForce(beam.end, (0, 12.0), amplitude=lambda at: 1.0)
+        return bf.Model([beam], [bf.Clamp(beam.start)], [load])
+
+    bending = bf.solve_static(bent(5.0), 2)
+    state, lost = bending[-1], bending.energy().dissipated[-1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        motion = bf.simulate(bent(5.0), 0.01, 0.001, start=state)
+    assert motion.energy().dissipated[0] == pytest.approx(lost)
+    assert lost > 0.1
+    with pytest.warns(UserWarning, match=f"what the {kind.__name__} of beam 0 remembers in start is lost"):
+        bf.simulate(bent(4.0), 0.01, 0.001, start=state)

@@ -26,6 +26,14 @@ def whole(item: object) -> Hashable:
     return item if _tells_all(type(item)) else id(item)  # type: ignore[arg-type]
 
 
+def equal(one: object, other: object) -> bool:
+    """Return whether two items are equal, with all that they have besides what they are compared by."""
+    if one is other or by_value(one) == by_value(other):
+        return True
+    own, its = getattr(one, "__dict__", None), getattr(other, "__dict__", None)
+    return type(one) is type(other) and own is not None and bool(own) and own == its
+
+
 def lasting(*items: object) -> bool:
     """Return whether all of these are of the package: what is the user's own may change from one model to the next."""
     for item in items:

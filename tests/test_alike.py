@@ -180,3 +180,26 @@ def test_elements_of_what_derives_from_the_package_and_is_equal(together):
     found = deflections(*beams) if together else [deflections(beam)[0] for beam in beams]
     assert found == pytest.approx(np.array([1.0, 1.0, 1.0, 1.0, 10.0]) * found[2], rel=2e-2)
     assert found[:2] == pytest.approx([found[2]] * 2, rel=1e-6)
+
+
+class InPlace:
+    """A straight curve that works in what it is given."""
+
+    length, corners = 2.0, ()
+
+    def position(self, arc_length):
+        arc_length /= self.length
+        return np.column_stack([self.length * arc_length, 0.0 * arc_length])
+
+    def tangent(self, arc_length):
+        arc_length /= self.length
+        return np.tile([1.0, 0.0], (len(arc_length), 1))
+
+
+def test_a_curve_that_works_in_what_it_is_given():
+    found = []
+    for curve in (InPlace(), bf.Line((0, 0), (2, 0))):
+        beam = made(SECTION, STEEL, curve)
+        model = bf.Model([beam], [bf.Clamp(beam.start), bf.Pin(beam.at(0.75))], [bf.PointForce(beam.end, (0, -FORCE))])
+        found.append(bf.solve_static(model).displacement(beam.end)[-1, 1])
+    assert found[0] == pytest.approx(found[1], rel=1e-9) != 0.0

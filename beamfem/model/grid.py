@@ -134,7 +134,8 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     nudge = 1e-10 * length
     seen_from[node[parted, -1]] -= nudge
     seen_from[node[parted + 1, 0]] += nudge
-    position, tangent = beam.curve.position(arc), beam.curve.tangent(seen_from)
+    # a user's curve may work in what it is given
+    position, tangent = beam.curve.position(arc.copy()), beam.curve.tangent(seen_from)
     return Grid(beam, vertices, vertices, 1.0, node, arc, position, tangent, np.ones(len(arc)))
 
 

@@ -174,7 +174,7 @@ def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     near, inside = _SHORT * (end - start), _INSIDE * (end - start)
     arc = grid.arc_length(element, xi)
     before, after = np.maximum(arc - near, start + inside), np.minimum(arc + near, end - inside)
-    one, other = grid.beam.curve.tangent(before), grid.beam.curve.tangent(after)
+    one, other = grid.beam.curve.tangent(before.copy()), grid.beam.curve.tangent(after.copy())
     return np.arctan2(cross(one, other), dot(one, other)) / (after - before)
 
 

@@ -136,7 +136,7 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     element, xi = _places(mesh)
     inside = mesh.arc_length_inside(element, xi, curve.corners)
     at = mesh.arc_length(element, xi)
-    position, rate = curve.position(at) + moved, curve.tangent(inside) + slope
+    position, rate = curve.position(at.copy()) + moved, curve.tangent(inside.copy()) + slope
     # element ends are one point with the mean of the slopes on both sides, except at corners
     first = np.arange(_pieces(mesh) + 1, len(at), _pieces(mesh) + 1)
     corner = np.isclose(at[first][:, None], np.array(curve.corners), rtol=0.0, atol=1e-9 * curve.length).any(axis=1)

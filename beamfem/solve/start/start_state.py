@@ -6,7 +6,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.results.fitting import require_finite
 from beamfem.results.solution import Solution, State
-from beamfem.solve.start.transfer import transferred
+from beamfem.solve.start.transfer import transferred, warn_of_lost_history
 
 
 def start_state(system: System, start: State | None, name: str = "start") -> np.ndarray:
@@ -16,6 +16,7 @@ def start_state(system: System, start: State | None, name: str = "start") -> np.
     if not isinstance(start, State):
         raise InputError(f"{name} must be a state, such as solution[-1], got a {type(start).__name__}")
     require_finite(name, start)
+    warn_of_lost_history(start, system, name)
     return transferred(start, system, name)[0]
 
 

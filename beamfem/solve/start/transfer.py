@@ -2,14 +2,15 @@
 
 import numpy as np
 
+from beamfem.alike import equal
 from beamfem.assembly.columns import coordinate_columns
 from beamfem.assembly.system import System, system_of
 from beamfem.element.axis import cross, dot
 from beamfem.element.coordinates import across
-from beamfem.errors import InputError
+from beamfem.errors import InputError, warn
 from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.model import Model, block_key
+from beamfem.model.model import Model
 from beamfem.model.named import beam_in_words
 from beamfem.model.reference import reference_angle
 from beamfem.model.turns import uncounted
@@ -38,13 +39,39 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
             # a rotated vector belongs to the first of the joined nodes
             own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
             p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
-        if old.history.shape == new.history.shape and new.history.size and block_key(old.beam) == block_key(new.beam):
+        if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
     known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
         if id(item.item) in known:
             p[item.memory] = state.p[known[id(item.item)].memory]
     return p, v
+
+
+def warn_of_lost_history(state: State, system: System, name: str) -> None:
+    """Warn of beams that have a history in a state which their sections here do not continue."""
+    if state.model is system.model:
+        return
+    for old, new in _matched(state.model, system.model, name):
+        law = old.beam.law
+        if law is None or not old.history.size or _keeps_history(old, new):
+            continue
+        if not np.array_equal(state.p[old.history], np.broadcast_to(law.start, old.history.shape)):
+            beam = beam_in_words(system.model.beams, system.model.number_of(new.beam))
+            warn(
+                f"what the {law.name} of {beam} remembers in {name} is lost: the beam has another section, material or "
+                "element in this model, which begins without history"
+            )
+
+
+def _keeps_history(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether a beam has the same element and section law in both models, and so its history."""
+    one, other = old.beam.law, new.beam.law
+    if one is None or other is None or not new.history.size or old.history.shape != new.history.shape:
+        return False
+    if old.beam.element != new.beam.element:
+        return False
+    return equal(one.section, other.section) and equal(one.material, other.material)
 
 
 def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarray:

@@ -12,6 +12,7 @@ from history_laws import (
     SECTION,
     YIELDING,
     Creeping,
+    Plastic,
     Viscous,
     arm,
     bent_there_and_back,

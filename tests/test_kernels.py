@@ -130,14 +130,16 @@ def test_band_solver_equals_scipy(rng):
             if not 0 <= i + j - half < n:
                 rows[i, j] = 0.0
     right = rng.standard_normal(n)
-    matrix = dense(BandTangent(rows))
+    reach = np.minimum(np.arange(n) + half + 1, n).astype(np.int32)
+    matrix = dense(BandTangent(rows, reach))
     expected = np.linalg.solve(matrix, right)
-    assert np.abs(BandTangent(rows).solve(right, NONE_TURNED) - expected).max() <= 1e-13
+    assert np.abs(BandTangent(rows, reach).solve(right, NONE_TURNED) - expected).max() <= 1e-13
     assert np.abs(_solve_pivoted(rows, right) - expected).max() <= 1e-13
 
 
 def test_band_solver_pivots_where_it_must():
     rows = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
     right = np.array([2.0, 3.0])
-    assert BandTangent(rows).solve(right, NONE_TURNED) == pytest.approx([3.0, 2.0], abs=1e-15)
+    reach = np.array([2, 2], dtype=np.int32)
+    assert BandTangent(rows, reach).solve(right, NONE_TURNED) == pytest.approx([3.0, 2.0], abs=1e-15)
     assert solve_banded((1, 1), np.array([[0, 1.0], [0, 0], [1.0, 0]]), right) == pytest.approx([3.0, 2.0], abs=1e-15)

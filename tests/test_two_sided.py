@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+import beamfem as bf
+from beamfem.assembly.equations import STATICS, linearise
+from beamfem.assembly.system import system_of
 from beamfem.kernels.band import KNOWN, band
 from beamfem.kernels.band_halves import band_halves
 from beamfem.kernels.two_sided import two_sided
@@ -22,6 +25,11 @@ def matrix(n, w, rng, sign=1.0):
     return whole, rows
 
 
+def whole_band(n, w):
+    """Return the envelope of a band without zeros in it, see `assembly.layout.reaches`."""
+    return np.tile(np.minimum(np.arange(n) + w + 1, n).astype(np.int32), (2, 1))
+
+
 @pytest.mark.parametrize("w", [1, 3, *KNOWN])
 @pytest.mark.parametrize("short", [False, True])
 def test_solutions_are_those_of_dense_matrices(w, short, rng):
@@ -31,7 +39,7 @@ def test_solutions_are_those_of_dense_matrices(w, short, rng):
         whole, rows = matrix(n, w, rng)
         right = rng.standard_normal(n)
         x = right.copy()
-        ratio = own.factor(n, w, rows, np.empty(n))
+        ratio = own.factor(n, w, whole_band(n, w), rows, np.empty(n))
         own.solve(n, w, rows, x)
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-12, atol=1e-14)
         assert 0.2 < ratio <= 1.0
@@ -42,11 +50,11 @@ def test_a_pivot_that_is_zero_is_seen_wherever_it_is(w, rng):
     n = 5 * w + 4
     for where in (2, n // 2, n - 3):
         _, rows = matrix(n, w, rng)
-        pieces = [band(w).factor(n, n, w, 0, rows.copy(), np.empty(n), np.empty(n))]
-        pieces.append(two_sided(w, False).factor(n, w, rows.copy(), np.empty(n)))
+        pieces = [band(w).factor(n, n, w, 0, whole_band(n, w)[0].copy(), rows.copy(), np.empty(n), np.empty(n))]
+        pieces.append(two_sided(w, False).factor(n, w, whole_band(n, w), rows.copy(), np.empty(n)))
         assert min(pieces) > 0.2
         rows[where] = 0.0
-        assert two_sided(w, False).factor(n, w, rows, np.empty(n)) == 0.0
+        assert two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) == 0.0
 
 
 @pytest.mark.parametrize("w", KNOWN)
@@ -57,7 +65,7 @@ def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
         whole, rows = signs[:, None] * whole, signs[:, None] * rows
         right = rng.standard_normal(n)
         x = right.copy()
-        assert two_sided(w, False).factor(n, w, rows, np.empty(n)) > 0.1
+        assert two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n)) > 0.1
         two_sided(w, False).solve(n, w, rows, x)
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)
 
@@ -69,7 +77,7 @@ def test_halves_of_a_long_band_are_solved_in_parts_or_at_once(w, rng):
     for n in (2 * w, 2 * w + 1, 4 * w + 3, 1100, 1301):
         whole, rows = matrix(n, w, rng)
         space, right = np.empty(n), rng.standard_normal(n)
-        assert min(own.factor(part, n, w, rows, space) for part in range(3)) > 0.2
+        assert min(own.factor(part, n, w, whole_band(n, w), rows, space) for part in range(3)) > 0.2
         parts, once = right.copy(), right.copy()
         for part in range(3):
             own.lower(part, n, w, rows, parts)
@@ -86,4 +94,38 @@ def test_a_pivot_of_halves_that_is_zero_is_seen_wherever_it_is(w, rng):
     for where in (2, n // 2, n - 3):
         _, rows = matrix(n, w, rng)
         rows[where] = 0.0
-        assert min(band_halves(w).factor(part, n, w, rows, np.empty(n)) for part in range(3)) == 0.0
+        assert min(band_halves(w).factor(part, n, w, whole_band(n, w), rows, np.empty(n)) for part in range(3)) == 0.0
+
+
+CHAINS = [
+    (bf.BilinearCRBF(), ()),
+    (bf.ANCF(), ()),
+    (bf.CRBF(2), ()),
+    (bf.CRBF(3), ("middle",)),
+    (bf.CRBF(4), ("middle",)),
+    (bf.CRBF(6), ()),
+    (bf.ShearRigid(), ("middle",)),
+]
+
+
+@pytest.mark.parametrize(("element", "extra"), CHAINS, ids=[element.name for element, _ in CHAINS])
+def test_rows_that_a_chain_does_not_couple_stay_as_they_are(element, extra, rng):
+    """Factors within the envelope are, to the last bit, those of the whole band, from either end and from both."""
+    beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.4)), 9, element, bf.Rectangle(0.01, 0.02), bf.Material(1e7, 0.3, 1000.0))
+    supports = [bf.Clamp(beam.start), bf.Pin(beam.end)]
+    supports += [bf.Prescribed(beam.at(1.0 / 3.0), uy=0.0) for _ in extra]
+    system = system_of(bf.Model([beam], supports, []), static=True)
+    pushed = system.reference + 1e-4 * rng.standard_normal(system.model.size)
+    zeros = np.zeros_like(pushed)
+    rows = linearise(system, pushed, zeros, zeros, 0.0, STATICS)[1].rows
+    n, w, reach = len(rows), rows.shape[1] // 2, system.unknowns.reach
+    assert reach[0].sum() < whole_band(n, w)[0].sum()
+    routines = [lambda lu, own: band(w).factor(n, n, w, 0, own[0].copy(), lu, np.empty(n), np.empty(n))]
+    routines.append(lambda lu, own: two_sided(w, False).factor(n, w, own, lu, np.empty(n)))
+    if w in KNOWN:
+        space = np.empty(n)
+        routines.append(lambda lu, own: [band_halves(w).factor(part, n, w, own, lu, space) for part in range(3)])
+    for factored in routines:
+        within, whole = rows.copy(), rows.copy()
+        assert factored(within, reach) == factored(whole, whole_band(n, w))
+        np.testing.assert_array_equal(within, whole)

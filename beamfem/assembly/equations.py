@@ -120,7 +120,8 @@ def _entries(system: System) -> np.ndarray:
 def _tangent(system: System, matrix: np.ndarray) -> Tangent:
     pattern = system.unknowns.pattern
     if pattern is None:
-        return BandTangent(matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1))
+        rows = matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1)
+        return BandTangent(rows, system.unknowns.reach[0])
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
     multipliers = len(system.connectors.multipliers)
     return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)

@@ -4,7 +4,7 @@ A sparse matrix is ordered for little fill once, here, so that each factorisatio
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -32,7 +32,8 @@ class Unknowns:
 
     free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
-    coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one.
+    coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one;
+    reach (2, unknown): see `reaches`, empty for a sparse matrix.
     """
 
     free: np.ndarray
@@ -40,6 +41,7 @@ class Unknowns:
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
     coupled: tuple[np.ndarray, ...] = ()
+    reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
 
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:
         """Return where the diagonal entries of unknowns (k,) stand in the matrix."""
@@ -103,7 +105,7 @@ def _order(
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-        return Unknowns(free, dofs, layouts, None)
+        return Unknowns(free, dofs, layouts, None, reach=reaches(blocks, free, len(dofs)))
     dofs = _scattered(blocks, size, coupled)
     dofs = dofs[mask[dofs]]
     last = np.isin(dofs, multipliers)
@@ -136,6 +138,23 @@ def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
         ends = high[block.node].max(axis=1) - low[block.node].min(axis=1)
         widest = max(widest, int(ends.max(initial=0)))
     return widest
+
+
+def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int) -> np.ndarray:
+    """Return the envelope (2, unknown) of a band: the end of what an equation and those before it are coupled to.
+
+    The second row is the same with the equations counted from the last one, in the order of the first.
+    """
+    numbers = np.arange(unknown, dtype=np.int32)
+    end, begin = numbers + 1, numbers.copy()
+    for block in blocks:
+        own = _numbers_of(block, free)
+        high, low = own.max(axis=1), np.where(own >= 0, own, unknown).min(axis=1)
+        known = high >= 0
+        np.maximum.at(end, low[known], (high[known] + 1).astype(np.int32))
+        np.minimum.at(begin, high[known], low[known].astype(np.int32))
+    first = np.minimum.accumulate(begin[::-1])[::-1]
+    return np.stack([np.maximum.accumulate(end), unknown - first])
 
 
 def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from beamfem.assembly.layout import Unknowns
 from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers, two_threads
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.band_halves import BandHalves, band_halves
@@ -19,20 +20,18 @@ class SolverTable:
     rotated: numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): of the coordinates.
     """
 
-    def __init__(
-        self, free_dofs: np.ndarray, half_width: int, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray
-    ) -> None:
-        self.half_width = half_width
+    def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
+        free_dofs, self.half_width = unknowns.dofs, unknowns.layouts[0].half_width
         self._kept = (
             *(np.ascontiguousarray(each, dtype=np.int64) for each in (free_dofs, rotated[0])),
             *(np.ascontiguousarray(each, dtype=float) for each in (rotated[1], scale)),
+            unknowns.reach,
         )
         self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
-        for field, values in zip(
-            (record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL, record.SCALE), self._kept, strict=True
-        ):
+        fields = record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL, record.SCALE, record.REACH
+        for field, values in zip(fields, self._kept, strict=True):
             self._table[field] = address_of(values)
-        self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), half_width
+        self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width
         self._table[record.ROLLERS] = len(rotated[0])
         in_a_row = len(free_dofs) > 0 and (free_dofs[1:] - free_dofs[:-1] == 1).all()
         self._table[record.FIRST_FREE] = free_dofs[0] if in_a_row else -1

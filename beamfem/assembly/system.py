@@ -110,7 +110,7 @@ class System:
     @cached_property
     def solver_table(self) -> SolverTable:
         """The unknowns of a band, as compiled drivers take them."""
-        return SolverTable(self.free_dofs, self.layouts[0].half_width, self.rotated, self.scale)
+        return SolverTable(self.unknowns, self.rotated, self.scale)
 
     @cached_property
     def residual_errors(self) -> np.ndarray:

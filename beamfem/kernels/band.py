@@ -22,8 +22,8 @@ KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements
 class Band(NamedTuple):
     """Compiled functions for a half width.
 
-    factor(n, count, w, eliminates, ab, right, original): smallest ratio of a pivot to the row's original diagonal
-    entry; solve_lower, solve_upper(rows, n, w, lu, x).
+    factor(n, count, w, eliminates, reach, ab, right, original): smallest ratio of a pivot to the row's original
+    diagonal entry; solve_lower, solve_upper(rows, n, w, lu, x).
     """
 
     factor: Routine
@@ -57,14 +57,15 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
     """Return the factorisation for a half width, 0: any; backwards: from the last row to the first."""
     way = -1 if backwards else 1
 
-    @routine("iiiirrr", "d", case, fastmath=FAST)
-    def factor(n, count, half, eliminates, ab, right, original):
+    @routine("iiiisrrr", "d", case, fastmath=FAST)
+    def factor(n, count, half, eliminates, reach, ab, right, original):
         """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
+        reach (n,): end of the rows that a row and those above are coupled to, which are the only ones that change.
         The diagonal holds the inverse pivots then. right (n,): eliminated on the way, `solve_upper` does the rest.
         original (count,): space; so many pivots are taken, and the rows below keep what is left of the matrix, their
-        Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab and
-        right are the last entries, and rows the last ones first.
+        Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab,
+        right and reach are the last entries, and rows the last ones first.
         """
         w = known if known != 0 else half
         width, worst = 2 * w + 1, 1.0
@@ -108,7 +109,8 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
                 right[way * (k + 1)] -= first * right[way * k]
                 upper, lower = right[way * k], right[way * (k + 1)]
             beside = top[way * (w + 1)]
-            for i in range(k + 2, min(n, k + w + 1)):
+            end = min(n, reach[way * (k + 1)])
+            for i in range(k + 2, min(end, k + w + 1)):
                 row = at(ab, way * (i * width + w + k - i))
                 first = row[0] * inverse
                 second = (row[way] - first * beside) * inverse_below
@@ -118,7 +120,7 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
                 row[way * (w + 1)] -= second * below[way * 2 * w]
                 if eliminates != 0:
                     right[way * i] -= first * upper + second * lower
-            if k + w + 1 < n:
+            if k + w + 1 < end:
                 row = at(ab, way * (k + w + 1) * width)
                 second = row[0] * inverse_below
                 row[0] = second

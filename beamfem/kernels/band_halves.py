@@ -18,8 +18,9 @@ _BLOCK = 256  # rows
 class BandHalves(NamedTuple):
     """Compiled functions for a half width.
 
-    Parts 0 and 1 are the ends, part 2 is the middle, after both. factor(part, n, w, ab, space): smallest ratio of a
-    pivot to the row's original diagonal entry; lower, then upper(part, n, w, lu, x); solve(n, w, lu, x): all of both.
+    Parts 0 and 1 are the ends, part 2 is the middle, after both. factor(part, n, w, reach, ab, space): smallest ratio
+    of a pivot to the row's original diagonal entry, reach as for `two_sided`; lower, then upper(part, n, w, lu, x);
+    solve(n, w, lu, x): all of both.
     """
 
     factor: Routine
@@ -115,20 +116,20 @@ def band_halves(w: int) -> BandHalves:
                 total -= row[j] * x[j]
             x[i] = total
 
-    @routine("iiirr", "d", case, fastmath=FAST)
-    def factor(part, n, half, ab, space):
+    @routine("iiisrr", "d", case, fastmath=FAST)
+    def factor(part, n, half, reach, ab, space):
         """Factor a part of ab (n, 2 w + 1) in place; space (n,): each part has its own."""
         m, worst = _end_rows(n, w), 1.0
         end = n - m
         if part == 0:
             for i in range(m, m + w):
                 space[i] = abs(ab[i * width + w])
-            worst = _down(end, m, w, 0, ab, ab, space)
+            worst = _down(end, m, w, 0, reach, ab, ab, space)
             _store(1, m, ab)
         elif part == 1:
             for i in range(m + w, end):
                 space[i] = abs(ab[i * width + w])
-            worst = _up(end, m, w, 0, at(ab, n * width - 1), ab, at(space, end))
+            worst = _up(end, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(space, end))
             _store(-1, m, at(ab, n * width - 1))
         else:
             for k in range(m, end):

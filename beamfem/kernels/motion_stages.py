@@ -5,13 +5,13 @@ from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.motion_steps import FAST
-from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
+from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _STRIP = 256  # vectors that are turned while they are in the cache near the core
 
-_factor, _solve, _roll, _in_two = caller("iirr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
+_factor, _solve, _roll, _in_two = caller("iisrr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
 _turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
-_factor_part, _solve_part = caller("iiirr", "d"), caller("iiirr")
+_factor_part, _solve_part = caller("iiisrr", "d"), caller("iiirr")
 
 
 @inlined
@@ -77,9 +77,16 @@ def assemble(part, system, solver, calls):
 def factorise(part, system, solver, calls):
     """Factor the tangent; return the smallest ratio of a pivot to the row's original diagonal entry, negative."""
     b, call = wholes(solver), wholes(calls)
+    unknown, half, reach, rows, space = (
+        b[r.UNKNOWN],
+        b[r.HALF],
+        slots(b[r.REACH]),
+        reals(b[r.ROWS]),
+        reals(b[r.STEP]),
+    )
     if b[r.PARTS] == 1:
-        return -_factor(call[r.FACTOR_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
-    return -_factor_part(call[r.FACTOR_PART], part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.STEP]))
+        return -_factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
+    return -_factor_part(call[r.FACTOR_PART], part, unknown, half, reach, rows, space)
 
 
 @inlined

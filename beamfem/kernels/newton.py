@@ -3,10 +3,10 @@
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
-from beamfem.kernels.pointers import at, caller, reals, wholes
+from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 
 _balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", "d")
-_factor, _solve = caller("iiiirrr", "d"), caller("iiirr")
+_factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
 _hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
@@ -56,7 +56,7 @@ def iterate(system, solver, calls):
         reals(b[r.PRESCRIBED_STEP]),
         reals(b[r.PRESCRIBED_FORCE]),
     )
-    linear, in_a_row = reals(b[r.LINEAR]), b[r.FIRST_FREE]
+    linear, in_a_row, reach = reals(b[r.LINEAR]), b[r.FIRST_FREE], slots(b[r.REACH])
     residual, p, groups = reals(s[r.RESIDUAL]), reals(s[r.COORDINATES_P]), wholes(s[r.GROUP_RECORDS])
     first, done = True, False
     while True:
@@ -77,7 +77,7 @@ def iterate(system, solver, calls):
         if rollers > 0:
             _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
             _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
-        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, rows, right, step) > limits[3]:
+        if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[3]:
             return 0
         negative = 0
         for i in range(unknown):
@@ -141,7 +141,7 @@ def count_after_step(system, solver, calls):
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     unknown, half, rollers = b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
-    rows, right, limits = reals(b[r.ROWS]), reals(b[r.RIGHT]), reals(b[r.LIMITS])
+    rows, right, limits, reach = reals(b[r.ROWS]), reals(b[r.RIGHT]), reals(b[r.LIMITS]), slots(b[r.REACH])
     groups = wholes(s[r.GROUP_RECORDS])
     for group in range(s[r.GROUPS]):
         _two(call[r.PREDICT_RESULTANTS], groups[group], system)
@@ -149,7 +149,7 @@ def count_after_step(system, solver, calls):
     _balance(call[r.BALANCE], system)
     if rollers > 0:
         _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL]))
-    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, rows, right, reals(b[r.STEP])) > limits[3]:
+    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, reals(b[r.STEP])) > limits[3]:
         return -1
     negative = 0
     for i in range(unknown):

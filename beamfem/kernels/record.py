@@ -204,7 +204,8 @@ PARTS = 44  # 1, or 3: two halves and what is between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
 TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
-SOLVER_FIELDS = 48
+REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
+SOLVER_FIELDS = 49
 
 FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)
 BOUND_FIELDS = 8

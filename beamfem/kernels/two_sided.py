@@ -15,7 +15,8 @@ from beamfem.kernels.pointers import at, room
 class TwoSided(NamedTuple):
     """Compiled functions for a half width.
 
-    factor(n, w, ab, original): smallest ratio of a pivot to the row's original diagonal entry; solve(n, w, lu, x).
+    factor(n, w, reach, ab, original): smallest ratio of a pivot to the row's original diagonal entry; reach (2, n): see
+    `band.elimination`, downwards and backwards; solve(n, w, lu, x).
     """
 
     factor: Routine
@@ -38,15 +39,15 @@ def _two_sided(w: int) -> TwoSided:
     _down = inlined(elimination(w, f"{case}_down", backwards=False))
     _up = inlined(elimination(w, f"{case}_up", backwards=True))
 
-    @routine("iirr", "d", case, fastmath=FAST)
-    def factor(n, half, ab, original):
+    @routine("iisrr", "d", case, fastmath=FAST)
+    def factor(n, half, reach, ab, original):
         """Factor ab (n, 2 w + 1) in place; original (n,): space. See `band.Band` for what is left in it."""
         m = max(0, (n - w) // 2)
         end = n - m
         for i in range(m, end):
             original[i] = abs(ab[i * width + w])
-        worst = _down(end, m, w, 0, ab, ab, original)
-        worst = min(worst, _up(end, m, w, 0, at(ab, n * width - 1), ab, at(original, end)))
+        worst = _down(end, m, w, 0, reach, ab, ab, original)
+        worst = min(worst, _up(end, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(original, end)))
         for k in range(m, end):
             pivot = at(ab, k * width + w - k)
             if pivot[k] == 0.0 or original[k] == 0.0:
@@ -117,10 +118,10 @@ def _one_sided(known: int) -> TwoSided:
     case = f"one_sided_half_width_{known or 'any'}"
     _factor, _solve_lower, _solve_upper = (inlined(own) for own in band(known))
 
-    @routine("iirr", "d", case, fastmath=FAST)
-    def factor(n, half, ab, original):
+    @routine("iisrr", "d", case, fastmath=FAST)
+    def factor(n, half, reach, ab, original):
         """The same from one end."""
-        return _factor(n, n, half, 0, ab, ab, original)
+        return _factor(n, n, half, 0, reach, ab, ab, original)
 
     @routine("iirr", case=case, fastmath={"contract"})
     def solve(n, half, lu, x):

@@ -103,16 +103,17 @@ class BandFactors:
 
 @dataclass(frozen=True)
 class BandTangent:
-    """A band matrix, rows of 2 w + 1 entries."""
+    """A band matrix, rows of 2 w + 1 entries; reach (n,): see `kernels.band.elimination`."""
 
     rows: np.ndarray
+    reach: np.ndarray
 
     def factorised(self, rotated: Rotated) -> BandFactors:
         """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
         rows = _held(self.rows, rotated)
         lu = rows.copy()
         n, half = len(lu), lu.shape[1] // 2
-        ratio = band(half).factor(n, n, half, 0, lu, _NOTHING, np.empty(n))
+        ratio = band(half).factor(n, n, half, 0, self.reach, lu, _NOTHING, np.empty(n))
         return BandFactors(rows, lu, ratio > SMALLEST_PIVOT, rotated)
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:

@@ -100,13 +100,13 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     half, n = one.half_width, len(one.right)
     own = two_sided(half, n < SHORT)
     equations, space = one.equations, np.empty(n)
-    arrays = [*equations.memory, one.state, one.residual, one.band, one.right, space]
-    addresses = [each.ctypes.data for each in (one.band, one.right, space)]
+    arrays = [*equations.memory, one.state, one.residual, one.band, one.right, one.reach, space]
+    addresses = [each.ctypes.data for each in (one.band, one.right, one.reach, space)]
     routines = balance, own.factor, own.solve
     for routine in routines:
         assert routine.address
     memory = Memory(arrays, lambda value: Counted(value, tally))
-    rows, right, pivots = (memory.at(address) for address in addresses)
+    rows, right, reach, pivots = (memory.at(address) for address in addresses)
     table = equations.address
 
     def balanced(tangent: bool) -> None:
@@ -119,7 +119,7 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tasks = {
         RESIDUAL: lambda: balanced(False),
         TANGENT: lambda: balanced(True),
-        FACTOR: lambda: own.factor.function(n, half, rows, pivots),
+        FACTOR: lambda: own.factor.function(n, half, reach, rows, pivots),
         SOLVE: solved,
     }
     found = {}

@@ -66,7 +66,7 @@ def seconds(form: str, elements: int) -> dict[str, float]:
     def factored() -> None:
         for _ in range(times):
             np.copyto(copy, one.band)
-            own.factor(n, half, copy, space)
+            own.factor(n, half, one.reach, copy, space)
 
     def solved() -> None:
         for _ in range(times):

@@ -20,7 +20,7 @@ _STEP = 1e-3  # [s]; weighs the inertia in the tangent
 class Case(NamedTuple):
     """What the kernels work on: equations of the pendulum, its state p, p', p'' (3, n), and space.
 
-    band (unknown, width); right: a right-hand side (unknown,).
+    band (unknown, width); right: a right-hand side (unknown,); reach (2, unknown): see `kernels.two_sided`.
     """
 
     equations: Assembler
@@ -28,6 +28,7 @@ class Case(NamedTuple):
     residual: np.ndarray
     band: np.ndarray
     right: np.ndarray
+    reach: np.ndarray
 
     @property
     def half_width(self) -> int:
@@ -44,7 +45,8 @@ def case(form: str, elements: int) -> tuple[System, Case]:
     equations = system.assembler()
     equations.load(system.body(0.0), system.point_values(0.0))
     equations.weigh((1.0, 2.0 / _STEP, 4.0 / _STEP**2))
-    one = Case(equations, state, np.empty(len(state[0])), np.zeros((unknown, width)), rng.normal(size=unknown))
+    residual, band, right = np.empty(len(state[0])), np.zeros((unknown, width)), rng.normal(size=unknown)
+    one = Case(equations, state, residual, band, right, system.unknowns.reach)
     place(one, tangent=True)
     return system, one
 

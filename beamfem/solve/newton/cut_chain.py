@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
 from beamfem.assembly.equations import STATICS
+from beamfem.assembly.layout import Mesh, reaches
 from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Springs
@@ -21,7 +22,7 @@ class Substructure:
 
     place: its coordinates among those of the chain; free: its unknown coordinates in the order of elimination, from the
     far end to the node at the cut, whose coordinates come last, from `inner` on; equations: those of this half, under
-    its loads; rows (unknown, width): its band.
+    its loads; rows (unknown, width): its band; reach (unknown,): see `layout.reaches`.
     """
 
     place: slice
@@ -35,6 +36,7 @@ class Substructure:
     residual: np.ndarray
     right: np.ndarray
     rows: np.ndarray
+    reach: np.ndarray
 
     def balance(self, predicted: bool, matrix: np.ndarray) -> None:
         """Fill the residual and, unless it is empty, the matrix; predicted: see `Assembler.balance`."""
@@ -112,4 +114,5 @@ def _half(
         residual=np.empty(size),
         right=np.empty(len(order)),
         rows=np.empty((len(order), 2 * half_width + 1)),
+        reach=reaches((Mesh(block.node, block.dof),), free, len(order))[0],
     )

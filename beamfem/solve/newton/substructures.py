@@ -71,7 +71,7 @@ def _eliminate(half: Substructure, predicted: bool, change: Change) -> tuple[np.
         right[:inner] -= change[1][half.place][half.free[:inner]]
     diagonal = np.abs(rows[inner:, middle])
     own = band(middle)
-    if not own.factor(len(rows), inner, middle, 1, rows, right, half.step) > SMALLEST_PIVOT:
+    if not own.factor(len(rows), inner, middle, 1, half.reach, rows, right, half.step) > SMALLEST_PIVOT:
         raise LinAlgError("a pivot is tiny")
     i, j = np.ogrid[: len(diagonal), : len(diagonal)]
     return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal

@@ -55,7 +55,7 @@ def run_all() -> dict[str, Part]:
 
 
 def main() -> None:
-    """Run everything and say where to look."""
+    """Run everything, and print where the results are."""
     begun = time.perf_counter()
     print("compiling kernels on first use (some seconds), then computing ...", flush=True)
     parts = run_all()

@@ -11,35 +11,13 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 import beamfem as bf
-from beamfem.cli import doctor, options
+from beamfem.cli import doctor
 from beamfem.cli.app import app
 from beamfem.cli.plain import plain
 
 ROOT = Path(__file__).parent.parent
 CANTILEVER = ROOT / "examples" / "cantilever.toml"
 TIP = 0.71385896416  # Reissner beam, P L^2 / (E I) = 5, k_s = 5/6, L / h = 100
-
-STUDY = '''"""A study of nothing.
-
-Second paragraph.
-"""
-from helper import twice
-import beamfem as bf
-
-def main(elements: int, length: float = 1.5, name: str = "beam", fine: bool = False, meshes: tuple[int, ...] = (1, 2),
-         element: bf.Element = bf.ANCF(), section: bf.Section | None = None, json: int = 3):
-    """Return what was given.
-
-    elements: how many; length [m]: of the beam; meshes: numbers of elements.
-    """
-    print("working")
-    if length < 0:
-        raise bf.InputError("length must be positive")
-    if length > 100:
-        raise bf.ConvergenceError("no equilibrium")
-    return {"elements": twice(elements), "length": length, "name": name, "fine": fine, "meshes": meshes,
-            "element": element.name, "section": section, "json": json}
-'''
 
 
 def invoke(*arguments):
@@ -54,21 +32,6 @@ def results(tmp_path_factory):
     )
     assert done.exit_code == 0, done.output
     return path, done.stdout
-
-
-@pytest.fixture
-def studies(tmp_path, monkeypatch):
-    folder = tmp_path / "studies"
-    folder.mkdir()
-    (folder / "nothing.py").write_text(STUDY)
-    (folder / "helper.py").write_text('"""No study."""\ndef twice(x):\n    return 2 * x\n')
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    known = set(sys.modules)
-    yield folder
-    for name in set(sys.modules) - known:
-        if name.split(".")[0] in ("studies", "nothing", "helper", "factor", "times", "alone"):
-            del sys.modules[name]
 
 
 def test_run_prints_what_is_asked_for_and_writes_the_files(results):
@@ -211,86 +174,6 @@ def test_info_export_and_plot_of_a_results_file(results, tmp_path):
         assert done.exit_code == 2
         assert "there is no file" in done.stderr
         assert invoke(command, CANTILEVER, *more).exit_code == 2
-
-
-def test_studies_are_listed_and_run_with_their_parameters(studies):
-    listed = invoke("study")
-    assert listed.stdout.splitlines()[-1].split(maxsplit=1) == ["nothing", "A study of nothing."]
-    assert [item["name"] for item in json.loads(invoke("study", "--json").stdout)] == ["nothing"]
-    done = invoke("study", "nothing", "--elements", 3, "--fine", "--meshes", "4,8", "--element", "CRBF(3)")
-    assert done.exit_code == 0, done.output
-    for line in ("working", "elements: 6", "length: 1.5", "fine: True", "meshes: 4 8", "element: CRBF-3", "json: 3"):
-        assert line in done.stdout.splitlines()
-    found = json.loads(invoke("study", "--json", "nothing", "--elements", 3, "--json", 7).stdout)["result"]
-    assert (found["meshes"], found["element"], found["section"], found["json"]) == ([1, 2], "ANCF", None, 7)
-    assert invoke("study", "nothing", "--elements", 3, "--quiet").stdout == ""
-
-
-def test_studies_in_sub_folders_go_by_their_file_or_with_their_folder(studies, monkeypatch):
-    """Of two with one file name, the folder tells which is meant; both ways of sharing code work."""
-    for name in [name for name in sys.modules if name.split(".")[0] == "studies"]:
-        monkeypatch.delitem(sys.modules, name)
-    (studies / "__init__.py").touch()
-    for name, factor in (("twice", 2), ("thrice", 3)):
-        (studies / name).mkdir()
-        (studies / name / "factor.py").write_text(f"FACTOR = {factor}\n")
-        head = f'"""Times {factor}."""\nfrom studies.{name}.factor import FACTOR\n'
-        code = f"{head}\ndef main(x: int = 1):\n    return FACTOR * x\n"
-        (studies / name / "times.py").write_text(code)
-    (studies / "twice" / "alone.py").write_text("from factor import FACTOR\n\ndef main():\n    return FACTOR\n")
-    names = [item["name"] for item in json.loads(invoke("study", "--json").stdout)]
-    assert names == ["nothing", "thrice/times", "twice/alone", "twice/times"]
-    assert json.loads(invoke("study", "--json", "alone").stdout)["result"] == 2
-    for name, expected in (("thrice/times", 12), ("twice/times", 8)):
-        assert json.loads(invoke("study", "--json", name, "--x", 4).stdout)["result"] == expected
-    done = invoke("study", "times")
-    assert done.exit_code == 2
-    assert "thrice/times or twice/times" in done.stderr
-
-
-def test_help_of_a_study_comes_from_its_docstring(studies):
-    text = " ".join(invoke("study", "nothing", "--help").stdout.replace("│", " ").split())
-    for words in ("Return what was given.", "--elements", "how many", "of the beam (m)", "numbers of elements", "1,2"):
-        assert words in text
-    assert "--section" not in text
-
-
-def test_mistakes_with_studies(studies, tmp_path):
-    for arguments, words in (
-        (("nothin", "--elements", 1), "did you mean nothing"),
-        (("nothing",), "--elements"),
-        (("nothing", "--elements", "x"), "--elements"),
-        (("nothing", "--elements", 1, "--lenght", 2), "--length"),
-        (("nothing", "--elements", 1, "--meshes", "1,x"), "'x' is not a valid int"),
-        (("nothing", "--elements", 1, "--element", "CRFB(2)"), "did you mean CRBF"),
-        (("nothing", "--elements", 1, "--element", "CRBF"), "needs its order"),
-        (("nothing", "--elements", 1, "--length", "-1"), "length must be positive"),
-    ):
-        done = invoke("study", *arguments)
-        assert done.exit_code == 2, arguments
-        assert words in " ".join(done.stderr.replace("│", " ").split()), arguments
-    assert invoke("study", "nothing", "--elements", 1, "--length", 200).exit_code == 1
-    assert "--folder" in invoke("study", "--folder", tmp_path / "none").stderr
-    (tmp_path / "empty").mkdir()
-    done = invoke("study", "--folder", tmp_path / "empty")
-    assert done.exit_code == 2
-    assert "function main" in done.stderr
-
-
-def test_the_studies_of_the_repository_have_options(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    assert "paper/cantilever_small" in invoke("study").stdout
-    done = invoke("study", "--json", "cantilever_small", "--meshes", "3,48")
-    found = json.loads(done.stdout)["result"]
-    assert found["ANCF-CRBF, continuum, plane stress"][1] == pytest.approx(0.01819510330389, rel=2e-4)
-
-
-def test_a_parameter_that_no_text_can_describe_needs_a_default():
-    def main(section: bf.Section) -> None: ...
-
-    with pytest.raises(bf.InputError, match="section of main"):
-        options.command_of(main, print, {})
 
 
 def test_doctor(monkeypatch):

@@ -10,13 +10,16 @@ import matplotlib
 import pytest
 
 import beamfem as bf
+from beamfem.convergence.result import Convergence
+from beamfem.sweeps.sweep import Sweep
+
+RETURNED = {"Convergence": Convergence, "Sweep": Sweep}  # by public functions
 
 
 def public() -> dict[str, Any]:
     """Return the public functions and classes, and the public methods of classes, by name."""
-    found = {}
-    for name in bf.__all__:
-        thing = getattr(bf, name)
+    found: dict[str, Any] = {}
+    for name, thing in ({name: getattr(bf, name) for name in bf.__all__} | RETURNED).items():
         found[name] = thing
         if inspect.isclass(thing) and not issubclass(thing, Exception):
             methods = inspect.getmembers(thing, lambda own: inspect.isfunction(own) or isinstance(own, property))
@@ -83,7 +86,7 @@ def test_methods_with_parameters_section_describe_all_parameters(name):
     found = sections(PUBLIC[name].__doc__ or "")
     if "Parameters" in found:
         assert sorted(described(found["Parameters"])) == sorted(taken(PUBLIC[name]))
-        assert "Returns" in found or name.split(".")[1] in ("to_vtk", "save")
+        assert "Returns" in found or name.split(".")[1] in ("to_vtk", "to_csv", "save")
 
 
 @pytest.mark.parametrize(
@@ -92,6 +95,11 @@ def test_methods_with_parameters_section_describe_all_parameters(name):
 )
 def test_methods_that_are_used_most_have_sections(name):
     assert {"Parameters", "Examples"} <= set(sections(PUBLIC[name].__doc__))
+
+
+@pytest.mark.parametrize("name", [name for name in PUBLIC if "." in name])
+def test_methods_and_properties_have_docstrings(name):
+    assert PUBLIC[name].__doc__
 
 
 @pytest.mark.parametrize("name", PUBLIC)

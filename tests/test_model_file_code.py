@@ -1,5 +1,7 @@
 """Python beside a model file: connectors, sections, curves, functions and integrators of the user's."""
 
+import sys
+
 import numpy as np
 import pytest
 from model_file_code import CODE, CONNECTORS, FLAT, LINE, OWN
@@ -209,3 +211,15 @@ def test_what_cannot_be_saved_is_refused_before_the_solve(file, monkeypatch):
         "files[1]",
         "cannot be saved",
     )
+
+
+def test_results_are_saved_and_loaded_once_the_python_file_is_imported(file, monkeypatch):
+    (file.parent / "own.py").write_text(OWN + PARTS)
+    file.write_text(f'{CODE}{ARM}{LIFT}[[supports]]\nclass = "Guide"\npoint = "arm.end"\nstiffness = 100.0\n')
+    path = file.with_suffix(".h5")
+    assert invoke("run", file, "--out", path).exit_code == 0
+    assert type(bf.load(path).model.supports[1]).__name__ == "Guide"
+    monkeypatch.delitem(sys.modules, "own")
+    done = invoke("info", path)
+    assert done.exit_code == 2
+    assert "import that module before loading" in done.stderr

@@ -20,12 +20,26 @@ from beamfem.errors import InputError
 _PLAIN = (int, float, str, bool, Path)
 _SEQUENCES = (tuple, list, collections.abc.Sequence, collections.abc.Iterable)
 _ITEMS: dict[type, Callable[[str], Any]] = {int: int, float: float, str: str, Element: element_from_text}
+_SECTION = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
+_UNIT = re.compile(r"\[(?!-\])([^\]]*)\]")  # none for numbers, [-]
+
+
+class _Typed(str):
+    """A default as it would be typed, and its value."""
+
+    value: Any
+
+
+def with_hyphens(word: str) -> str:
+    """Return an option as it is listed, with hyphens; it may be given with underscores too. Values stay as they are."""
+    name, sign, value = word.partition("=")
+    return f"{name.replace('_', '-')}{sign}{value}" if word.startswith("--") else word
 
 
 def command_of(
     function: Callable[..., Any], run: Callable[[dict[str, Any]], None], extra: dict[str, inspect.Parameter]
 ) -> Callable[..., None]:
-    """Return a command with an option for every parameter of a function.
+    """Return a command with an option for every parameter of a function, described by its docstring.
 
     run: called with the arguments; extra: further parameters by the name of their option, left out if the function has
     a parameter of that name. Raises InputError for a parameter without default that cannot be given as text.
@@ -47,7 +61,7 @@ def command_of(
     def command(**arguments: Any) -> None:
         run(arguments)
 
-    command.__doc__ = escape(inspect.getdoc(function) or "")
+    command.__doc__ = escape(_sections(function)[""])
     command.__signature__ = inspect.Signature(options)  # type: ignore[attr-defined]
     command.__annotations__ = {option.name: option.annotation for option in options}
     return command
@@ -57,26 +71,20 @@ def _option(name: str, parameter: inspect.Parameter, hint: Any, words: str) -> i
     """Return the parameter of the command, None if its values cannot be given as text."""
     kind, default = _kind(hint, parameter.default), parameter.default
     required = default is parameter.empty
-    names = [f"--{name.replace('_', '-')}", *([f"--{name}"] if "_" in name else [])]
-    if kind is bool:
-        names = [f"--{name.replace('_', '-')}/--no-{name.replace('_', '-')}"]
+    names = with_hyphens(f"--{name}/--no-{name}" if kind is bool else f"--{name}")
     item = _item(hint, default)
     if item is not None:
-        metavar = f"{item.__name__.upper()},..."
-        info = typer.Option(
-            *names, help=words, metavar=metavar, parser=_list_of(item, name), show_default=_shown(default)
-        )
-        kind = list
+        info = typer.Option(names, help=words, metavar=f"<{item.__name__.lower()},...>", parser=_list_of(item))
+        kind, default = list, _typed(default)
     elif kind is Element:
-        info = typer.Option(
-            *names, help=words, metavar="ELEMENT", parser=_parsed(Element, name), show_default=_shown(default)
-        )
+        info = typer.Option(names, help=words, metavar="<element>", parser=_parsed(Element))
+        default = _typed(default)
     elif (
         kind in _PLAIN
         or (isinstance(kind, type) and issubclass(kind, Enum))
         or typing.get_origin(kind) is typing.Literal
     ):
-        info = typer.Option(*names, help=words)
+        info = typer.Option(names, help=words)
     else:
         return None
     annotation: Any = kind if required or default is not None else kind | None
@@ -108,19 +116,19 @@ def _item(hint: Any, default: Any) -> Any:
     return parts.pop() if len(parts) == 1 and parts <= set(_ITEMS) else None
 
 
-def _list_of(item: type, name: str) -> Callable[[Any], Any]:
-    read = _parsed(item, name)
+def _list_of(item: type) -> Callable[[Any], Any]:
+    read = _parsed(item)
 
     def parse(text: Any) -> Any:
-        return tuple(read(part.strip()) for part in text.split(",")) if isinstance(text, str) else text
+        return text.value if isinstance(text, _Typed) else tuple(read(part.strip()) for part in text.split(","))
 
     return parse
 
 
-def _parsed(kind: type, name: str) -> Callable[[Any], Any]:
+def _parsed(kind: type) -> Callable[[Any], Any]:
     def parse(text: Any) -> Any:
-        if not isinstance(text, str):
-            return text
+        if isinstance(text, _Typed):
+            return text.value
         try:
             return _ITEMS[kind](text)
         except InputError as error:
@@ -131,18 +139,40 @@ def _parsed(kind: type, name: str) -> Callable[[Any], Any]:
     return parse
 
 
-def _shown(default: Any) -> str | bool:
-    """Return a default as it would be typed."""
-    if isinstance(default, tuple | list):
-        return ",".join(getattr(value, "name", None) or str(value) for value in default)
-    return getattr(default, "name", False) if isinstance(default, Element) else False
+def _typed(default: Any) -> Any:
+    """Return a default as it would be typed, None and no default as they are."""
+    if default is None or default is inspect.Parameter.empty:
+        return default
+    values = default if isinstance(default, tuple | list) else (default,)
+    text = _Typed(",".join(value.name if isinstance(value, Element) else str(value) for value in values))
+    text.value = default
+    return text
+
+
+def _sections(function: Callable[..., Any]) -> dict[str, str]:
+    """Return the sections of a docstring by their titles, what comes before them by ""."""
+    first, *rest = _SECTION.split(inspect.getdoc(function) or "")
+    return {"": first.strip(), **dict(zip(rest[::2], rest[1::2], strict=True))}
 
 
 def _help(function: Callable[..., Any], name: str) -> str:
-    """Return the description of a parameter in the docstring: from `name:` to the next semicolon or full stop."""
-    text = " ".join((inspect.getdoc(function) or "").split())
-    found = re.search(
-        rf"(?<![\w.])`*{re.escape(name)}`*(\s*\[[^\]]*\])?(\s*\([^)]*\))?:\s*([^;]+?)(?=;|\.\s|\.?$)", text
-    )
-    # rich reads the help of an option as markup twice, so that escaping does not save brackets
-    return f"{found[3]}{found[1] or ''}".translate(str.maketrans("[]", "()")) if found else ""
+    """Return the description of a parameter in a docstring, as a sentence with its unit.
+
+    It is taken from the section "Parameters", or else from `name:` in the text to the next semicolon or full stop.
+    """
+    sections = _sections(function)
+    names = rf"(?:[\w, *]+, )?{re.escape(name)}(?:, [\w, *]+)?"
+    listed = re.search(rf"^{names}( : .*)?\n((?:[ ]+.*\n?)+)", sections.get("Parameters", ""), re.MULTILINE)
+    if listed is not None:
+        kind, words = listed[1] or "", " ".join(listed[2].split()).rstrip(".")
+    else:
+        short = rf"(?<![\w.])`*{re.escape(name)}`*(\s*\[[^\]]*\])?(\s*\([^)]*\))?:\s*([^;]+?)(?=;|\.\s|\.?$)"
+        found = re.search(short, " ".join(sections[""].split()))
+        if found is None:
+            return ""
+        kind, words = found[1] or "", found[3]
+    unit = _UNIT.search(kind)
+    if unit is not None:  # rich reads the help of an option as markup twice, so that escaping does not save brackets
+        first, *more = re.split(r"(?=[;,])", words, maxsplit=1)
+        words = "".join([f"{first} ({unit[1]})", *more])
+    return f"{words[:1].upper()}{words[1:]}.".translate(str.maketrans("[]", "()"))

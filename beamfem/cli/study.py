@@ -47,8 +47,8 @@ def study(
                 width = max(len(item.name) for item in studies)
                 print("\n".join(f"{item.name:{width}s}  {item.title}" for item in studies))
             return
-        main = _main_of(_named(name, studies, folder), folder)
-        _run(name, main, context.args, as_json, quiet)
+        chosen = _named(name, studies, folder)
+        _run(chosen, _main_of(chosen, folder), context.args, as_json, quiet)
 
 
 def _folder() -> Path:
@@ -120,8 +120,10 @@ def _imported(item: Study) -> ModuleType:
     return module
 
 
-def _run(name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool) -> None:
-    from beamfem.cli.options import command_of
+def _run(item: Study, main: Any, arguments: list[str], as_json: bool, quiet: bool) -> None:
+    from rich.markup import escape
+
+    from beamfem.cli.options import command_of, with_hyphens
 
     def call(values: dict[str, Any]) -> None:
         json_too, quiet_too = values.pop("_json", False) or as_json, values.pop("_quiet", False) or quiet
@@ -132,9 +134,11 @@ def _run(name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool)
         word: inspect.Parameter(f"_{word}", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
         for word, kind in (("json", AsJson), ("quiet", Quiet))
     }
+    command = command_of(main, call, extra)
+    command.__doc__ = f"{escape(item.title)}\n\n{command.__doc__}".strip()
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command(context_settings={"help_option_names": ["-h", "--help"]})(command_of(main, call, extra))
-    app(arguments, prog_name=f"beamfem study {name}")
+    app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
+    app([with_hyphens(word) for word in arguments], prog_name=f"beamfem study {item.name}")
 
 
 def _called(main: Any, values: dict[str, Any], silent: bool) -> Any:

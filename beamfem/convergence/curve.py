@@ -22,14 +22,40 @@ from beamfem.convergence.orders import (
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values (n,) of one combination of the other parameters, from coarse to fine, without failed points.
+    """One curve of a convergence study: one combination of the other parameters, without failed points.
 
-    size h (n,): 1/refinement for counts, the refinement itself for step sizes. error (n,): from `limit`, relative
-    unless that is zero; nan if the value is the limit itself. order (n,): between each point and the one before it. gci
-    (n,): grid convergence index, Roache. fit: order of the asymptotic part with its confidence band, or None.
-    estimated_error: that of the finest value, nan if unknown; notes say what it is based on. others: the other numbers
-    (n,) of the function by name.
-    texts: the varied parameters as text.
+    Parameters
+    ----------
+    refinement : tuple, (n,)
+        Values of the parameter of refinement, from coarse to fine.
+    size : array, (n,)
+        Size h: 1/refinement for counts, the refinement itself for step sizes.
+    value : array, (n,)
+        The quantity.
+    error : array, (n,)
+        Difference from `limit`, relative unless that is zero; nan if the value is the limit itself.
+    relative : bool
+        Whether errors are relative.
+    order : array, [-], (n,)
+        Observed order between each point and the one before it; nan where there is none.
+    gci : array, [-], (n,)
+        Grid convergence index of Roache.
+    fit : OrderFit or None
+        Order of the asymptotic part with its confidence band.
+    limit : float
+        The reference, or the extrapolated limit.
+    estimated_error : float
+        Estimated error of the finest value, nan if unknown.
+    notes : tuple of str
+        What the estimate is based on, and remarks.
+    label : str
+        The other parameters as text, for legends.
+    parameters, texts : mapping
+        The other parameters by name, as values and as text.
+    others : mapping
+        The other numbers (n,) that the function returns, by name.
+    seconds : array, [s], (n,)
+        Duration of each call.
     """
 
     refinement: tuple[Any, ...]

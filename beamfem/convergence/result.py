@@ -38,11 +38,17 @@ class Convergence:
     refine : str
         Name of the parameter of refinement.
     reference : float or None
-        The given limit.
-    curves : tuple
-        The curves, of the class `convergence.curve.Curve`.
+        The given limit, None if each curve is extrapolated.
+    curves : tuple of Curve
+        The curves, see `beamfem.convergence.curve.Curve`.
     failures : tuple of Failure
         The calls that failed.
+
+    Examples
+    --------
+    >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
+    >>> round(study.curves[0].fit.order, 3)
+    2.0
     """
 
     function: str
@@ -54,7 +60,7 @@ class Convergence:
 
     @property
     def error_name(self) -> str:
-        """What the errors are: relative, or not where a limit is zero."""
+        """What the errors are: "relative error", or "error" if the limit of a curve is zero."""
         return "relative error" if all(curve.relative for curve in self.curves) else "error"
 
     @property
@@ -70,7 +76,7 @@ class Convergence:
         return self.report()
 
     def report(self) -> str:
-        """Return what is printed: tables of all points and curves, what their columns mean, and every failure."""
+        """Return all points and curves as tables, an explanation of the columns, and every failure, as text."""
         points = tabulate.as_text(*self.points(rounded=True), title=self.title)
         curves = tabulate.as_text(*self.summary())
         return "\n\n".join([points, curves, textwrap.fill(EXPLANATION, 110), *map(str, self.failures)])
@@ -81,13 +87,28 @@ class Convergence:
 
     @property
     def title(self) -> str:
-        """What the study is of, in words."""
+        """Title of the study, such as "Convergence of deflection over elements"."""
         return f"Convergence of {self.quantity} over {self.refine}"
 
     def points(self, rounded: bool = False) -> tuple[list[str], list[list[Any]]]:
-        """Return header and rows, one per point: parameters, refinement, value, error, order, GCI, others, seconds.
+        """Return the table of points.
 
-        rounded: errors and orders as short text instead of numbers. Whole solutions are omitted; `curves` holds them.
+        Parameters
+        ----------
+        rounded : bool, default False
+            Whether to return values, errors and orders as short text instead of numbers.
+
+        Returns
+        -------
+        header : list of str
+            Names of the columns: parameters, refinement, value, error, order, GCI, other numbers and seconds [s].
+        rows : list of list
+            One row per point. Solutions are left out; `curves` holds them.
+
+        Raises
+        ------
+        InputError
+            If `rounded` is not a bool.
         """
         names = list(dict.fromkeys(name for curve in self.curves for name in curve.texts))
         whole = {
@@ -114,7 +135,15 @@ class Convergence:
         return header, rows
 
     def summary(self) -> tuple[list[str], list[list[str]]]:
-        """Return header and rows of text, one per curve: order with confidence band, fitted range, limit, notes."""
+        """Return the table of curves.
+
+        Returns
+        -------
+        header : list of str
+            Names of the columns: curve, order, its 95 % confidence band, fitted range, limit, estimated error, remark.
+        rows : list of list of str
+            One row per curve, as text.
+        """
         header = ["curve", "order", "95 % band", f"fitted over {self.refine}", "limit", "estimated error", "remark"]
         rows = []
         for curve in self.curves:
@@ -134,37 +163,108 @@ class Convergence:
         return header, rows
 
     def to_markdown(self) -> str:
-        """Return the tables of points and curves as Markdown."""
+        """Return the tables of points and curves, with explanation and failures, as Markdown text."""
         points, curves = tabulate.as_markdown(*self.points(rounded=True)), tabulate.as_markdown(*self.summary())
         failed = "\n".join(f"- {failure}" for failure in self.failures)
         return "\n\n".join(part for part in (points, curves, EXPLANATION, failed) if part) + "\n"
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of points with all digits; nan if there is no error or order."""
+        """Write the table of points with all digits; nan if there is no error or order.
+
+        Parameters
+        ----------
+        path : path
+            File to write; folders are created.
+
+        Raises
+        ------
+        FileError
+            If the system refuses to write.
+        """
         tabulate.write_csv(path, *self.points())
 
     def to_pandas(self) -> Any:
-        """Return the table of points, without whole solutions, as a pandas.DataFrame. Raises MissingPackageError."""
+        """Return the table of points, without solutions.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per point.
+
+        Raises
+        ------
+        MissingPackageError
+            Without pandas.
+        """
         return tabulate.as_pandas(*self.points())
 
     def to_xarray(self) -> Any:
-        """Return an xarray.Dataset over curves and refinement; nan where a curve has no such point.
+        """Return the numbers of the study over curves and refinement.
 
-        Value, error, order, GCI, seconds and the other numbers (curve, refinement); fitted_order, limit and
-        estimated_error (curve,). Raises MissingPackageError.
+        Returns
+        -------
+        xarray.Dataset
+            Value, error, order, GCI, seconds [s] and the other numbers (curve, refinement), nan where a curve has no
+            such point; fitted_order, limit and estimated_error (curve,).
+
+        Raises
+        ------
+        MissingPackageError
+            Without xarray.
         """
         from beamfem.convergence.grid import as_grid
 
         return as_grid(self)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Any:
-        """Draw the error against the refinement on logarithmic axes and return the figure; path: file to write."""
+        """Plot the error against the refinement on logarithmic axes, one line per curve.
+
+        Hollow markers are errors at round-off, which the fitted order leaves out.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write (PNG, SVG, PDF); folders are created.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For another suffix.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> study = bf.converge(lambda n: 1.0 + 1.0 / n**2, refine="n", n=[4, 8, 16, 32], reference=1.0)
+        >>> figure = study.plot("convergence.png")
+        """
         from beamfem.convergence.figure import plot_errors
 
         return plot_errors(self, path)
 
     def to_html(self, path: str | PathLike[str]) -> Path:
-        """Write one self-contained page with the picture and the tables; return its path."""
+        """Write an HTML page with the picture and the tables: a single file that works offline.
+
+        Parameters
+        ----------
+        path : path
+            File to write, .html; folders are created.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        MissingPackageError
+            Without matplotlib.
+        """
         from beamfem.convergence.page import write_study
 
         return write_study(self, path)

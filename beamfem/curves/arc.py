@@ -56,21 +56,21 @@ class Arc:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return self.radius * abs(self.end_angle - self.start_angle)
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         angle = self._angle(arc_length)
         return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         angle = self._angle(arc_length)
         return self._sense * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
 

@@ -65,57 +65,126 @@ class BSpline:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return self._arc_length.length
 
     @cached_property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         inner = self.breaks[1:-1]
         ends = inner[[self.multiplicity(u) == self.degree for u in inner]] if len(inner) else inner
         jumps = turned(unit(self.derivative(np.nextafter(ends, -np.inf))), unit(self.derivative(ends)))
         return tuple(self._arc_length.at(ends[jumps]).tolist())
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self.evaluate(self.parameter(arc_length))
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return unit(self.derivative(self.parameter(arc_length)))
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return u (n,) at arc lengths (n,) [m]."""
+        """Return the parameters u at given arc lengths, to round-off.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start; values outside 0 to `length` are taken as the nearer end.
+
+        Returns
+        -------
+        array, (n,)
+            Parameters u.
+        """
         return self._arc_length.parameter(arc_length)
 
     def arc_length(self, u: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (n,) [m] at parameters (n,)."""
+        """Return the arc lengths at given parameters, to round-off.
+
+        Parameters
+        ----------
+        u : array, (n,)
+            Parameters, from knots[degree] to knots[n].
+
+        Returns
+        -------
+        array, [m], (n,)
+            Arc lengths from the start.
+
+        Examples
+        --------
+        >>> spline = bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)])
+        >>> spline.arc_length(np.array([0.5, 1.0])).round(4)
+        array([1.1478, 2.2956])
+        """
         return self._arc_length.at(u)
 
     @cached_property
     def breaks(self) -> np.ndarray:
-        """Different knots from start to end (m + 1,)."""
+        """Distinct knots (m + 1,) from the start to the end, between which the m knot spans lie."""
         inside = np.array(self.knots[self.degree : len(self.control_points) + 1])
         return np.unique(inside)
 
     def multiplicity(self, knot: float) -> int:
-        """Return how often a number is among the knots."""
+        """Return how many times a number `knot` occurs among the knots, 0 if it is not one of them."""
         return self.knots.count(float(knot))
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:
-        """Return r at parameters (n,), from knots[degree] to knots[n] (n, 2) [m]."""
+        """Return the positions at given parameters.
+
+        Parameters
+        ----------
+        u : array, (n,)
+            Parameters; values outside knots[degree] to knots[n] are taken as the nearer end.
+
+        Returns
+        -------
+        array, [m], (n, 2)
+            Positions r(u).
+
+        Examples
+        --------
+        >>> spline = bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)])
+        >>> spline.evaluate(np.array([0.5]))
+        array([[1. , 0.5]])
+        """
         return np.array(self.control_points[0]) + self._homogeneous(u)[0]
 
     def derivative(self, u: np.ndarray) -> np.ndarray:
-        """Return dr/du at parameters (n,); where it jumps, the one after (n, 2) [m]."""
+        """Return the derivatives of the position with respect to the parameter.
+
+        Parameters
+        ----------
+        u : array, (n,)
+            Parameters; values outside knots[degree] to knots[n] are taken as the nearer end.
+
+        Returns
+        -------
+        array, [m], (n, 2)
+            Derivatives dr/du; at a knot where the derivative jumps, the one after it.
+        """
         position, rate, weight = self._homogeneous(u)
         return (rate[:, :2] - rate[:, 2:] * position) / weight
 
     def hermite(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the ends u (m + 1,) of the knot spans, r (m + 1, 2) [m] and dr/du (m + 1, 2) [m] there.
+        """Return values and derivatives of a cubic spline at the ends of its knot spans.
 
-        Between two ends the spline is the cubic with these values. Raises InputError unless it is a cubic without
-        weights whose interior knots appear at most twice.
+        Between two ends the spline is the cubic with these values and derivatives.
+
+        Returns
+        -------
+        u : array, (m + 1,)
+            Parameters of the ends.
+        r : array, [m], (m + 1, 2)
+            Positions there.
+        derivative : array, [m], (m + 1, 2)
+            Derivatives dr/du there.
+
+        Raises
+        ------
+        InputError
+            Unless the degree is 3, all weights are equal, and no interior knot occurs more than twice.
         """
         advice = (
             "; a cubic close to it goes through positions and tangents at arc lengths s: "

@@ -57,12 +57,12 @@ class Chain:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return float(self._ends[-1])
 
     @cached_property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         found = [self._ends[i] + corner for i, curve in enumerate(self.curves) for corner in curve.corners]
         for one, other, joint in zip(self.curves, self.curves[1:], self._ends[1:-1], strict=False):
             if turned(one.tangent(np.array([one.length])), other.tangent(np.array([0.0])))[0]:
@@ -70,11 +70,11 @@ class Chain:
         return tuple(sorted(float(corner) for corner in found))
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self._each(arc_length, lambda i, arc: self.curves[i].position(arc) + self._moves[i])
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return self._each(arc_length, lambda i, arc: self.curves[i].tangent(arc))
 
     @cached_property

@@ -19,34 +19,67 @@ _FULL_TURN = 2.0 * np.pi * (1.0 + 1e-9)  # beyond round-off
 
 @runtime_checkable
 class Curve(Protocol):
-    """A planar curve by arc length s in [0, length] [m].
+    """A planar curve, as a function of its arc length s from 0 to `length` [m].
 
     At a corner the tangent is the one after it; just before a corner, the one before.
 
     Attributes
     ----------
     length : float, [m]
-        Length.
-    corners : tuple of float, [m]
-        Arc lengths strictly inside at which the tangent jumps.
+        Length of the axis.
+    corners : tuple of float, [m], (k,)
+        Arc lengths of the corners between the two ends, at which the tangent jumps.
     """
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         ...
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         ...
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions at given arc lengths.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start, from 0 to `length`.
+
+        Returns
+        -------
+        array, [m], (n, 2)
+            Positions (x, y).
+
+        Examples
+        --------
+        >>> bf.Line((0, 0), (3, 4)).position(np.array([0.0, 2.5]))
+        array([[0. , 0. ],
+               [1.5, 2. ]])
+        """
         ...
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents at given arc lengths.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start, from 0 to `length`.
+
+        Returns
+        -------
+        array, [-], (n, 2)
+            Unit tangents; at a corner, the tangent after it.
+
+        Examples
+        --------
+        >>> bf.Line((0, 0), (3, 4)).tangent(np.array([2.5]))
+        array([[0.6, 0.8]])
+        """
         ...
 
 

@@ -40,20 +40,20 @@ class Line:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return math.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         fraction = np.asarray(arc_length)[:, None] / self.length
         return (1.0 - fraction) * np.array(self.start) + fraction * np.array(self.end)
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         direction = (np.array(self.end) - np.array(self.start)) / self.length
         return np.broadcast_to(direction, (len(arc_length), 2)).copy()

@@ -24,7 +24,7 @@ _AGREES = 1e-6
 class Parametric:
     """Smooth axis given by a function, r(u) = function(u) = (x, y), by arc length.
 
-    The axis runs backwards if end < start. A model with it cannot be saved to a file, but one with its `spline()` can.
+    The axis runs backwards if end < start. Results files hold the curve as its `spline()`, not as the function.
 
     Parameters
     ----------
@@ -65,29 +65,29 @@ class Parametric:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return self._arc_length.length
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self._panels.columns(slice(0, 2))(self._arc_length.parameter(arc_length))
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return unit(self._rate(self._arc_length.parameter(arc_length)))
 
     def spline(self) -> BSpline:
-        """Return the spline of degree 12 that is the same curve to round-off; it can be saved.
+        """Return the B-spline of degree 12 that is the same curve to round-off.
 
         Returns
         -------
         BSpline
-            The spline.
+            The spline, with its parameter from 0 at the start to 1 at the end.
 
         Examples
         --------

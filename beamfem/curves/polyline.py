@@ -44,23 +44,23 @@ class Polyline:
 
     @property
     def length(self) -> float:
-        """Length [m]."""
+        """Length of the axis [m]."""
         return float(self._ends[-1])
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Arc lengths (k,) [m] strictly inside at which the tangent jumps."""
+        """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return tuple(self._ends[1:-1][turned(self._directions[:-1], self._directions[1:])].tolist())
 
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m]."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         piece = self._piece(arc_length)
         fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
         return (1.0 - fraction) * table[piece] + fraction * table[piece + 1]
 
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) at arc lengths (n,) [m]; at a corner the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return self._directions[self._piece(arc_length)]
 
     @cached_property

@@ -31,7 +31,7 @@ class _Body:
 
     @property
     def turns_with(self) -> str:
-        """Nodal vector with which the section turns."""
+        """Nodal vector with which the section rotates."""
         return "r_y"
 
     @property
@@ -41,23 +41,26 @@ class _Body:
 
     @property
     def shear_measures(self) -> tuple[bool, ...]:
-        """Which of the six measures are shear (6,)."""
+        """Whether each of the six measures is a shear (6,)."""
         return (False, False, False, False, True, True)
 
     @property
     def thickness_measures(self) -> tuple[bool, ...]:
-        """None: eyy is coupled with the strain along the beam."""
+        """Whether each of the six measures is a thickness strain alone (6,): none, as eyy is coupled with exx."""
         return (False,) * 6
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return (..., 6): a, b, c, eyy, g0, g1 with exx = a + b y + c y^2 and 2 exy = g0 + g1 y."""
+        """Return the strain measures (..., 6): a, b [1/m], c [1/m^2], eyy, g0 and g1 [1/m].
+
+        exx = a + b y + c y^2 and 2 exy = g0 + g1 y.
+        """
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the change of the measures by free strains (m, n, 4), as `Structural.imposed`.
+        """Return the change of the strain measures by free strains (m, n, 4), see `Structural.imposed`.
 
         The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
-        are quadratic in these vectors, so that complex steps give both parts without a difference.
+        are quadratic in these vectors, so complex steps give both parts without subtraction.
         """
         along, across = section_frame(reference.d)
         stretch, shear, curvature, thickness = np.moveaxis(free, -1, 0)[..., None]
@@ -74,7 +77,10 @@ class _Body:
         return first, 0.5 * np.array(second)
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
+        """Return the number of Gauss points that integrate the energy of a straight element exactly.
+
+        The energy is quartic in r0' and in d.
+        """
         return 2 * max(degree - 1, director_degree) + 1
 
 
@@ -108,7 +114,7 @@ class ContinuumMechanics(_Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 6, 6) at points of the reference axis."""
+        """Return the section stiffness (..., 6, 6) at points of the reference axis, in the order of `strains`."""
         return _over_section(section, material, reference, self._law)
 
     def _law(self, material: Material) -> np.ndarray:
@@ -116,7 +122,7 @@ class ContinuumMechanics(_Body):
         return np.array([[lam + 2.0 * mu, lam, 0.0], [lam, lam + 2.0 * mu, 0.0], [0.0, 0.0, mu]])
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return second Piola-Kirchhoff stress xx, yy, xy [Pa] of Green strain components."""
+        """Return second Piola-Kirchhoff stress xx, yy, xy [Pa] of Green-Lagrange strain components [-]."""
         mu = material.shear_modulus
         trace = material.lame_lambda(self.plane_stress) * (xx + yy)
         return trace + 2 * mu * xx, trace + 2 * mu * yy, 2 * mu * xy
@@ -140,7 +146,7 @@ class SplitContinuum(_Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 6, 6) at points of the reference axis."""
+        """Return the section stiffness (..., 6, 6) at points of the reference axis, in the order of `strains`."""
 
         def uncoupled(part: Material) -> np.ndarray:
             modulus = part.youngs_modulus
@@ -158,7 +164,10 @@ class SplitContinuum(_Body):
         return matrix
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components away from the centreline, without Poisson coupling."""
+        """Return the stress components xx, yy, xy [Pa] of strain components [-] away from the centreline.
+
+        There is no Poisson coupling there.
+        """
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 

@@ -60,7 +60,7 @@ class ShearFree:
 
     @property
     def name(self) -> str:
-        """Name in the names of elements."""
+        """Name of the coordinates, as part of the names of elements."""
         return "stretch" if self.stretchable else "shear-rigid"
 
     @property

@@ -33,13 +33,13 @@ class ElasticLine:
     thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return (..., 4): stretch, curvature [1/m], shear, thickness strain."""
+        """Return the strain measures (..., 4): stretch [-], curvature [1/m], shear [-], thickness strain [-]."""
         return evaluate(elastic_line, at.r_s, at.d, at.r_ss)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 4, 4) at points of the reference axis."""
+        """Return the section stiffness (..., 4, 4) at points of the reference axis, in the order of `strains`."""
         rigidity = section.rigidity(material)
         thickness = rigidity.axial if isinstance(coordinates, Gradients) else 0.0
         matrix = np.diag([rigidity.axial, rigidity.bending, rigidity.shear / section.shear_factor, thickness])
@@ -47,16 +47,19 @@ class ElasticLine:
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the measures of free strains (m, n, 4), as `Structural.imposed`; of the thickness t + t^2 / 2."""
+        """Return the measures of free strains (m, n, 4), see `Structural.imposed`; thickness strain t + t^2 / 2."""
         products = np.zeros((len(free), *free.shape))
         products[..., 3] = 0.5 * free[:, None, :, 3] * free[None, :, :, 3]
         return free[:, :, [0, 2, 1, 3]], products
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        """Return the stress components xx, yy, xy [Pa] of strain components [-], without Poisson coupling."""
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points of full integration: exact for curvature and shear of a straight line at small strain."""
+        """Return the number of Gauss points of full integration.
+
+        They are exact for curvature and shear of a straight line at small strain.
+        """
         return degree + 1

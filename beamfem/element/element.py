@@ -99,7 +99,7 @@ class Element:
 
     @property
     def name(self) -> str:
-        """Fit for a file name and a legend."""
+        """Name for legends and files: the given label, or those of field and coordinates."""
         return self.label or f"{self.field.name}-{self.coordinates.name}"
 
     @property
@@ -108,7 +108,7 @@ class Element:
         return len(labels(self.coordinates.code, self.field.vectors))
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
-        """Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
+        """Return the Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
         if self.integration == "lobatto":
             return gauss(len(lobatto.STATIONS))
         reduced = 2 if isinstance(self.coordinates, ShearFree) else self.field.degree
@@ -116,22 +116,26 @@ class Element:
         return gauss(reduced if self.integration == "reduced" else full)
 
     def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
-        """Points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
+        """Return the points (nq,) and weights (nq,) on [0, 1] at which the strain energy is integrated."""
         return _energy_points(self)
 
     def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
-        """Return what of the section stiffness (ne, nq, ns, ns) counts at these points; jacobian (ne, nq) [m]."""
+        """Return the part of the section stiffness (ne, nq, ns, ns) that counts at the points of the strain energy.
+
+        jacobian (ne, nq) [m]: length of the reference axis per unit of xi.
+        """
         if self.integration == "lobatto":
             return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)
         counted = _counted(self)
         return stiffness if counted is None else stiffness * counted
 
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
-        """Gauss points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one where all agree.
+        """Return the quadrature rules of the strain energy: points and weights on [0, 1], and strain measures (ns,).
 
-        With 2 points alone a stretch coordinate could change without resistance: r_x + c at every node leaves r0' as it
-        is at both of them. So all but shear takes 3 there. What resists a change of |d| alone is taken at the nodes of
-        d: between them |d| is below 1 wherever the beam bends, which would lock a thin one.
+        There is one rule if all measures share it. With 2 points alone a stretch coordinate could change without
+        resistance: r_x + c at every node leaves r0' as it is at both of them. So all measures but shear take 3 there.
+        What resists a change of |d| alone is evaluated at the nodes of d: between them |d| is below 1 wherever the beam
+        bends, which would lock a thin one.
         """
         forces = self.forces
         shear, thickness = np.array(forces.shear_measures), np.array(forces.thickness_measures)

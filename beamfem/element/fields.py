@@ -69,11 +69,11 @@ class Cubic:
 
     @property
     def nodes(self) -> np.ndarray:
-        """Nodes of an element (nn,), as xi in [0, 1]."""
+        """Nodes (nn,) of an element, as xi in [0, 1]."""
         return np.array([0.0, 1.0])
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions (nq, nr) of the centreline, or a derivative of them, at xi (nq,)."""
+        """Return the shape functions (nq, nr) of the centreline r0 at xi (nq,), or a derivative of them by xi."""
         one = np.ones_like(xi)
         if derivative == 0:
             rows = (1 - 3 * xi**2 + 2 * xi**3, xi - 2 * xi**2 + xi**3, 3 * xi**2 - 2 * xi**3, xi**3 - xi**2)
@@ -84,11 +84,11 @@ class Cubic:
         return np.stack(rows, axis=-1)
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions (nq, nd) of the director, or a derivative of them, at xi (nq,)."""
+        """Return the shape functions (nq, nd) of the director d at xi (nq,), or a derivative of them by xi."""
         return Lagrange(1).director(xi, derivative)
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes (nd,) of the director and weights (nd,) of a quadrature there, on [0, 1]."""
+        """Return the nodes (nd,) of the director on [0, 1], and the weights (nd,) of a quadrature there."""
         return Lagrange(1).director_rule()
 
 
@@ -141,35 +141,35 @@ class Lagrange:
 
     @property
     def name(self) -> str:
-        """Name in the names of elements."""
+        """Name of the field, as part of the names of elements."""
         return "bilinear" if self.order == 1 else f"order{self.order}"
 
     @property
     def degree(self) -> int:
-        """Degree of the centreline r0."""
+        """Polynomial degree of the centreline r0."""
         return self.order
 
     @property
     def director_degree(self) -> int:
-        """Degree of the director d."""
+        """Polynomial degree of the director d."""
         return self.order
 
     @property
     def nodes(self) -> np.ndarray:
-        """Nodes of an element (nn,), as xi in [0, 1]."""
+        """Nodes (nn,) of an element, as xi in [0, 1]."""
         return _lobatto(self.order)
 
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions (nq, nr) of the centreline, or a derivative of them, at xi (nq,)."""
+        """Return the shape functions (nq, nr) of the centreline r0 at xi (nq,), or a derivative of them by xi."""
         points = np.asarray(xi, dtype=float)
         # a copy: kernels are compiled anew for arrays that cannot be written to
         return _table(self.order, points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return the shape functions (nq, nd) of the director, or a derivative of them, at xi (nq,)."""
+        """Return the shape functions (nq, nd) of the director d at xi (nq,), or a derivative of them by xi."""
         return self.centreline(xi, derivative)
 
     def director_rule(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes (nd,) of the director and weights (nd,) of a quadrature there, on [0, 1]."""
+        """Return the nodes (nd,) of the director on [0, 1], and the weights (nd,) of a quadrature there."""
         xi, weights = gauss(self.order + 1)
         return self.nodes, weights @ self.director(xi)

@@ -32,16 +32,16 @@ class Structural:
     thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return (..., 4): stretch, shear, curvature [1/m], thickness stretch."""
+        """Return the strain measures (..., 4): stretch [-], shear [-], curvature [1/m], thickness stretch [-]."""
         return evaluate(structural, at.r_s, at.d, at.d_s)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 4, 4) at points of the reference axis.
+        """Return the section stiffness (..., 4, 4) at points of the reference axis, in the order of `strains`.
 
-        E A, k_s G A, E I, E A on the diagonal and the section's coupling of stretch with curvature; the last E A is
-        zero if the nodes hold the length of d.
+        The diagonal is E A [N], k_s G A [N], E I [N m^2] and E A [N], with the coupling of stretch and curvature [N m]
+        beside it; the last E A is zero if the nodes keep the length of d.
         """
         rigidity = section.rigidity(material)
         matrix = np.zeros((4, 4))
@@ -52,19 +52,19 @@ class Structural:
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the measures of free strains (m, n, 4): stretch, shear, curvature and thickness stretch.
+        """Return the strain measures of free strains (m, n, 4): stretch, shear, curvature [1/m] and thickness stretch.
 
-        Parts (m, n, ns) that are linear in them, and (m, m, n, ns) that are products of two.
+        They are in two parts: (m, n, ns), linear in the free strains, and (m, m, n, ns), products of two of them.
         """
         return free, np.zeros((len(free), *free.shape))
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        """Return the stress components xx, yy, xy [Pa] of strain components [-], without Poisson coupling."""
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points of full integration, as many as for the continuum."""
+        """Return the number of Gauss points of full integration, the same as for the continuum."""
         return 2 * max(degree - 1, director_degree) + 1
 
 

@@ -21,7 +21,10 @@ class AlongBeam(ABC):
 
     @abstractmethod
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return a field at arc lengths (n,) [m]. Raises InputError if a function gives no value."""
+        """Return the values (n, ...) of the field `name` at arc lengths (n,) [m].
+
+        Raises InputError if a function does not return finite numbers.
+        """
 
 
 def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:

@@ -110,7 +110,7 @@ class Beam:
 
     @cached_property
     def prismatic(self) -> bool:
-        """Whether the section is constant along the beam."""
+        """Whether the section is the same along the whole beam."""
         return fulfils(self.section, CrossSection)
 
     def section_at(self, arc_length: float) -> CrossSection:
@@ -140,7 +140,7 @@ class Beam:
 
     @cached_property
     def law(self) -> ConstitutiveLaw | None:
-        """The nonlinear law of its section, None for linear sections."""
+        """Nonlinear law of the section, None for linear sections and for sections that vary along the beam."""
         return law_of(self.section, self.material) if self.prismatic else None
 
     def at(self, fraction: float) -> "Point":
@@ -165,27 +165,30 @@ class Beam:
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """Arc lengths (nj,) [m] at which the section jumps, or has a kink that it declares."""
+        """Arc lengths (nj,) [m] at which the section jumps, or has a declared kink."""
         if self.prismatic:
             return ()
         return find_jumps(self.section, self._measured, self.curve.length, self.samples)
 
     @property
     def element_count(self) -> int:
-        """Number of elements, before supports and loads divide them."""
+        """Number of elements, before supports and loads divide any of them."""
         if isinstance(self.elements, str):
             return len(cast(BSpline, self.curve).breaks) - 1
         return self.elements if isinstance(self.elements, int) else len(self.elements) - 1
 
     @property
     def shortest(self) -> float:
-        """Shortest element over the length, before supports and loads divide it; the mean for knot spans."""
+        """Length of the shortest element over that of the beam [-], before supports and loads divide any element.
+
+        For one element per knot span it is the mean.
+        """
         whole = isinstance(self.elements, int | str)
         return 1.0 / self.element_count if whole else float(np.diff(cast(Sequence[float], self.elements)).min())
 
     @property
     def samples(self) -> int:
-        """Number of equal parts in which jumps of functions of its arc length are searched for."""
+        """Number of equal intervals in which jumps of functions of the arc length are searched for."""
         return max(self.element_count, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
@@ -241,7 +244,7 @@ class Point:
 
     @property
     def reference(self) -> np.ndarray:
-        """Position in the reference (2,) [m]."""
+        """Position (2,) [m] in the reference configuration."""
         return self.beam.curve.position(np.array([self.fraction * self.beam.curve.length]))[0]
 
     def __str__(self) -> str:

@@ -20,8 +20,10 @@ class At:
     ----------
     q : array, (m, 3)
         x, y [m] and rotation from the reference [rad] of its points.
-    v, a : array, (m, 3)
-        Velocities and accelerations of its points, zero in statics.
+    v : array, (m, 3)
+        Velocities [m/s] and angular velocities [rad/s] of its points, zero in statics.
+    a : array, (m, 3)
+        Accelerations [m/s^2] and angular accelerations [rad/s^2] of its points, zero in statics.
     own : array, (k,)
         Its own unknowns.
     memory : array, (h,)
@@ -67,21 +69,21 @@ class Contribution(Protocol):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Points of beams."""
+        """Points (m,) of beams on which the forces act."""
         ...
 
     @property
     def unknowns(self) -> int:
-        """Number of multipliers."""
+        """Number k of multipliers, 0 for forces without conditions."""
         ...
 
     @property
     def conservative(self) -> bool:
-        """Whether the force at rest has a potential."""
+        """Whether the force at rest has a potential, so that the stiffness is symmetric."""
         ...
 
     def force(self, at: At) -> np.ndarray:
-        """Return its resisting forces at its points, then its conditions.
+        """Return the resisting forces at the points, then the conditions.
 
         In equilibrium these and all other forces add up to zero: a spring that pulls a point back to the left has a
         positive fx. A condition is a function of q that is zero when it is satisfied; its multiplier times its
@@ -100,7 +102,7 @@ class Contribution(Protocol):
         ...
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return its kinetic and potential energy.
+        """Return the kinetic and the potential energy of the connector.
 
         Parameters
         ----------
@@ -129,7 +131,7 @@ class Remembering(Contribution, Protocol):
 
     @property
     def memory(self) -> Sequence[float]:
-        """The initial history variables (h,)."""
+        """Initial history variables (h,)."""
         ...
 
     def remember(self, at: At) -> Sequence[float]:

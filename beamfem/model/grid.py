@@ -37,18 +37,19 @@ class Grid:
     moved: bool = field(default=False, kw_only=True)
 
     def skfem(self, elements: slice = slice(None)) -> MeshLine:
-        """Return the mesh of all elements or some neighbours for scikit-fem."""
+        """Return the mesh of all elements, or of a slice of neighbouring ones, for scikit-fem."""
         chosen = range(self.elements)[elements]
         return MeshLine(self.vertices[chosen.start : chosen.stop + 1])
 
     @property
     def pieces(self) -> list[slice]:
-        """The elements of each smooth piece: between corners of the curve."""
+        """Slices of the elements of each smooth piece, between corners of the curve."""
         ends = 1 + np.flatnonzero(self.node[:-1, -1] != self.node[1:, 0])
         return [slice(a, b) for a, b in pairwise([0, *ends.tolist(), self.elements])]
 
     @property
     def elements(self) -> int:
+        """Number of elements."""
         return len(self.vertices) - 1
 
     @cached_property
@@ -58,32 +59,34 @@ class Grid:
 
     @property
     def nodes(self) -> int:
+        """Number of nodes."""
         return len(self.arc)
 
     @property
     def straight(self) -> bool:
+        """Whether the axis is a straight line."""
         return type(self.beam.curve) is Line and not self.moved
 
     def locate(self, fraction: float) -> tuple[int, float]:
-        """Return element and xi in [0, 1] of a point of the beam."""
+        """Return the element at a fraction [-] of the beam's arc length, and xi in [0, 1] in it."""
         along = self._along(fraction * float(self.vertices[-1]))
         element = min(max(int(self.parameter.searchsorted(along, side="right")) - 1, 0), self.elements - 1)
         start, end = self.parameter[element : element + 2].tolist()
         return element, min(max((along - start) / (end - start), 0.0), 1.0)
 
     def node_of(self, element: int, xi: float) -> int | None:
-        """Return the node at a point of an element, None if there is none."""
+        """Return the node at xi in an element, None if there is none."""
         here = self.beam.element.field.nodes.tolist()
         return int(self.node[element, here.index(xi)]) if xi in here else None
 
     def node_at(self, fraction: float) -> int:
-        """Return the node at a support or joint; `make_grid` has put one there."""
+        """Return the node at a fraction [-] at which there is a support or joint; `make_grid` has put one there."""
         if fraction in (0.0, 1.0):
             return 0 if fraction == 0.0 else self.nodes - 1
         return int(np.argmin(np.abs(self.arc - fraction * self.vertices[-1])))
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Return the arc length [m] of points (element, xi)."""
+        """Return the arc lengths (n,) [m] of points, given by element and xi, both (n,)."""
         along = self.parameter[element] + xi * np.diff(self.parameter)[element]
         if self.beam.elements == "knots":
             assert isinstance(self.beam.curve, BSpline)
@@ -91,11 +94,11 @@ class Grid:
         return along
 
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Return the arc length [m] at which sections of points (element, xi) are evaluated: off jumps, inside."""
+        """Return the arc lengths (n,) [m] at which sections of points are evaluated: inside the element at jumps."""
         return self.arc_length_inside(element, xi, self.beam.jumps)
 
     def arc_length_inside(self, element: np.ndarray, xi: np.ndarray, jumps: Sequence[float]) -> np.ndarray:
-        """Return the arc length [m] of points (element, xi), inside of an element that ends at one of the jumps [m]."""
+        """Return the arc lengths (n,) [m] of points, moved inside an element that ends at one of the jumps [m]."""
         arc = self.arc_length(element, xi)
         if not jumps:
             return arc

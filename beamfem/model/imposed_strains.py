@@ -68,7 +68,7 @@ class Actuation(ImposedStrain):
         require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
+        """Return stretch, shear [-], curvature [1/m] and thickness stretch [-] (n, 4) of the unconstrained beam."""
         found = [self.values_of(name, arc_length) for name in ("stretch", "shear", "curvature")]
         return np.column_stack([*found, np.zeros(len(arc_length))])
 
@@ -139,7 +139,7 @@ class Temperature(ImposedStrain):
         require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) where nothing hinders them."""
+        """Return stretch, shear [-], curvature [1/m] and thickness stretch [-] (n, 4) of the unconstrained beam."""
         beam, heat = self.beam, self.heat(arc_length)
         if beam.prismatic:
             unit = thermal_strain(beam.section_at(0.0), beam.material)[None]

@@ -30,7 +30,7 @@ class Joint:
         require_point(kind, getattr(self, "b", None), "b")
 
     def shapes(self) -> tuple[Ring, ...]:
-        """Return its shapes: a ring if the angle may change."""
+        """Return the shapes to draw: a ring if the joint is a hinge, otherwise none."""
         return () if self.keeps_angle else (Ring(self.a),)
 
 

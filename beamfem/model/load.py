@@ -37,16 +37,16 @@ class Load(ABC):
     @property
     @abstractmethod
     def place(self) -> Beam | Point | None:
-        """The beam or point that it acts on, None for all beams."""
+        """The beam or point that the load acts on, None for all beams."""
 
     @property
     @abstractmethod
     def conservative(self) -> bool:
-        """Whether it has a potential for a constant factor, whatever the supports."""
+        """Whether the load has a potential while its factor is constant, whatever the supports."""
 
     @abstractmethod
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
 
 
 class BodyLoad(Load):
@@ -62,16 +62,16 @@ class BodyLoad(Load):
 
     @property
     def place(self) -> None:
-        """All beams."""
+        """None: the load acts on all beams."""
         return
 
     @property
     def conservative(self) -> bool:
-        """Whether it has a potential."""
+        """Whether the load has a potential, as every acceleration of all mass has."""
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
         return (Acceleration(weight * np.array(self.vector)),)
 
 
@@ -97,20 +97,20 @@ class PointLoad(Load):
     @property
     @abstractmethod
     def value(self) -> tuple[float, float, float]:
-        """fx, fy [N] and moment [N m]."""
+        """Force fx, fy [N] and moment [N m]."""
 
     @property
     def place(self) -> Point:
-        """The point."""
+        """The point of application."""
         return self.point
 
     @property
     def conservative(self) -> bool:
-        """Whether it has a potential."""
+        """Whether the load has a potential, as all have but follower forces."""
         return not (self.follower and any(self.value[:2]))
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
         force, moment = weight * np.array([self.value[:2]]), weight * self.value[2]
         if self.follower:
             force = rotated(force, np.array([placed.rotation(self.point)]))
@@ -140,14 +140,43 @@ class LineLoad(AlongBeam, Load):
     @property
     @abstractmethod
     def axes(self) -> Literal["plane", "section", "axis"]:
-        """The axes of the forces."""
+        """Axes of the forces: "plane", "section" or "axis"."""
 
     @abstractmethod
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces (n, 2) [N/m] at arc lengths (n,) [m] of the reference."""
+        """Return the forces per length, along `axes`.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, [N/m], (n, 2)
+            Forces per length.
+        """
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the function named in `along` at arc lengths (n,) [m]. Raises InputError if it gives no numbers."""
+        """Return the values of a function named in `along`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, (n, ...)
+            Values, in the unit of the field.
+
+        Raises
+        ------
+        InputError
+            If the function does not return finite numbers, as many at every arc length.
+        """
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         found = [called(what, given, s) for s in arc_length.tolist()]
         with suppress(ValueError):  # of different shapes
@@ -157,16 +186,16 @@ class LineLoad(AlongBeam, Load):
 
     @property
     def place(self) -> Beam:
-        """The beam."""
+        """The loaded beam."""
         return self.beam
 
     @property
     def conservative(self) -> bool:
-        """Whether it has a potential."""
+        """Whether the load has a potential, as those with the axes "plane" have."""
         return self.axes == "plane"
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
         at = _arrows(self, placed)
         vectors, points = weight * forces_of(self, at), [self.beam.at(part) for part in at / self.beam.curve.length]
         if self.axes == "section":
@@ -182,8 +211,10 @@ class ImposedStrain(AlongBeam, Load):
 
     Attributes
     ----------
+    along : tuple of str
+        Names of the fields that may be functions of the arc length [m] from the start.
     units : tuple of str
-        Units of the fields named in `along`.
+        Their units.
     """
 
     units: ClassVar[tuple[str, ...]] = ()
@@ -197,14 +228,54 @@ class ImposedStrain(AlongBeam, Load):
 
     @abstractmethod
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear, curvature [1/m] and thickness stretch (n, 4) at arc lengths (n,) [m]."""
+        """Return the strains of the unconstrained beam.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n, 4)
+            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
+        """
 
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return temperature [K] and its gradient [K/m] (n, 2); layers expand with their own coefficients."""
+        """Return the change of temperature, by which layers expand with their own coefficients; zero unless overridden.
+
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n, 2)
+            Change of temperature on the axis [K] and its gradient over the section [K/m].
+        """
         return np.zeros((len(arc_length), 2))
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return a field named in `along` at arc lengths (n,) [m]. Raises InputError if a function fails."""
+        """Return the values of a field named in `along`.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+        arc_length : array, [m], (n,)
+            Arc lengths from the start.
+
+        Returns
+        -------
+        array, (n,)
+            Values, in the unit of the field.
+
+        Raises
+        ------
+        InputError
+            If a function does not return finite numbers.
+        """
         given, what = getattr(self, name), f"{name} of {type(self).__name__}"
         if not callable(given):
             return np.full(len(arc_length), given)
@@ -212,16 +283,16 @@ class ImposedStrain(AlongBeam, Load):
 
     @property
     def place(self) -> Beam:
-        """The beam."""
+        """The beam that is strained."""
         return self.beam
 
     @property
     def conservative(self) -> bool:
-        """Whether it has a potential."""
+        """Whether the load has a potential, as every imposed strain has."""
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
         values: dict[str, tuple[float | None, str]] = {}
         for name, unit in zip(self.along, self.units, strict=True):
             value = getattr(self, name)

@@ -88,24 +88,27 @@ class DistributedLoad(LineLoad):
 
     @property
     def axes(self) -> Literal["plane", "section"]:
-        """The axes of the forces."""
+        """Axes of the forces: "section" for a follower load, otherwise "plane"."""
         return "section" if self.follower else "plane"
 
     @property
     def uniform(self) -> bool:  # type: ignore[override]
-        """Whether it is the same at every arc length."""
+        """Whether the load is the same at every arc length."""
         return not callable(self.vector)
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2)."""
+        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m]. Raises InputError."""
         return self.values(arc_length)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2)."""
+        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m]. Raises InputError."""
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError if a function gives none."""
+        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m].
+
+        Raises InputError if a function does not return two finite numbers.
+        """
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
         given, name = self.vector, "vector of DistributedLoad"
@@ -159,22 +162,25 @@ class Pressure(LineLoad):
 
     @property
     def uniform(self) -> bool:  # type: ignore[override]
-        """Whether it is the same at every arc length."""
+        """Whether the load is the same at every arc length."""
         return not callable(self.value)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure [N/m] at arc lengths (n,) [m]."""
+        """Return the pressure times width (n,) [N/m] at arc lengths (n,) [m]. Raises InputError."""
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError if a function gives none."""
+        """Return the pressure times width (n,) [N/m] at arc lengths (n,) [m].
+
+        Raises InputError if a function does not return a finite number.
+        """
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given, name = self.value, "value of Pressure"
         return np.array([finite(f"{name} at arc length {s:g}", called(name, given, s)) for s in arc_length.tolist()])
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return (0, p) [N/m] at arc lengths (n,) [m] as (n, 2)."""
+        """Return the forces (0, p) [N/m] along and across the deformed axis (n, 2) at arc lengths (n,) [m]."""
         return np.column_stack([np.zeros(len(arc_length)), self.values(arc_length)])
 
 
@@ -213,7 +219,7 @@ class PointForce(PointLoad):
 
     @property
     def value(self) -> tuple[float, float, float]:
-        """fx, fy [N] and moment [N m]."""
+        """Force fx, fy [N] and moment [N m]."""
         return (*self.vector, 0.0)
 
 
@@ -253,5 +259,5 @@ class PointMoment(PointLoad):
 
     @property
     def value(self) -> tuple[float, float, float]:
-        """fx, fy [N] and moment [N m]."""
+        """Force fx, fy [N] and moment [N m]."""
         return (0.0, 0.0, self.moment)

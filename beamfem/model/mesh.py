@@ -32,23 +32,23 @@ class BeamMesh(Grid):
 
     @property
     def vectors(self) -> tuple[str, ...]:
-        """Nodal vectors of a node."""
+        """Names of the nodal vectors of a node: "r", "r_x", "r_y"."""
         return self.beam.element.field.vectors
 
     @cached_property
     def node_kinds(self) -> tuple[tuple[int, np.ndarray], ...]:
-        """Each kind of node kinematics with its nodes."""
+        """Each kind of nodal coordinates, by its number in compiled code, with its nodes (n,)."""
         codes = self.carried.node_kind
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
 
     def labels(self, node: int) -> tuple[str, ...]:
-        """Names of a node's coordinates."""
+        """Return the names of the coordinates of a node."""
         return labels(int(self.carried.node_kind[node]), self.vectors)
 
     def coordinates_of(self, node: int) -> dict[str, int]:
-        """Number in the model of each coordinate of a node, by name."""
+        """Return the number in the model of each coordinate of a node, by name."""
         return dict(zip(self.labels(node), self.carried.dof[node].tolist(), strict=False))
 
     def table(self, p: np.ndarray) -> np.ndarray:
-        """Coordinates (steps, nodes, npn) of states p (steps, n); columns that a node does not have hold anything."""
+        """Return the coordinates (steps, nodes, npn) of states p (steps, n); unused columns of a node hold anything."""
         return p[:, self.carried.dof]

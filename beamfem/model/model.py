@@ -157,7 +157,10 @@ class Model(ModelOutputs):
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for an SI unit, such as "MPa" for "Pa" in a model in N and mm."""
+        """Return the name of the model's unit for an SI unit, such as "MPa" for "Pa" in a model in N and mm.
+
+        unit: SI unit, such as "Pa", "N m" or "kg"; a name that is no SI unit is returned as it is.
+        """
         return self._units.of(unit)
 
     @cached_property
@@ -226,17 +229,17 @@ class Model(ModelOutputs):
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
-        """One mesh a beam, numbered in the order of the beams."""
+        """The mesh of each beam, in the order of the beams."""
         return self._numbered[0]
 
     @property
     def coordinates(self) -> int:
-        """Number of coordinates of the beams, including prescribed ones, shared ones counted once."""
+        """Number of coordinates of the beams, including prescribed ones; shared ones are counted once."""
         return self._numbered[1]
 
     @property
     def size(self) -> int:
-        """Number of coordinates of the beams, of unknowns and history variables of connectors and those of sections."""
+        """Number of all variables: coordinates of the beams, unknowns of connectors, and history variables."""
         return self._numbered[2]
 
     @cached_property
@@ -249,7 +252,10 @@ class Model(ModelOutputs):
         return tuple(dict.fromkeys(block_key(beam) for beam in self.beams))
 
     def number_of(self, beam: Beam) -> int:
-        """Return the number of a beam. Raises InputError, UnknownPointError."""
+        """Return the number of a beam, counted from 0.
+
+        Raises InputError for anything but a beam, UnknownPointError for a beam that is not in the model.
+        """
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
         if id(beam) not in self._numbers:
@@ -257,7 +263,10 @@ class Model(ModelOutputs):
         return self._numbers[id(beam)]
 
     def mesh_of(self, point: Point) -> BeamMesh:
-        """Return the mesh that a point lies on. Raises InputError, UnknownPointError."""
+        """Return the mesh that a point lies on.
+
+        Raises InputError for anything but a point, UnknownPointError for one on a beam that is not in the model.
+        """
         if not isinstance(point, Point):
             raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")
         if id(point.beam) not in self._numbers:
@@ -266,32 +275,32 @@ class Model(ModelOutputs):
 
     @cached_property
     def gravity(self) -> tuple[BodyLoad, ...]:
-        """Accelerations that act on all mass."""
+        """The loads that are accelerations of all mass."""
         return tuple(load for load in self.loads if isinstance(load, BodyLoad))
 
     @cached_property
     def line_loads(self) -> tuple[LineLoad, ...]:
-        """Forces along beams."""
+        """The loads that are forces along beams."""
         return tuple(load for load in self.loads if isinstance(load, LineLoad))
 
     @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
-        """Loads that impose strains, each with the number of its beam."""
+        """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
 
     @cached_property
     def point_loads(self) -> tuple[PointLoad, ...]:
-        """Forces and moments at points."""
+        """The loads that are forces and moments at points."""
         return tuple(load for load in self.loads if isinstance(load, PointLoad))
 
     @cached_property
     def point_supports(self) -> tuple[PointSupport, ...]:
-        """Supports at points."""
+        """The supports at points."""
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
 
     @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:
-        """Supports along beams."""
+        """The supports along beams."""
         return tuple(support for support in self.supports if isinstance(support, LineSupport))
 
     def _repr_html_(self) -> str:

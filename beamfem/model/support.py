@@ -22,7 +22,7 @@ class Support(ABC):
 
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
 
 
 class PointSupport(Support):
@@ -42,28 +42,38 @@ class PointSupport(Support):
         require_point(type(self).__name__, getattr(self, "point", None))
 
     def prescribed(self) -> Mapping[str, Value]:
-        """Return the prescribed values by direction: numbers, which grow with the load factor, or functions of time.
+        """Return the prescribed values by direction; no direction unless overridden.
 
-        "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
+        Returns
+        -------
+        mapping
+            "ux", "uy" [m] and "rotation" [rad]: numbers, which grow with the load factor in statics, or functions of
+            time [s]. "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
         """
         return {}
 
     def springs(self) -> Mapping[str, float]:
-        """Return the stiffness [N/m], [N m/rad] of the springs to the ground by direction, none of them zero."""
+        """Return the stiffness of the springs to the ground by direction; no spring unless overridden.
+
+        Returns
+        -------
+        mapping
+            Stiffness, none of them zero: "ux", "uy" [N/m] and "rotation" [N m/rad].
+        """
         return {}
 
     @property
     def direction(self) -> np.ndarray | None:
-        """Unit vector (2,) along which "normal" is prescribed, None if it is not."""
+        """Unit vector (2,) [-] along which "normal" is prescribed, None if it is not."""
         return None
 
     @property
     def place(self) -> Point:
-        """The point."""
+        """The supported point."""
         return self.point
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
         prescribed, springs = self.prescribed(), self.springs()
         found: tuple[SupportShape, ...] = ()
         if prescribed:
@@ -93,9 +103,9 @@ class LineSupport(Support):
 
     @property
     def place(self) -> Beam:
-        """The beam."""
+        """The supported beam."""
         return self.beam
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
         return (SpringsAlong(self.beam, self.stiffness),)

@@ -31,7 +31,7 @@ class Clamp(PointSupport):
     point: Point
 
     def prescribed(self) -> dict[str, Value]:
-        """Return what is prescribed, by direction."""
+        """Return the prescribed displacements [m] and rotation [rad] by direction."""
         return {"ux": 0.0, "uy": 0.0, "rotation": 0.0}
 
 
@@ -54,7 +54,7 @@ class Pin(PointSupport):
     point: Point
 
     def prescribed(self) -> dict[str, Value]:
-        """Return what is prescribed, by direction."""
+        """Return the prescribed displacements [m] and rotation [rad] by direction."""
         return {"ux": 0.0, "uy": 0.0}
 
 
@@ -91,12 +91,12 @@ class Roller(PointSupport):
             raise InputError("the normal of a Roller must not be zero")
 
     def prescribed(self) -> dict[str, Value]:
-        """Return what is prescribed, by direction."""
+        """Return the prescribed displacements [m] and rotation [rad] by direction."""
         return {"normal": 0.0}
 
     @property
     def direction(self) -> np.ndarray:
-        """Unit normal (2,)."""
+        """Unit normal (2,) [-]."""
         return np.array(self.normal) / np.hypot(*self.normal)
 
 
@@ -144,7 +144,7 @@ class Prescribed(PointSupport):
                 convert(self, squared(finite), name)
 
     def prescribed(self) -> dict[str, Value]:
-        """Return what is prescribed, by direction."""
+        """Return the prescribed displacements [m] and rotation [rad] by direction."""
         given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
         return {name: value for name, value in given.items() if value is not None}
 
@@ -185,7 +185,7 @@ class Spring(PointSupport):
             raise InputError(f"the stiffness of a Spring must not be negative, and somewhere positive, got {values}")
 
     def springs(self) -> dict[str, float]:
-        """Return the stiffness [N/m], [N m/rad] by direction."""
+        """Return the stiffness by direction, [N/m] and [N m/rad], without zeros."""
         given = zip(("ux", "uy", "rotation"), (*self.stiffness, self.rotational), strict=True)
         return {name: value for name, value in given if value > 0.0}
 

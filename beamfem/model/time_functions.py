@@ -26,7 +26,7 @@ class Interpolated:
     Raises
     ------
     InputError
-        For less than two points, or times that do not increase.
+        For fewer than two points, or times that do not increase.
 
     Examples
     --------
@@ -52,7 +52,7 @@ class Interpolated:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Times (n,) of the points, where the slope jumps."""
+        """Times [s] or arc lengths [m] (n,) of the points, where the slope jumps."""
         return tuple(self._table[0].tolist())
 
     def __call__(self, time: float) -> float:

@@ -23,10 +23,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Energy:
-    """Energies (steps,) [J]; potential: of gravity, other constant dead loads, springs and foundations.
+    """Energies of a solution.
 
-    Follower forces and pressures have no potential. dissipated: since the start, by sections with history; the
-    dampers of a model are not included.
+    Parameters
+    ----------
+    kinetic : array, [J], (steps,)
+        Kinetic energy.
+    strain : array, [J], (steps,)
+        Strain energy.
+    potential : array, [J], (steps,)
+        Potential of gravity, other constant dead loads, springs and foundations; follower forces and pressures have
+        none.
+    dissipated : array, [J], (steps,)
+        Energy dissipated since the start by sections with history; the dampers of a model are not included.
+    unit : str
+        Name of the model's unit of energy.
     """
 
     kinetic: np.ndarray
@@ -42,6 +53,7 @@ class Energy:
 
     @property
     def total(self) -> np.ndarray:
+        """Sum of kinetic, strain and potential energy (steps,) [J]."""
         return self.kinetic + self.strain + self.potential
 
 

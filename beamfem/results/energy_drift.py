@@ -17,9 +17,16 @@ _ROWS = 100  # rows at which the exchanged energy is evaluated
 
 @dataclass(frozen=True)
 class EnergyDrift:
-    """Change of the total energy from start to end of a motion, and the largest energy exchanged, both [J].
+    """Change of the total energy over a motion on which no work is done.
 
-    unit: what energies are measured in, that of the model.
+    Parameters
+    ----------
+    change : float, [J]
+        Change of the total energy from start to end.
+    exchanged : float, [J]
+        Largest energy exchanged between its kinetic, strain and potential part.
+    unit : str
+        Name of the model's unit of energy.
     """
 
     change: float
@@ -28,7 +35,7 @@ class EnergyDrift:
 
     @property
     def digits(self) -> float:
-        """Decimal digits of the energy that remain; inf if none is lost."""
+        """Decimal digits of the exchanged energy that the change leaves correct; inf if the change is zero."""
         if self.change == 0.0:
             return np.inf
         return float(np.log10(self.exchanged / abs(self.change))) if self.exchanged > 0.0 else 0.0

@@ -39,7 +39,7 @@ class PathState(State):
 
     @property
     def load_factor(self) -> float:
-        """Load factor of the state."""
+        """Load factor [-] of the state."""
         return self.at
 
     @cached_property

@@ -67,7 +67,13 @@ class Fields:
 
 @dataclass(frozen=True)
 class Components:
-    """Components of a symmetric tensor along (x) and across (y) the beam."""
+    """Components of a symmetric tensor along the beam (x) and across it (y).
+
+    Parameters
+    ----------
+    xx, yy, xy : array, (...)
+        The components, strain [-] or stress [Pa], over steps and points as in `Fields`.
+    """
 
     xx: np.ndarray
     yy: np.ndarray

@@ -34,7 +34,10 @@ class Quantities(PointQuantities):
 
     @cached_property
     def remainders(self) -> np.ndarray:
-        """Corrections below the last digit of the coordinates of a static solution (steps, n), see `last_digits`."""
+        """Corrections (steps, n) of the coordinates of a static solution that are smaller than their last digit.
+
+        In a stiff part of a model they may change the forces noticeably; zero where they do not, and for a motion.
+        """
         return remainders(self._whole)
 
     def section_forces(self, beam: Beam) -> SectionForces:
@@ -141,7 +144,10 @@ class Quantities(PointQuantities):
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:
-        """Energy error over a motion on which nothing does work, else None; see `energy_drift.EnergyDrift`."""
+        """Change of the total energy [J] over a motion on which no work is done: an error of the time steps.
+
+        None for a static solution, and for a motion on which work is done.
+        """
         return energy_drift(self._whole) if len(self) else None
 
     def linear_momentum(self) -> np.ndarray:

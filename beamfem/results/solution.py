@@ -153,12 +153,12 @@ class Solution(Quantities, Pictures, Exports):
 
     @property
     def status(self) -> Status:
-        """How the solve ended."""
+        """How the solve ended, as a member of `Status`."""
         return self.statistics.status
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings to heed before using the results, on locking too, in sentences; empty if there are none."""
+        """Warnings to heed before using the results, those on locking included; empty if there are none."""
         return (*self.statistics.warnings, *locking_warnings(self), *drift_warnings(self))
 
     @cached_property
@@ -183,7 +183,7 @@ class Solution(Quantities, Pictures, Exports):
 
     @property
     def load_factor(self) -> np.ndarray:
-        """Load factors (steps,). Raises InputError for a motion."""
+        """Load factors (steps,) [-]. Raises InputError for a motion."""
         if not self.static:
             raise InputError("a motion has no load factor; use time")
         return self.at

@@ -17,10 +17,24 @@ class Status(Enum):
 
 @dataclass(frozen=True)
 class Statistics:
-    """Total Newton iterations, completed steps, cut steps, and the termination reason in a sentence.
+    """How a solve went.
 
-    status: the termination as a member of `Status`; warnings: sentences to heed before using the results; digits: exact
-    digits of the forces of the last equilibrium, from the balance of loads and reactions, nan if not known.
+    Parameters
+    ----------
+    iterations : int
+        Total number of Newton iterations.
+    steps : int
+        Number of completed steps.
+    cuts : int
+        Number of times a step was cut.
+    ended : str
+        Why the solve ended, in a sentence.
+    status : Status
+        How it ended.
+    warnings : tuple of str
+        Sentences to heed before using the results.
+    digits : float, [-]
+        Exact digits of the forces of the last equilibrium, from the balance of loads and reactions; nan if unknown.
     """
 
     iterations: int
@@ -33,12 +47,12 @@ class Statistics:
 
     @property
     def outcome(self) -> str:
-        """Whether the solve completed, with the reason for its end behind it."""
+        """Whether the solve completed, and why it ended, as text."""
         return f"{'stopped' if self.status is Status.STOPPED else 'completed'}: {self.ended}"
 
     @property
     def effort(self) -> str:
-        """Iterations and steps in words."""
+        """Numbers of iterations and steps, as text."""
         cut = f", {counted(self.cuts, 'step')} cut" if self.cuts else ""
         return f"{counted(self.iterations, 'Newton iteration')} in {counted(self.steps, 'step')}{cut}"
 

@@ -16,69 +16,145 @@ COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
 
 @runtime_checkable
 class SectionLaw(Protocol):
-    """What a section (`CrossSection`) has besides if its resultants are no linear functions of its strains.
+    """The additional methods of a section (`CrossSection`) whose section forces are not linear in its strains.
 
-    Its `rigidity` is its stiffness at zero strain. Tangents are derivatives of `resultants` by complex steps, exact to
-    round-off, so that both must consist of analytic functions of many strains at once: `np.tanh`, `x**2`, not `abs`.
-    Cases are told apart by real parts, `np.where(strain[:, 0].real < 0.0, ...)`. This is tested when a beam is made.
+    Its `rigidity` is its stiffness at zero strain. Tangents are complex-step derivatives of `resultants`, exact to
+    round-off. Both methods must therefore consist of analytic functions and evaluate many strains at once:
+    `np.tanh` and `x**2`, not `abs`. Cases are distinguished by real parts, `np.where(strain[:, 0].real < 0.0, ...)`.
+    This is tested when a beam is made.
     """
 
     def resultants(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
-        """Return normal force [N], shear force [N] and moment [N m] (n, 3), which are zero at zero strain.
+        """Return the section forces for given strains.
 
-        strain (n, 3), real or complex: stretch, shear and change of curvature [1/m] from the state without stress.
+        Parameters
+        ----------
+        strain : array, real or complex, (n, 3)
+            Stretch [-], shear [-] and change of curvature [1/m] from the stress-free state.
+        material : Material or None
+            Material of the beam.
+
+        Returns
+        -------
+        array, (n, 3)
+            Normal force [N], shear force [N] and moment [N m], zero at zero strain.
         """
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
-        """Return the strain energy per length (n,) [J/m] of the same strains; `resultants` is its derivative."""
+        """Return the strain energy per length, of which `resultants` is the derivative.
+
+        Parameters
+        ----------
+        strain : array, real or complex, (n, 3)
+            Strains, as for `resultants`.
+        material : Material or None
+            Material of the beam.
+
+        Returns
+        -------
+        array, [J/m], (n,)
+            Strain energy per reference length.
+        """
         ...
 
 
 @runtime_checkable
 class RememberingLaw(Protocol):
-    """A section law with history, such as plasticity or creep: what a section has instead of a `SectionLaw`.
+    """The methods of a section with a history-dependent law, such as plasticity or creep, in place of `SectionLaw`.
 
-    strain (n, 3), material: see `SectionLaw`; history (n, k): the committed history variables of the same points, those
-    of the last accepted step; dt [s]: time since then, 0 in statics and wherever an accepted state is looked at again.
-    They are part of the state: a rejected step restores them, and a result has them row by row. So a state must
-    determine its resultants: with the history that `remember` returns and dt = 0 they are those of the step, the
-    derivative of the stored energy at this history, and the tangent is its second derivative. This is tested when a
-    beam is made. Simo and Hughes 1998, chapter 1.
+    The history variables are part of the state: a rejected step restores them, and a solution has them in every row.
+    A state must therefore determine its section forces: with the history that `remember` returns and dt = 0, these are
+    the section forces of the step and the derivative of the stored energy at this history, and the tangent is the
+    second derivative of that energy. This is tested when a beam is made.
+
+    References
+    ----------
+    Simo and Hughes 1998, chapter 1.
     """
 
     @property
     def memory(self) -> Sequence[float]:
-        """The initial history variables (k,) of a point."""
+        """Initial history variables (k,) of a point of the beam."""
         ...
 
     def resultants(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return normal force [N], shear force [N] and moment [N m] (n, 3), an analytic function of the strain."""
+        """Return the section forces for given strains, an analytic function of the strains.
+
+        Parameters
+        ----------
+        strain : array, real or complex, (n, 3)
+            Stretch [-], shear [-] and change of curvature [1/m] from the stress-free state.
+        material : Material or None
+            Material of the beam.
+        history : array, (n, k)
+            History variables of the same points after the last accepted step.
+        dt : float, [s]
+            Time since then; 0 in statics, and when an accepted state is evaluated again.
+
+        Returns
+        -------
+        array, (n, 3)
+            Normal force [N], shear force [N] and moment [N m].
+        """
         ...
 
     def remember(self, strain: np.ndarray, material: Material | None, history: np.ndarray, dt: float) -> np.ndarray:
-        """Return the history variables (n, k) after an accepted step to these strains."""
+        """Return the history variables after an accepted step.
+
+        Parameters
+        ----------
+        strain : array, (n, 3)
+            Strains at the end of the step, as for `resultants`.
+        material : Material or None
+            Material of the beam.
+        history : array, (n, k)
+            History variables before the step.
+        dt : float, [s]
+            Duration of the step; 0 in statics.
+
+        Returns
+        -------
+        array, (n, k)
+            History variables after the step.
+        """
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None, history: np.ndarray) -> np.ndarray:
-        """Return the stored energy and the one dissipated since the start, per length (n, 2) [J/m]."""
+        """Return the stored energy, and the energy dissipated since the start.
+
+        Parameters
+        ----------
+        strain : array, (n, 3)
+            Strains, as for `resultants`.
+        material : Material or None
+            Material of the beam.
+        history : array, (n, k)
+            History variables of the same points.
+
+        Returns
+        -------
+        array, [J/m], (n, 2)
+            Stored and dissipated energy per reference length.
+        """
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class ConstitutiveLaw:
-    """A section with a law of its own and its material; without history, k = 0."""
+    """A section with a nonlinear law, and the material of its beam; a law without history has k = 0 variables."""
 
     section: SectionLaw | RememberingLaw
     material: Material | None
 
     @property
     def name(self) -> str:
+        """Name of the class of the section."""
         return type(self.section).__name__
 
     @cached_property
     def remembers(self) -> bool:
-        """Whether resultants depend on history. Raises InputError if parts of `RememberingLaw` are missing."""
+        """Whether the law depends on history. Raises InputError if it has only part of what `RememberingLaw` needs."""
         found, parts = fulfils(self.section, RememberingLaw), ("memory", "remember")
         if not found and any(hasattr(self.section, part) for part in parts):
             raise InputError(
@@ -89,7 +165,7 @@ class ConstitutiveLaw:
 
     @cached_property
     def start(self) -> np.ndarray:
-        """The initial history variables (k,) of a point. Raises InputError."""
+        """Initial history variables (k,) of a point. Raises InputError if `memory` of the section is invalid."""
         if not self.remembers:
             return np.empty(0)
         name = f"memory of {self.name}"
@@ -99,18 +175,21 @@ class ConstitutiveLaw:
         return np.array([finite(name, value) for value in memory], dtype=float)
 
     def at_start(self, count: int) -> np.ndarray:
-        """Return the initial history (count, k) of points."""
+        """Return the initial history variables (count, k) of `count` points."""
         return np.tile(self.start, (count, 1))
 
     def resultants(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return the resultants (n, 3) of strains (n, 3), both real or complex. Raises InputError for what are none."""
+        """Return the section forces (n, 3) [N, N, N m] for strains (n, 3) [-, -, 1/m], both real or complex.
+
+        history (n, k): of the same points; dt [s]: time since. Raises InputError if the law returns anything else.
+        """
         past = (history, dt) if self.remembers else ()
         with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; then the iteration goes back
             found = self._called("resultants", strain, *past)
         return self._checked("resultants", found, strain.shape)
 
     def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (n, 3) and their derivatives (n, 3, 3) at real strains (n, 3), the consistent tangent."""
+        """Return section forces (n, 3) at real strains (n, 3), and the consistent tangent (n, 3, 3)."""
         count = len(strain)
         moved = np.tile(strain.astype(complex), (3, 1))
         for column in range(3):
@@ -121,14 +200,20 @@ class ConstitutiveLaw:
         return found[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
 
     def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return the history (n, k) after an accepted step to strains (n, 3). Raises InputError for what is none."""
+        """Return the history variables (n, k) after an accepted step to strains (n, 3).
+
+        Raises InputError if the law returns anything but finite real numbers of this shape.
+        """
         found = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
         if found.dtype.kind == "c" or not np.isfinite(found).all():
             raise InputError(f"remember of {self.name} must return finite numbers, real ones for real strains")
         return found
 
     def energy(self, strain: np.ndarray, history: np.ndarray) -> np.ndarray:
-        """Return the energies per length (n, 2) [J/m], stored and dissipated. Raises InputError for what are none."""
+        """Return the stored and the dissipated energy per length (n, 2) [J/m]; dissipated is 0 without history.
+
+        Raises InputError if the law returns anything else.
+        """
         if self.remembers:
             return self._checked("energy", self._called("energy", strain, history), (len(strain), 2))
         stored = self._checked("energy", self._called("energy", strain), (len(strain),))
@@ -147,7 +232,7 @@ class ConstitutiveLaw:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """The stiffness (3, 3) at zero strain."""
+        """Stiffness (3, 3) at zero strain: the tangent of N [N], Q [N] and M [N m]."""
         return self.linearised(np.zeros((1, 3)), self.at_start(1))[1][0]
 
 

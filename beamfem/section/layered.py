@@ -96,35 +96,38 @@ class Layered:
 
     @property
     def height(self) -> float:
-        """Height of all layers [m]."""
+        """Total height [m] of the layers."""
         return float(sum(layer.thickness for layer in self.layers))
 
     @property
     def area(self) -> float:
-        """Area of all layers [m^2]."""
+        """Total area [m^2] of the layers."""
         return self.width * self.height
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper y of the layers [m]."""
+        """Heights y [m] of the lower and the upper face, from the axis."""
         return float(self._edges[0]), float(self._edges[-1])
 
     def rigidity(self, material: Material | None = None) -> Rigidity:
-        """Return the resistance of all layers; y d' points against the tangent, hence the sign of the coupling."""
+        """Return the stiffness of all layers together about the axis; the layers have their own materials.
+
+        The coupling is -sum E S_i [N m], as a positive curvature compresses the side of positive y.
+        """
         parts = self.moments(material)
         axial, first, bending = (sum(m.youngs_modulus * moments[n] for m, moments in parts) for n in range(3))
         shear = self.shear_factor * sum(m.shear_modulus * moments[0] for m, moments in parts)
         return Rigidity(float(axial), float(shear), float(bending), -float(first))
 
     def inertia(self, material: Material | None = None) -> Inertia:
-        """Return the mass moments of all layers."""
+        """Return mass [kg/m], its first moment [kg] and rotary inertia [kg m] of all layers together."""
         mass, first, rotary = (
             float(sum(m.density * moments[n] for m, moments in self.moments(material))) for n in range(3)
         )
         return Inertia(mass, first, rotary)
 
     def moments(self, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material of each layer with its integrals of 1, y, ..., y^4."""
+        """Return the material of each layer with the integrals (5,) of 1, y, ..., y^4 [m^2 to m^6] over it."""
         edges = self._edges
         return [
             (layer.material, self.width * np.array([(high**n - low**n) / n for n in range(1, 6)]))
@@ -132,12 +135,15 @@ class Layered:
         ]
 
     def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material of each layer with the heights in it; on a face between two layers the upper one."""
+        """Return the material of each layer with a bool for each height of y [m]: whether it is in the layer.
+
+        The face between two layers belongs to the upper one.
+        """
         place = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
         return [(layer.material, place == number) for number, layer in enumerate(self.layers)]
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return the material of each layer with heights and weights."""
+        """Return the material of each layer with heights (n,) [m] and weights (n,) [m^2] of a quadrature rule."""
         result = []
         for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
             heights, weights = gauss_between(low, high, _STRIPS)
@@ -145,7 +151,7 @@ class Layered:
         return result
 
     def parts(self, material: Material | None = None) -> tuple[Part, ...]:
-        """Return each layer as a rectangle with its Young's modulus."""
+        """Return each layer as a rectangle with its Young's modulus [Pa], from the bottom up."""
         edges = self._edges.tolist()
         return tuple(
             Part(layer.material.youngs_modulus, RectangleOutline(self.width, low, high))

@@ -130,12 +130,15 @@ class Section:
 
     @property
     def width(self) -> float:
-        """Width of the equivalent rectangle [m]."""
+        """Width [m] of the rectangle with the same area and second moment."""
         return self.area / self._equivalent_height
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper y [m] of the faces, those of the equivalent rectangle where no height is given."""
+        """Heights y [m] of the lower and the upper face, from the axis.
+
+        Without a given height they are those of the rectangle with the same area and second moment.
+        """
         if self.height is None or self.centroid is None:
             return -0.5 * self._equivalent_height, 0.5 * self._equivalent_height
         return -self.centroid, self.height - self.centroid
@@ -145,33 +148,39 @@ class Section:
         return float(np.sqrt(12.0 * self.second_moment / self.area))
 
     def rigidity(self, material: Material | None) -> Rigidity:
-        """Return E A, k_s G A and E I. Raises InputError without a material."""
+        """Return E A [N], k_s G A [N] and E I [N m^2]. Raises InputError without a material."""
         own = required(material)
         modulus = own.youngs_modulus
         shear = self.shear_factor * own.shear_modulus * self.area
         return Rigidity(modulus * self.area, shear, modulus * self.second_moment)
 
     def inertia(self, material: Material | None) -> Inertia:
-        """Return density times area and second moment. Raises InputError without a material."""
+        """Return density times area [kg/m] and times second moment [kg m]. Raises InputError without a material."""
         density = required(material).density
         return Inertia(density * self.area, 0.0, density * self.second_moment)
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material with A, 0, I, 0, I4. Raises InputError without a material."""
+        """Return the material with (A, 0, I, 0, I4) [m^2 to m^6]. Raises InputError without a material."""
         return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material at all heights."""
+        """Return the material, which is that of all heights y [m]. Raises InputError without a material."""
         return [(required(material), np.ones_like(y, dtype=bool))]
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return the material with heights and weights over the equivalent rectangle."""
+        """Return the material with heights (n,) [m] and weights (n,) [m^2] of a quadrature rule.
+
+        The rule is that of the rectangle with the same area and second moment. Raises InputError without a material.
+        """
         half = 0.5 * self._equivalent_height
         heights, weights = gauss_between(-half, half, _STRIPS)
         return [(required(material), heights, self.width * weights)]
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the section as one part of which the moments are known, and the height where it was given."""
+        """Return the section as one part, given by its moments and, if it is known, its height.
+
+        Raises InputError without a material.
+        """
         low, high = self.bounds
         moments = (self.area, 0.0, self.second_moment, 0.0, float(self.fourth_moment or 0.0))
         return (Part(required(material).youngs_modulus, MomentsOutline(moments, low, high, self.height is not None)),)

@@ -30,7 +30,7 @@ class Outline(Protocol):
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a section of one Young's modulus [Pa]."""
+    """A part of a section: its Young's modulus [Pa] and its outline."""
 
     modulus: float
     outline: Outline

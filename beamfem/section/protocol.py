@@ -11,7 +11,19 @@ from beamfem.section.outline import Part
 
 @dataclass(frozen=True)
 class Rigidity:
-    """Resistance of a section: axial [N], shear [N], bending [N m^2] and coupling of stretch with curvature [N m]."""
+    """Stiffness of a section about the beam's axis.
+
+    Parameters
+    ----------
+    axial : float, [N]
+        Axial stiffness E A.
+    shear : float, [N]
+        Shear stiffness k_s G A.
+    bending : float, [N m^2]
+        Bending stiffness E I.
+    coupling : float, [N m], default 0
+        Coupling of stretch with curvature.
+    """
 
     axial: float
     shear: float
@@ -21,7 +33,17 @@ class Rigidity:
 
 @dataclass(frozen=True)
 class Inertia:
-    """Mass per length [kg/m], its first moment over y [kg] and its second [kg m]."""
+    """Inertia of a section about the beam's axis.
+
+    Parameters
+    ----------
+    mass : float, [kg/m]
+        Mass per length.
+    first_moment : float, [kg]
+        Integral of the density times y over the section.
+    rotary : float, [kg m]
+        Integral of the density times y^2 over the section: the rotary inertia per length.
+    """
 
     mass: float
     first_moment: float
@@ -30,32 +52,46 @@ class Inertia:
 
 @runtime_checkable
 class CrossSection(Protocol):
-    """A section; the material is None if the section brings its own."""
+    """What a beam needs of a section. The material is that of the beam, None if the section has its own.
+
+    Methods that need a material raise an InputError without one.
+    """
 
     @property
-    def shear_factor(self) -> float: ...
+    def shear_factor(self) -> float:
+        """Shear correction factor k_s [-]."""
+        ...
+
     @property
-    def bounds(self) -> tuple[float, float]: ...  # [m], y of the lower and upper face of the body that is drawn
-    def rigidity(self, material: Material | None) -> Rigidity: ...
-    def inertia(self, material: Material | None) -> Inertia: ...
+    def bounds(self) -> tuple[float, float]:
+        """Heights y [m] of the lower and the upper face of the body that is drawn, from the axis."""
+        ...
+
+    def rigidity(self, material: Material | None) -> Rigidity:
+        """Return axial, shear and bending stiffness of the section."""
+        ...
+
+    def inertia(self, material: Material | None) -> Inertia:
+        """Return mass [kg/m], its first moment [kg] and rotary inertia [kg m] per length."""
+        ...
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return each material with the integrals of 1, y, y^2, y^3, y^4 [m^2 ... m^6] over its part."""
+        """Return each material with the integrals (5,) of 1, y, y^2, y^3, y^4 [m^2 to m^6] over its part."""
         ...
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return each material with the heights of y [m] where it is, as booleans of the shape of y."""
+        """Return each material with a bool for each height of y [m]: whether it is of this material."""
         ...
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return each material with quadrature heights y [m] and weights [m^2] over its part."""
+        """Return each material with heights y (n,) [m] and weights (n,) [m^2] of a quadrature rule over its part."""
         ...
 
 
 @runtime_checkable
 class HasParts(Protocol):
-    """A section that knows its shape, or as much of it as there is to know."""
+    """A section whose shape is known, at least in part."""
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return its parts of one material from the bottom up, each with its outline."""
+        """Return its parts from the bottom up, each of one Young's modulus and with its outline."""
         ...

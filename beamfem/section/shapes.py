@@ -15,12 +15,12 @@ from beamfem.validation import positive
 
 @dataclass(frozen=True)
 class ShapedSection(Section):
-    """A section of which the shape is known: a rectangle, a circle or a tube; see `Rectangle`, `Circle` and `Tube`."""
+    """A section of known shape: a rectangle, a circle or a tube; see `Rectangle`, `Circle` and `Tube`."""
 
     outline: RectangleOutline | TubeOutline | None = None
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the section as one part with its outline."""
+        """Return the section as one part with its outline. Raises InputError without a material."""
         if self.outline is None:
             return super().parts(material)
         return (Part(required(material).youngs_modulus, self.outline),)

@@ -12,9 +12,9 @@ from beamfem.validation import convert, finite, positive
 
 @dataclass(frozen=True)
 class StiffnessSection:
-    """Section by its stiffness and mass; see `Section.from_stiffness`.
+    """Section given by its stiffness and mass, see `Section.from_stiffness`.
 
-    It is drawn as high as the rectangle of its E I and E A. Raises InputError.
+    It is drawn as high as the rectangle with the same E I and E A. Raises InputError for an invalid value.
     """
 
     axial: float
@@ -35,38 +35,38 @@ class StiffnessSection:
 
     @property
     def shear_factor(self) -> float:
-        """The shear stiffness is given as it is."""
+        """Shear correction factor [-]: 1, as the shear stiffness is given as a whole."""
         return 1.0
 
     @property
     def height(self) -> float:
-        """Height of the equivalent rectangle [m], for pictures."""
+        """Height [m] of the rectangle with the same E I and E A, for pictures."""
         return float(np.sqrt(12.0 * self.bending / self.axial))
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper y of the equivalent rectangle [m]."""
+        """Heights y [m] of the lower and the upper face of that rectangle."""
         return -0.5 * self.height, 0.5 * self.height
 
     def rigidity(self, material: Material | None) -> Rigidity:
-        """Return what was given."""
+        """Return the given stiffness [N], [N], [N m^2], [N m]."""
         return Rigidity(self.axial, self.shear, self.bending, self.coupling)
 
     def inertia(self, material: Material | None) -> Inertia:
-        """Return what was given."""
+        """Return the given mass per length [kg/m] and rotary inertia [kg m]."""
         return Inertia(self.mass, 0.0, self.rotary_inertia)
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Raise InputError: a stiffness tells nothing of the body."""
+        """Raise InputError: a section given by its stiffness has no body to integrate over."""
         raise InputError(
             "continuum forces integrate over a body, but a section from its stiffness has none: "
             "use Structural or ElasticLine forces, or a Section with a material"
         )
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return none: a stiffness tells nothing of the body."""
+        """Return an empty list: a section given by its stiffness has no body."""
         return []
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Raise InputError: a stiffness tells nothing of the body."""
+        """Raise InputError: a section given by its stiffness has no body to integrate over."""
         return [(part, moments, moments) for part, moments in self.moments(material)]

@@ -93,11 +93,11 @@ class Sweep:
         return np.array([missing if value is None else value for value in column])
 
     def table(self) -> list[dict[str, Any]]:
-        """Return one mapping per point: varied parameters, named values (None if the call failed) and seconds.
+        """Return one mapping per point: varied parameters, named values (None if the call failed) and seconds [s].
 
-        A value with the name of a parameter is listed as `name (result)`, a bare one by the name of the function, or as
-        `value` if that has none. Printed and written tables, to_pandas and to_xarray omit whole solutions, which
-        `values` and `sweep[name]` hold.
+        A value with the name of a parameter is listed as `name (result)`, one without a name by the name of the
+        function, or as `value` if that has none. Printed and written tables, to_pandas and to_xarray leave out
+        solutions, which `values` and `sweep[name]` hold.
         """
         names = dict.fromkeys(name for value in self.values for name in self._named(value))
         varied = list(self.labels[0])
@@ -110,7 +110,7 @@ class Sweep:
         ]
 
     def column(self, name: str) -> str:
-        """Return the name of a column: that of the function for "value", which a bare number is called as well."""
+        """Return the name of a column: `name`, or the name of the function for "value" if results have no names."""
         names = self.table()[0]
         return self.function if name == "value" and name not in names and self.function in names else name
 
@@ -140,7 +140,7 @@ class Sweep:
         return "\n".join([tabulate.as_brief(*self._rows(), _ROWS_PRINTED), f"{self._note}; all by report()", *failed])
 
     def report(self) -> str:
-        """Return the table of up to 40 points, without whole solutions, and every failure, as text."""
+        """Return a table of up to 40 points, without solutions, and every failure, as text."""
         header, rows = self._rows()
         table = tabulate.as_text(header, tabulate.few(rows, _ROWS_REPORTED))
         return "\n".join([table, self._note, *map(str, self.failures)])
@@ -150,17 +150,18 @@ class Sweep:
         return f"<b>Sweep</b>{tabulate.as_html(header, tabulate.few(rows, _ROWS_REPORTED))}{self._note}"
 
     def to_markdown(self) -> str:
-        """Return the table of all points as Markdown, without whole solutions."""
+        """Return the table of all points, without solutions, as Markdown text."""
         return tabulate.as_markdown(*self._rows())
 
     def to_pandas(self) -> Any:
-        """Return the table of all points, without whole solutions, as a DataFrame. Raises MissingPackageError."""
+        """Return the table of all points, without solutions, as a pandas.DataFrame. Raises MissingPackageError."""
         return tabulate.as_pandas(*self._rows())
 
     def to_xarray(self) -> Any:
         """Return the numbers of all points as an xarray.Dataset over the varied parameters; nan for points that failed.
 
-        Arrays of equal shape add dimensions of their own; whole solutions are omitted. Raises MissingPackageError.
+        Arrays of equal shape add dimensions of their own; solutions are left out. Raises MissingPackageError without
+        xarray, InputError for arrays of different shapes.
         """
         with needed_for("to_xarray"):
             import xarray
@@ -180,17 +181,40 @@ class Sweep:
         return xarray.Dataset(data, coordinates)
 
     def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
-        """Draw a result against a parameter, one curve for each combination of the others; return the figure.
+        """Plot a result against a parameter, one curve for each combination of the others, without points that failed.
 
-        value: name of the result, by default the first; over: name of a varied numeric parameter, by default the first;
-        path: file to write. Points that failed are omitted. Raises InputError, MissingPackageError.
+        Parameters
+        ----------
+        value : str, optional
+            Name of the result, by default the first.
+        over : str, optional
+            Name of a varied numeric parameter, by default the first.
+        path : path, optional
+            File to write (PNG, SVG, PDF).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, or if there are no numbers to plot.
+        MissingPackageError
+            Without matplotlib.
+
+        Examples
+        --------
+        >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
+        >>> figure = results.plot("moment", over="length", path="sweep.png")
         """
         from beamfem.sweeps.figure import plot_sweep
 
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with all digits, without whole solutions."""
+        """Write the table of all points with all digits, without solutions, to the file `path`. Raises FileError."""
         tabulate.write_csv(path, *self._rows())
 
 

@@ -83,7 +83,15 @@ def _peak() -> float:
 
 
 def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[object, ...]]:
-    """Measure all, print the table and write it as CSV."""
+    """Measure all sizes, print the table and write it as CSV.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Numbers of elements.
+    folder : Path
+        Folder of the table.
+    """
     rows: list[tuple[object, ...]] = []
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=fresh, max_tasks_per_child=1) as pool:

@@ -61,7 +61,13 @@ def _run(*arguments: str, **environment: str) -> str:
 
 
 def main(folder: Path = OUT) -> list[tuple[str, float]]:
-    """Measure, print the table and write it as CSV."""
+    """Measure compilation and imports, print the table and write it as CSV.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the table.
+    """
     with tempfile.TemporaryDirectory() as cache:
         cold = json.loads(_run(__file__, "child", BEAMFEM_CACHE_DIR=cache))
         warm = json.loads(_run(__file__, "child", BEAMFEM_CACHE_DIR=cache))

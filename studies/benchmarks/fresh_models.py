@@ -42,7 +42,17 @@ def tasks(element: bf.Element, elements: int) -> tuple[Callable[[], float], ...]
 
 
 def main(sizes: tuple[int, ...] = (4, 12), rounds: int = 50, folder: Path = OUT) -> list[tuple[object, ...]]:
-    """Measure all, print the table and write it as CSV."""
+    """Measure all sizes, print the table and write it as CSV.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Numbers of elements.
+    rounds : int
+        Number of times each model is made and solved.
+    folder : Path
+        Folder of the table.
+    """
     rows: list[tuple[object, ...]] = []
     for name, element in ELEMENTS.items():
         for elements in sizes:

@@ -83,7 +83,15 @@ def draw(solution: bf.Solution, path: Path, times: float = 1.0) -> Path:
 
 
 def main(sides: tuple[int, ...] = SIDES, order: int = 1) -> list[Run]:
-    """Solve lattices of several sizes."""
+    """Solve lattices of several sizes, and print time, memory and iterations of each.
+
+    Parameters
+    ----------
+    sides : tuple of int
+        Numbers of squares along each side.
+    order : int
+        Order of the elements.
+    """
     sys.path.insert(0, str(MESHES))
     import make_meshes
 

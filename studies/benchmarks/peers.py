@@ -17,7 +17,13 @@ OUT = Path("out/bench")
 
 
 def main(folder: Path = OUT) -> int:
-    """Run all cases and return the number of rows written; say so where there is nothing to compare with."""
+    """Run all cases and return the number of rows written, 0 without Exudyn.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the tables and figures.
+    """
     try:
         import exudyn  # noqa: F401
     except ImportError:

@@ -103,7 +103,15 @@ def rows_of(
 
 
 def main(sizes: tuple[int, ...] = SIZES, folder: Path = OUT) -> list[tuple[object, ...]]:
-    """Measure all, print the table and write it as CSV."""
+    """Measure all sizes, print the table and write it as CSV.
+
+    Parameters
+    ----------
+    sizes : tuple of int
+        Numbers of elements.
+    folder : Path
+        Folder of the table.
+    """
     top, counts = measure(), count_all()
     print(f"one core: {top.memory:.1f} GB/s from memory, {top.cache:.0f} GB/s in cache (stream triad)")
     print(

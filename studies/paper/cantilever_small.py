@@ -48,7 +48,13 @@ def linear() -> float:
 
 
 def main(meshes: tuple[int, ...] = (3, 6, 12, 24, 48, 96)) -> Deflections:
-    """Return the deflections [m] over the meshes for each element name and kind of forces."""
+    """Return the deflections [m] over the meshes for each element name and kind of forces.
+
+    Parameters
+    ----------
+    meshes : tuple of int
+        Numbers of elements.
+    """
     return {
         (make().name, kind): [deflection(make(forces=forces, integration="full"), count) for count in meshes]
         for make in (bf.ANCF, bf.ANCFCRBF, bf.BilinearCRBF)

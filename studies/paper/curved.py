@@ -177,7 +177,15 @@ def tapered_elements() -> dict[str, tuple[bf.Element, int]]:
 
 
 def main(intervals: int = 24, thinness: tuple[int, ...] = (10, 100, 1000)) -> Curved:
-    """Run all three; intervals: between nodes, of the half ring."""
+    """Run all three: the thin ring, the tapered ring, and rings on splines and polygons.
+
+    Parameters
+    ----------
+    intervals : int
+        Intervals between nodes of the half ring, for any order.
+    thinness : tuple of int, [-]
+        Ratios R / h of the thin ring.
+    """
     return Curved(
         {
             (name, ratio): castigliano(shape(), intervals // degree, ratio) - 1.0

@@ -148,7 +148,17 @@ def _extrapolated(sizes: np.ndarray, values: np.ndarray) -> np.ndarray:
 def main(
     elements: Iterable[bf.Element] | None = None, slenderness: tuple[int, ...] = SLENDERNESS, repeats: int = 3
 ) -> list[Found]:
-    """Return what is measured of each element (of all combinations unless given) at each slenderness."""
+    """Return what is measured of each element at each slenderness.
+
+    Parameters
+    ----------
+    elements : iterable of Element, optional
+        Elements, by default all combinations.
+    slenderness : tuple of int, [-]
+        Slenderness L / h.
+    repeats : int
+        Number of solves of which the fastest is the time.
+    """
     chosen = combinations() if elements is None else elements
     return [compare(element, ratio, repeats) for element in chosen for ratio in slenderness]
 

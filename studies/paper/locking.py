@@ -134,7 +134,19 @@ def main(
     elements: int = 12,
     meshes: tuple[int, ...] = (1, 2, 8, 32),
 ) -> Locking:
-    """Measure all three."""
+    """Measure the effect of Poisson's ratio, locking in shear, and nodes without shear.
+
+    Parameters
+    ----------
+    ratios : tuple of float, [-]
+        Poisson's ratios.
+    slenderness : tuple of int, [-]
+        Slenderness L / h at which locking in shear is measured.
+    elements : int
+        Number of bilinear elements for it; elements of order n are n times fewer.
+    meshes : tuple of int
+        Numbers of elements without shear at their nodes.
+    """
     rigid = {
         (bf.ShearRigid(stretchable).name, integration): bf.ShearRigid(stretchable, integration=integration)
         for stretchable in (True, False)

@@ -72,7 +72,19 @@ def main(
     step: float = 5e-4,
     meshes: tuple[int, ...] = MESHES,
 ) -> dict[tuple[str, int], Run]:
-    """Return a run for each element name and number of elements."""
+    """Return a run for each element name and number of elements.
+
+    Parameters
+    ----------
+    second_moment : float, [m^4]
+        Second moment of area I; 8.533e-9 is that of the thin section.
+    duration : float, [s]
+        Duration of the fall.
+    step : float, [s]
+        Time step.
+    meshes : tuple of int
+        Numbers of elements.
+    """
     return {
         (element.name, count): fall(element, count, second_moment, duration, step)
         for element in ELEMENTS

@@ -146,7 +146,17 @@ def main(
     slenderness: tuple[int, ...] = SLENDERNESS,
     starts: tuple[int, ...] = STARTS,
 ) -> RollUp:
-    """Roll every combination up (all unless given) into one and two circles."""
+    """Roll up elements of every combination, unless some are given, into one and two circles.
+
+    Parameters
+    ----------
+    elements : iterable of (Element, int), optional
+        Elements, each with the number of them, by default all combinations.
+    slenderness : tuple of int, [-]
+        Slenderness L / h, for elements of order 4 and 6.
+    starts : tuple of int
+        Numbers of load steps to begin with, tried one after the other.
+    """
     structural = bf.Structural()
     kinds = {
         "1 Gauss point, structural": bf.CRBF(1),

@@ -59,7 +59,15 @@ def flutter_load(slenderness: float) -> float:
 
 
 def main(slendernesses: tuple[float, ...] = (10.0, 20.0, 1000.0), points: int = 41) -> dict[float, Branch]:
-    """Return frequencies and growth over the load for each L / h."""
+    """Return frequencies and growth over the load for each slenderness.
+
+    Parameters
+    ----------
+    slendernesses : tuple of float, [-]
+        Slenderness L / h of the columns.
+    points : int
+        Number of loads between P L^2 / EI = 0 and 30.
+    """
     result = {}
     for slenderness in slendernesses:
         loads = np.linspace(0.0, 30.0, points)

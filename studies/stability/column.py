@@ -62,7 +62,13 @@ def reissner(ends: str, slenderness: float) -> float:
 
 
 def main(slendernesses: tuple[float, ...] = (10.0, 20.0, 50.0, 200.0)) -> dict[tuple[str, float], float]:
-    """Return P L^2 / EI for each pair of ends and L / h."""
+    """Return the critical P L^2 / EI for each pair of ends and each slenderness.
+
+    Parameters
+    ----------
+    slendernesses : tuple of float, [-]
+        Slenderness L / h of the columns.
+    """
     return {
         (ends, slenderness): float(bf.solve_buckling(column(ends, slenderness)).load_factors[0])
         for ends in CONDITIONS

@@ -46,7 +46,19 @@ def crown(found: bf.Path | bf.PathState) -> np.ndarray:
 
 
 def main(elements: int = 24, order: int = 4, slenderness: float = 5000.0, depth: float = 1.6) -> dict[str, Run]:
-    """Return the paths until the crown is `depth` R down, for each pair of ends."""
+    """Return the paths for each pair of ends.
+
+    Parameters
+    ----------
+    elements : int
+        Number of elements.
+    order : int
+        Order of the elements.
+    slenderness : float, [-]
+        Slenderness L / h of the arches.
+    depth : float, [-]
+        Displacement of the crown, over R, at which the paths end.
+    """
     runs = {}
     for ends in LIMITS:
         model = arch(ends, elements, order, slenderness)

@@ -31,7 +31,19 @@ def elastica(load: float) -> np.ndarray:
 
 
 def main(load: float = 20.0, elements: int = 16, order: int = 4, slenderness: float = 5000.0) -> bf.Path:
-    """Return the path up to P L^2 / EI = load; the load factor is P L^2 / EI."""
+    """Return the equilibrium path; its load factor is P L^2 / EI.
+
+    Parameters
+    ----------
+    load : float, [-]
+        Largest P L^2 / EI.
+    elements : int
+        Number of elements.
+    order : int
+        Order of the elements.
+    slenderness : float, [-]
+        Slenderness L / h.
+    """
     section = bf.Rectangle(1.0 / slenderness, 1.0 / slenderness)
     material = bf.Material(1.0 / section.second_moment, 0.3, 1.0)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), elements, bf.CRBF(order), section, material)

@@ -39,7 +39,15 @@ def moved(found: bf.Path | bf.PathState) -> np.ndarray:
 
 
 def main(orders: tuple[int, ...] = (1, 2, 4), elements: int = 10) -> dict[int, bf.Path]:
-    """Return the path for each order of the element."""
+    """Return the path for each order of the elements.
+
+    Parameters
+    ----------
+    orders : tuple of int
+        Orders of the elements.
+    elements : int
+        Number of elements of each member.
+    """
     return {order: trace(bf.CRBF(order), elements) for order in orders}
 
 

@@ -45,7 +45,15 @@ def thrust(found: bf.Path | bf.PathState | bf.Solution) -> np.ndarray:
 
 
 def main(elements: int = 6, order: int = 4) -> tuple[bf.Path, list[bf.Solution]]:
-    """Return the path under the force up to 90 lb, and the states under displacement control at the w of `CURVE`."""
+    """Return the path under a force up to 90 lb, and the states at prescribed deflections of the crown.
+
+    Parameters
+    ----------
+    elements : int
+        Number of elements of each member.
+    order : int
+        Order of the elements.
+    """
     controlled = [bf.solve_static(toggle(w, elements, order)) for w, _, _ in CURVE]
     return bf.trace_equilibrium(toggle(None, elements, order), until=90.0), controlled
 

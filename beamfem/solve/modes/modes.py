@@ -81,17 +81,17 @@ class Modes:
 
     @property
     def elastic(self) -> np.ndarray:
-        """Frequencies [Hz] without those of the rigid modes."""
+        """Frequencies [Hz] without the rigid modes, (count - rigid modes,)."""
         return self.frequencies[len(self.rigid) :]
 
     @property
     def status(self) -> Status:
-        """UNSTABLE if a mode grows, else COMPLETED; a solve that misses modes raises an error."""
+        """UNSTABLE if a mode grows, otherwise COMPLETED; a solve that misses modes raises an error."""
         return Status.UNSTABLE if np.any(self.growth > 0.0) else Status.COMPLETED
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings on the accuracy of these frequencies due to the elements, in sentences; empty if there are none."""
+        """Warnings on the accuracy of the frequencies due to the mesh, in sentences; empty if there are none."""
         return frequency_warnings(self.state, self.modes[len(self.rigid) :])
 
     def solution(self, mode: int = 0, amplitude: float | None = None, frames: int = 25) -> Solution:
@@ -168,7 +168,31 @@ class Modes:
         return as_pandas(("frequency", "growth", "rigid"), rows)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return frequencies and shapes along a beam, or along all beams, as an xarray.Dataset over the modes."""
+        """Return frequencies and shapes along a beam, or along all beams, over the modes.
+
+        Parameters
+        ----------
+        beam : Beam, optional
+            A beam of the model, by default all beams in succession.
+
+        Returns
+        -------
+        xarray.Dataset
+            Frequency [Hz], growth [1/s] and rigid motion (mode,), and shapes ux, uy (mode, station),
+            scaled as `modes`, the real part of complex ones.
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+        MissingPackageError
+            Without xarray.
+
+        Examples
+        --------
+        >>> bf.solve_modes(model, count=2).to_xarray(beam)["frequency"].values.round(1)
+        array([ 20.8, 129.1])
+        """
         return offered(Modes.to_xarray)(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:

@@ -42,7 +42,18 @@ class GeneralizedAlpha:
             raise InputError(f"rho_inf lies between 0 and 1, got {self.rho_inf}")
 
     def rule(self, step: float) -> np.ndarray:
-        """Return step [s], alpha_m, alpha_f, gamma, beta."""
+        """Return the parameters of the method.
+
+        Parameters
+        ----------
+        step : float, [s]
+            Time step.
+
+        Returns
+        -------
+        array, (5,)
+            Time step [s], alpha_m, alpha_f, gamma and beta [-].
+        """
         alpha_m = (2.0 * self.rho_inf - 1.0) / (self.rho_inf + 1.0)
         alpha_f = self.rho_inf / (self.rho_inf + 1.0)
         gamma = 0.5 + alpha_f - alpha_m

@@ -43,12 +43,15 @@ class EquationsOfMotion:
 
     @property
     def free(self) -> np.ndarray:
-        """Numbers (unknown,) of the unknown coordinates among all."""
+        """Indices (unknown,) of the unknown coordinates among all n coordinates."""
         return self.system.free_dofs
 
     @property
     def scale(self) -> np.ndarray:
-        """What a correction of each unknown coordinate is measured by (unknown,)."""
+        """Reference size (unknown,) of a correction of each unknown coordinate.
+
+        The size of the model for positions [m], 1 for rotations and gradients.
+        """
         return self.system.scale[self.system.free_dofs]
 
     def residual(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
@@ -57,7 +60,7 @@ class EquationsOfMotion:
         Parameters
         ----------
         p, v, a : array, (n,)
-            Coordinates and their rates.
+            Coordinates, their rates [1/s] and second derivatives [1/s^2].
         time : float, [s]
             Time.
 
@@ -76,16 +79,16 @@ class EquationsOfMotion:
         time: float,
         weights: tuple[float, float, float],
     ) -> csr_array:
-        """Return the derivative of the residual if p, v and a change by given weights.
+        """Return the derivative of the residual as p, v and a change in a given ratio.
 
         Parameters
         ----------
         p, v, a : array, (n,)
-            Coordinates and their rates.
+            Coordinates, their rates [1/s] and second derivatives [1/s^2].
         time : float, [s]
             Time.
         weights : (float, float, float)
-            Changes of p, v and a.
+            Factors of the derivatives by p, by v [1/s] and by a [1/s^2], which are added.
 
         Returns
         -------

@@ -155,7 +155,26 @@ class Buckling:
         return as_pandas(("load_factor", "kind", "uncertainty"), rows)
 
     def to_xarray(self, beam: Beam | None = None) -> Any:
-        """Return load factors and shapes along a beam, or along all beams, as an xarray.Dataset over the points."""
+        """Return load factors and shapes along a beam, or along all beams, over the critical points.
+
+        Parameters
+        ----------
+        beam : Beam, optional
+            A beam of the model, by default all beams in succession.
+
+        Returns
+        -------
+        xarray.Dataset
+            Load factor [-], kind and uncertainty [-] (mode,), and shapes ux, uy (mode, station),
+            scaled as `modes`.
+
+        Raises
+        ------
+        InputError
+            For a beam of another model.
+        MissingPackageError
+            Without xarray.
+        """
         return offered(Buckling.to_xarray)(self, beam)
 
     def plot(self, path: str | PathLike[str] | None = None, **options: Unpack[ModeOptions]) -> Any:

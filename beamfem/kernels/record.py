@@ -203,7 +203,7 @@ FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutiv
 PARTS = 44  # 1, or 3: two halves and the part between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
-TURNS_WANTED = 47  # whether the rotations of sections since the last tangent are needed
+TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
 SOLVER_FIELDS = 48
 
 FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)

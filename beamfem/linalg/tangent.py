@@ -101,7 +101,7 @@ class BandFactors:
 
 @dataclass(frozen=True)
 class BandTangent:
-    """A band matrix; rows (n, 2 w + 1), w the half-bandwidth."""
+    """A band matrix, rows of 2 w + 1 entries."""
 
     rows: np.ndarray
 

@@ -22,7 +22,7 @@ def take_step(n, step, p, scale):
     for i in range(whole, n):
         p[i] += step[i]
         last = abs(step[i]) / scale[i]
-        if not last <= size and size == size:  # what is no number is the largest
+        if not last <= size and size == size:  # NaN counts as the largest
             size = last
     return size
 

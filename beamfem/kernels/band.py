@@ -1,8 +1,8 @@
 """LU factorisation of a band matrix in row storage: row i holds A[i, i - w .. i + w]; L and U get unit diagonals.
 
-No pivoting: tangents of a supported beam have strong diagonals. Growth is watched, and whoever calls can then ask
-SciPy's pivoted solver. Where the half width is known to the compiler, loops are unrolled and a solution's last w values
-stay in registers: each value then waits for one multiplication, not for memory.
+No pivoting: tangents of a supported beam have large diagonals. The smallest pivot ratio is returned, so that callers
+can fall back on SciPy's solver with pivoting. If the half width is known to the compiler, loops are unrolled and the
+last w values of a solution stay in registers: each value then waits for one multiplication, not for memory.
 """
 
 from functools import cache
@@ -32,7 +32,7 @@ class Band(NamedTuple):
 
 
 def band(half_width: int) -> Band:
-    """Return the compiled functions for a half width: of its own where it is a usual one."""
+    """Return the compiled functions for a half width, specialised for those in `KNOWN`."""
     return _band(half_width if half_width in KNOWN else 0)
 
 
@@ -139,7 +139,7 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
 def _solves(known: int, case: str) -> tuple[Routine, Routine]:
     @routine("iiirr", case=case, fastmath={"contract"})
     def solve_lower(rows, n, half, lu, x):
-        """Replace the right-hand side x (n,) by that of the upper triangle."""
+        """Solve L y = x by forward substitution; y replaces x (n,)."""
         last = room(known)
         for j in range(known):
             last[j] = 0.0
@@ -152,7 +152,7 @@ def _solves(known: int, case: str) -> tuple[Routine, Routine]:
 
     @routine("iiirr", case=case, fastmath={"contract"})
     def solve_upper(rows, n, half, lu, x):
-        """Replace what `solve_lower` left in x (n,) by the solution; what it holds beyond the rows is known already."""
+        """Replace the result x (n,) of `solve_lower` by the solution; its entries from `rows` on are known already."""
         last = room(known)
         for j in range(known):
             last[j] = 0.0
@@ -171,7 +171,7 @@ def _solves(known: int, case: str) -> tuple[Routine, Routine]:
 
 @routine("iiirr", fastmath={"contract"})
 def _solve_lower(rows, n, half, lu, x):
-    """The same for any half width."""
+    """Do the same as `solve_lower` for any half width."""
     for i in range(rows):
         row, total = at(lu, i * (2 * half + 1)), x[i]
         for k in range(max(0, i - half), i):
@@ -181,7 +181,7 @@ def _solve_lower(rows, n, half, lu, x):
 
 @routine("iiirr", fastmath={"contract"})
 def _solve_upper(rows, n, half, lu, x):
-    """The same for any half width."""
+    """Do the same as `solve_upper` for any half width."""
     for i in range(rows - 1, -1, -1):
         row = at(lu, i * (2 * half + 1))
         total = x[i] * row[half]

@@ -171,7 +171,7 @@ def band_halves(w: int) -> BandHalves:
 
     @routine("iirr", case=case, fastmath={"contract"})
     def solve(n, half, lu, x):
-        """Replace the right-hand side x (n,) by the solution; both ends by turns, of which each waits half as long."""
+        """Replace the right-hand side x (n,) by the solution; both ends in turns, so that their latencies overlap."""
         m, above, below = _end_rows(n, w), room(w), room(w)
         end_of_lu, end_of_x = at(lu, n * width - 1), at(x, n - 1)
         for j in range(w):

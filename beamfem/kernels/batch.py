@@ -1,18 +1,18 @@
-"""Rows of the work space of a batch, one after the other: where each begins is counted from the sizes of a group."""
+"""Layout of the workspace of a batch, in rows: the offset of each part follows from the sizes of the group."""
 
 from beamfem.kernels.compiling import inlined
 from beamfem.kernels.point import POINT_ROWS
 
 BODY_ROWS = 4
-SPARE_ROWS = 40  # for a node's coordinates and what comes of them, and for reductions
+SPARE_ROWS = 40  # scratch for the coordinates and vectors of nodes, and for reductions
 
 
 @inlined
 def rows_of(nodes, vectors, points, gathered, table_rows):
-    """Return the first rows of each part of the work space, and their end.
+    """Return the first row of each of the ten parts of the workspace, and the total number of rows.
 
-    Body, nodal vectors, forces, predicted forces, tables, a point, second derivatives of all points, columns of a node
-    at all points, rows of a pair of nodes, matrix.
+    The parts are body forces, nodal vectors, forces, predicted forces, tables, one quadrature point, second derivatives
+    at all points, columns of a node at all points, rows of a pair of nodes, and the element matrix.
     """
     size, slots = 2 * vectors, nodes * vectors
     body = SPARE_ROWS

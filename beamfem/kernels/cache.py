@@ -1,4 +1,4 @@
-"""Machine code on disk, in a folder that is named by the content of all kernels and by what it was compiled for."""
+"""Cache of machine code on disk, in a folder named by hashes of all kernel sources and of the target machine."""
 
 import hashlib
 import os
@@ -19,7 +19,7 @@ _ENDING = ".code"
 
 
 def _digest() -> str | None:
-    """Return what the sources of all kernels are, in short; None if they are not files, as in an archive."""
+    """Return a hash of the sources of all kernels; None if they are not files, as in an archive."""
     try:
         files = [file for file in sorted(_HERE.rglob("*.py")) if not file.name.startswith(".") and file.is_file()]
         content = b"".join(file.name.encode() + file.read_bytes() for file in files)
@@ -28,16 +28,16 @@ def _digest() -> str | None:
     return hashlib.sha256(content).hexdigest()[:16] if files else None
 
 
-_SOURCES = _digest()  # when they were imported: they may change while a process runs
+_SOURCES = _digest()  # at import, because the files may change while a process runs
 
 
 @cache
 def cache_folder() -> Path | None:
-    """Return the folder of machine code of exactly these kernels for this machine, None if none can be written.
+    """Return the writable folder for machine code of exactly these kernels on this machine, None if there is none.
 
-    Kernels call one another by number and share layouts, so that the code of all of them is in the name: machine code
-    of other sources is never found, whatever their times and whoever else writes. Each kind of processor has a folder
-    of its own in it, since machines may share a home.
+    Kernels call one another by number and share data layouts, so the name of the folder depends on all sources: machine
+    code of other sources is never loaded, whatever the file times are and whichever processes write. It has a subfolder
+    for each kind of processor, since machines may share a home directory.
     """
     for folder in _folders():
         try:
@@ -52,7 +52,7 @@ def cache_folder() -> Path | None:
 
 @cache
 def _folders() -> tuple[Path, ...]:
-    """Return where machine code may be found, in the order in which folders are tried."""
+    """Return the folders that may contain machine code, in the order in which they are tried."""
     if _SOURCES is None:
         return ()
     target = hashlib.sha256(machine.description().encode()).hexdigest()[:8]
@@ -60,20 +60,21 @@ def _folders() -> tuple[Path, ...]:
 
 
 def _parents() -> Iterator[Path]:
-    """Yield where machine code may be kept, the first that can be written is taken."""
-    named = os.environ.get("BEAMFEM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # which names it for others too
+    """Yield the candidate locations of the cache, of which the first writable one is used."""
+    # NUMBA_CACHE_DIR: a user who has set it for other packages wants compiled code there
+    named = os.environ.get("BEAMFEM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")
     if named:
         yield Path(named).absolute()
         return
     yield _HERE / "__pycache__"
-    with suppress(RuntimeError, KeyError):  # of a user without a home
+    with suppress(RuntimeError, KeyError):  # the user has no home directory
         of_the_user = user_cache_path("beamfem", appauthor=False)
         if of_the_user.is_absolute():
             yield of_the_user
 
 
 def _clear_others(folder: Path) -> None:
-    """Remove machine code of earlier sources, beside the sources only: elsewhere other installations have theirs."""
+    """Remove machine code of earlier sources, but only next to the sources; other installations share other folders."""
     if folder.parent.parent != _HERE or folder.exists():
         return
     for other in folder.parent.glob("beamfem-*"):
@@ -81,12 +82,12 @@ def _clear_others(folder: Path) -> None:
 
 
 def kept() -> int:
-    """Return how many kernels are found compiled on disk."""
+    """Return the number of compiled kernels on disk."""
     return len({file.name for folder in _folders() for file in folder.glob(f"*{_ENDING}")})
 
 
 def found(name: str) -> bytes | None:
-    """Return the machine code of a kernel, None if there is none or its file is damaged."""
+    """Return the machine code of a kernel, None if it is not on disk or its file is damaged."""
     for folder in _folders():
         with suppress(OSError):
             content = (folder / (name + _ENDING)).read_bytes()
@@ -97,7 +98,7 @@ def found(name: str) -> bytes | None:
 
 
 def keep(name: str, code: bytes) -> None:
-    """Write the machine code of a kernel, at once or not at all; where that is not possible work goes on."""
+    """Write the machine code of a kernel atomically; ignore failures, since the code only saves time later."""
     folder = cache_folder()
     if folder is None or _digest() != _SOURCES:
         return
@@ -105,6 +106,6 @@ def keep(name: str, code: bytes) -> None:
     try:
         part.write_bytes(hashlib.sha256(code).digest() + code)
         os.replace(part, folder / (name + _ENDING))
-    except OSError:  # of a disk that is full, or a folder that has been removed
+    except OSError:  # the disk is full, or the folder has been removed
         with suppress(OSError):
             part.unlink(missing_ok=True)

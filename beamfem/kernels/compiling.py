@@ -1,7 +1,7 @@
-"""How kernels are compiled: one decorator.
+"""Compilation of kernels by a decorator, `routine`.
 
-A pass over rows of numbers is compiled once, on its own, and called by its address: drivers that call it neither wait
-for it nor compile it again.
+Each kernel is compiled separately, on first use, and called by its address, so kernels that call it need not be
+compiled with it.
 """
 
 import os
@@ -21,24 +21,24 @@ from beamfem.kernels.compiler.callables import Inlined
 from beamfem.kernels.compiler.translation import translate
 from beamfem.kernels.pointers import address_of
 
-# of arrays by kind of argument; a table of whole numbers may stand for its address
+# types of arrays by kind of argument; "i" takes the address of a table of integers
 _TYPES = {"r": dtype(float64), "v": dtype(float64), "n": dtype(int64), "s": dtype(int32), "i": dtype(int64)}
 _PLAIN: dict[str, Any] = {"": None, "i": c_int64, "d": c_double}
-_compiling = RLock()  # two threads may need a kernel at once, and LLVM works for one of them
-if hasattr(os, "register_at_fork"):  # a process that is forked meanwhile would wait for the lock without end
+_compiling = RLock()  # two threads may need a kernel at the same time, but LLVM is not thread-safe
+if hasattr(os, "register_at_fork"):  # a child forked while the lock is held would wait for it forever
     os.register_at_fork(
         before=_compiling.acquire, after_in_parent=_compiling.release, after_in_child=_compiling.release
     )
 
 
 class _Waiting(local):
-    """How long this thread has waited for machine code, and whether it does now."""
+    """Time that this thread has waited for machine code [s], and whether it is waiting now."""
 
     seconds, now = 0.0, False
 
     @contextmanager
     def counted(self) -> Iterator[None]:
-        """Count the time of a block once, also where it asks for further kernels."""
+        """Add the time of a block, only once if the block needs further kernels."""
         if self.now:
             yield
             return
@@ -53,17 +53,18 @@ _waiting = _Waiting()
 
 
 def seconds_waited() -> float:
-    """Return how long this thread has waited for kernels to be compiled or loaded so far [s]."""
+    """Return the time that this thread has waited for kernels to be compiled or loaded so far [s]."""
     return _waiting.seconds
 
 
 class Routine:
-    """A compiled function of plain memory, called by its address; compiled, or loaded, when that is first asked for.
+    """A compiled function of numbers and pointers, compiled or loaded when its address is first needed.
 
-    Machine code is kept on disk where a folder can be written; where none can, or the disk is full, it is compiled for
-    each process. kinds: one letter an argument, see `compiler.kinds.KINDS`; returns: "i" a whole number, "d" a number;
-    seconds: CPU time of compiling or loading it; compiled_here: whether this process had to compile it, and did not
-    find it on disk; made: all there are in this process; fixed: arguments that the compiler knows, whatever is passed.
+    Machine code is cached on disk; if no folder is writable, or the disk is full, each process compiles it again.
+    kinds: one letter per argument, see `compiler.kinds.KINDS`; returns: "i" for an integer, "d" for a double, "" for
+    nothing; seconds: CPU time of compiling or loading it [s]; compiled_here: whether this process compiled it instead
+    of loading it; made: all routines of this process; fixed: values of arguments known at compile time, which replace
+    those passed.
     """
 
     made: ClassVar[list["Routine"]] = []
@@ -87,7 +88,7 @@ class Routine:
         return "_".join([f"{self.__module__}.{self.function.__name__}", *(f"{n}_{v}" for n, v in self._fixed)])
 
     def fixed(self, **values: int) -> "Routine":
-        """Return the routine whose arguments of these names, if it has such, are known to the compiler."""
+        """Return a routine with some arguments fixed at compile time; names that are not arguments are ignored."""
         code = self.function.__code__
         own = tuple((name, values[name]) for name in code.co_varnames[: code.co_argcount] if name in values)
         if not own:
@@ -98,17 +99,17 @@ class Routine:
 
     @property
     def loaded(self) -> bool:
-        """Whether its machine code is in this process already."""
+        """Whether its machine code is loaded in this process."""
         return "address" in vars(self)
 
     @cached_property
     def address(self) -> int:
-        """Where compiled code, C and Python call it."""
+        """Address at which compiled code, C or Python can call it; compiles or loads it on first use."""
         with _waiting.counted(), _compiling:
-            if self.loaded:  # by another thread, while this one waited
+            if self.loaded:  # another thread has loaded it meanwhile
                 return vars(self)["address"]
             begun = process_time()
-            of_this_package = str(self.__module__).startswith(f"{__package__}.")  # what names the folder
+            of_this_package = str(self.__module__).startswith(f"{__package__}.")  # the folder's hash covers these only
             code = cache.found(self.name) if of_this_package else None
             if code is None:
                 code, self.compiled_here = machine.object_code(self.module()), True
@@ -120,7 +121,7 @@ class Routine:
             return place
 
     def module(self) -> Any:
-        """Return the instructions that LLVM makes machine code of."""
+        """Return the routine as an LLVM module, before optimisation."""
         return translate(self.function, self.kinds, self.returns, self.fastmath, dict(self._fixed), machine.SYMBOL)
 
     @cached_property
@@ -128,13 +129,13 @@ class Routine:
         return CFUNCTYPE(_PLAIN[self.returns], *(_PLAIN.get(kind, c_void_p) for kind in self.kinds))(self.address)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call it from Python, with arrays of the right type or addresses for pointers; other threads run meanwhile."""
+        """Call it from Python, without the GIL; pointers are given as arrays of the right type or as addresses."""
         both = zip(self.kinds, arguments, strict=True)
         return self._callable(*[_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both])
 
 
 def _address(kind: str, array: ndarray) -> int:
-    """Return where an array begins; compiled code reads whatever is there, so that its type is looked at here."""
+    """Return the address of an array after a check of its type and layout, which compiled code does not make."""
     if array.dtype != _TYPES.get(kind) or not array.flags.c_contiguous:
         raise TypeError(
             f"compiled code takes contiguous {_TYPES.get(kind, 'numbers')}, got {array.dtype} {array.strides}"
@@ -145,10 +146,10 @@ def _address(kind: str, array: ndarray) -> int:
 def routine(
     kinds: str, returns: str = "", case: str = "", fastmath: Iterable[str] = ()
 ) -> Callable[[Callable[..., Any]], Routine]:
-    """Return a decorator that makes a `Routine` of a function.
+    """Return a decorator that turns a function into a `Routine`.
 
-    case: tells functions of one definition apart, since machine code is found by name; fastmath: liberties with sums
-    and products of numbers, by the names that LLVM has for them.
+    kinds, returns: see `Routine`; case: distinguishes functions made from one definition, since machine code is found
+    by name; fastmath: LLVM's names of the fast-math flags for its arithmetic.
     """
 
     def made(function: Callable[..., Any]) -> Routine:
@@ -161,7 +162,7 @@ def routine(
 
 
 def inlined(function: Callable[..., Any] | Routine) -> Inlined:
-    """Return a function as what other compiled code does in place, where it is a small part of it."""
+    """Return a function that compiled code inlines where it is called; also usable as a decorator."""
     if isinstance(function, Routine):
         return Inlined(function.function, function.fastmath)
     return Inlined(function)

@@ -1,4 +1,4 @@
-"""Element matrices of a batch: from second derivatives at points to their places in the matrix of the model."""
+"""Element matrices of a batch, from second derivatives at quadrature points to assembly into the model's matrix."""
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
@@ -14,7 +14,11 @@ _reduce, _add_to_band, _add_to_sparse = caller("iiiiiirrr"), caller("iiiiinirr")
 
 @routine("iiir")
 def form_matrices(group, system, count, x):
-    """Fill the reduced matrices B^T (ck K B + M C) of a batch of elements; x: its work space."""
+    """Fill the reduced matrices B^T (ck K B + M C) of a batch of elements.
+
+    C = ca B + ck de''/dp + cv de''/dp'; ck, cv, ca: weights of the derivatives with respect to p, p' and p''; x:
+    workspace.
+    """
     b, s = wholes(group), wholes(system)
     call, factors = wholes(b[r.ROUTINES]), reals(s[r.FACTORS])
     nodes, vectors, turned, turning, gathered = (
@@ -36,7 +40,7 @@ def form_matrices(group, system, count, x):
         at(x, k * ROW),
     )
     ck, linear = factors[0], size - turned
-    if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # weighed at the points
+    if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # `linear_law.add_viscous` has applied ck and cv at the points
         ck = 1.0 if ck != 0.0 or factors[1] != 0.0 else 0.0
     transform, director = at(e, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
     if ck != 0.0:
@@ -120,7 +124,7 @@ def form_matrices(group, system, count, x):
 
 @routine("iiiir")
 def add_matrices(group, system, first, count, k):
-    """Add the reduced matrices k of a batch of elements to that of the model."""
+    """Add the reduced matrices k of a batch of elements to the matrix of the model."""
     b, s = wholes(group), wholes(system)
     call, nodes, coordinates, half = (
         wholes(b[r.ROUTINES]),
@@ -150,7 +154,7 @@ def add_matrices(group, system, first, count, k):
 
 @routine("iiiir")
 def reduce_and_add(group, system, first, count, x):
-    """Reduce the matrices of a batch of loads (columns, rows, ROW) in its work space x, and add them to the model's."""
+    """Reduce the matrices (columns, rows, ROW) of a batch of loads in its workspace x, and add them to the model's."""
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])
     nodes, vectors, turned, turning, gathered = (

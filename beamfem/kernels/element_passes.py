@@ -1,4 +1,4 @@
-"""All elements of a group, in batches: elastic, inertia and body forces, and their tangents."""
+"""Loop over the elements of a group in batches: elastic, inertia and body forces, and their tangents."""
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
@@ -20,7 +20,10 @@ _rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 
 @routine("ii")
 def add_elements(group, system):
-    """Add the forces of all elements of a group to those of their nodes, their tangents to the matrix."""
+    """Add the forces of all elements of a group to the nodal forces in its chunks, and tangents to the matrix.
+
+    With `PREDICTED`, also add the forces for the resultants in `STRESS`, on which the geometric tangent is based.
+    """
     small_code()
     b, s = wholes(group), wholes(system)
     call, x = wholes(b[r.ROUTINES]), reals(b[r.SPACE])

@@ -1,6 +1,6 @@
-"""The beam axis at a quadrature point: q = (r0', d, third), third being d', or r0'' for the elastic line; in batches.
+"""The fields at a quadrature point of a batch: q = (r0', d, third), where third is d', or r0'' for the elastic line.
 
-Tables have a row of lanes each: elements of a batch may all be different.
+Each table entry is a row of lanes, since the elements of a batch may all be different.
 """
 
 from beamfem.kernels.compiling import routine
@@ -13,9 +13,10 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiivvrvv", fastmath=FAST)
 def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e, q):
-    """Fill q (6, ROW) from nodal vectors e (2 vectors, ROW), those of the next node `stride` numbers on.
+    """Fill q (6, ROW) from the nodal vectors e (2 vectors, ROW) of each node, `stride` numbers apart.
 
-    slope, second (nodes * vectors, ROW): derivatives of shape functions; director (nodes,): those of d.
+    slope, second (nodes * vectors, ROW): derivatives of shape functions; director (nodes,): shape functions of d;
+    bends: whether the third vector is r0''.
     """
     small_code()
     last = vectors - 1
@@ -44,7 +45,7 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
 
 @routine("iiiivvrvv", fastmath=FAST)
 def spread(nodes, vectors, bends, count, slope, second, director, q, f):
-    """Add what forces on q (6, ROW) give to those of the nodes f (nodes, 2 vectors, ROW)."""
+    """Add the nodal forces that are equivalent to forces on q (6, ROW) to f (nodes, 2 vectors, ROW)."""
     small_code()
     last = vectors - 1
     for i in range(0, count, WIDTH):

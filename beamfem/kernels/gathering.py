@@ -1,4 +1,4 @@
-"""Between nodes and batches: what elements need of their nodes and tables, and what they give back."""
+"""Gather of nodal data and tables into the workspace of a batch, and scatter of its forces to the nodes."""
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
@@ -10,9 +10,10 @@ from beamfem.kernels.record import ROW
 
 @inlined
 def _run(own, count):
-    """Return how many nodes of a batch stand beside the first one in a chunk, 0 if the others are not in a row.
+    """Return how many nodes of a batch, from the first one on, have consecutive lanes of a chunk.
 
-    The others begin the next chunk, if they are in a row as well.
+    The remaining ones must have consecutive lanes too, in the next chunk; otherwise 0 is returned. own (count,):
+    offsets of the nodes in the chunks.
     """
     if own[count - 1] - own[0] == count - 1:
         return count
@@ -26,9 +27,10 @@ def _run(own, count):
 
 @inlined
 def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
-    """Copy the first rows of the nodes of a batch to e (nodes, rows, ROW); place (nodes, stride): see `record`.
+    """Copy the first `rows` rows of the nodes of a batch to e (nodes, rows, ROW).
 
-    ordered: nodes whose places grow from element to element, as along a chain.
+    place (nodes, stride): offsets of nodes in the chunks, see `record.PLACE`; ordered: whether they increase from
+    element to element, as along a chain.
     """
     for n in range(nodes):
         own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
@@ -52,16 +54,16 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
 
 @inlined
 def _fill_tables(b, first, count, part):
-    """Copy rows of the tables of each element's class to those of a batch that begin at `part`, if they are not there.
+    """Copy the table of each element's class to the rows of a batch from `part` on, unless they contain it already.
 
-    Elements of one class share a table, so that the next batch of this class, or the next evaluation, finds it filled.
+    Elements of one class share a table, so the next batch of this class, or the next evaluation, need not copy it.
     """
     rows, own, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
     uniform = True
     for i in range(1, count):
         if own[i] != own[0]:
             uniform = False
-    # a class, or elements: groups with one work space have their classes in common
+    # identifies a class, or a range of elements; groups that share a workspace share the array of classes as well
     filled, known = own[0] if uniform else -1 - b[r.CLASS] - 8 * first, wholes(b[r.FILLED])
     if known[0] == filled and known[1] >= count:
         return
@@ -81,8 +83,8 @@ def _fill_tables(b, first, count, part):
 
 @inlined
 def _fill_body(count, beams, body, rows):
-    """Copy acceleration of gravity and load per length (beams, 4) of each element's beam to rows (4, ROW)."""
-    if beams[count - 1] == beams[0]:  # elements of a beam follow one another
+    """Copy acceleration of gravity and load per length (beams, 4) of the beam of each element to rows (4, ROW)."""
+    if beams[count - 1] == beams[0]:  # elements of a beam have consecutive numbers
         lanes, own = as_rows(rows), at(body, 4 * beams[0])
         for part in range(4):
             for i in range(part * ROW, part * ROW + count, WIDTH):
@@ -96,10 +98,10 @@ def _fill_body(count, beams, body, rows):
 
 @routine("iiiiii", "i")
 def collect(group, system, first, count, rows, copied):
-    """Fill the work space of a batch: tables, what acts on its beams, and the first rows of its nodes.
+    """Fill the workspace of a batch: tables, body forces and the first `rows` rows of its nodes.
 
-    system: 0 if it does not matter what acts. Where nodes need not be copied and stand in a chunk as their elements
-    follow one another, they are left there, and how far apart those of an element are is returned; else 0.
+    system: 0 if body forces are not needed. Unless copies are needed (`copied`), nodes with consecutive lanes of one
+    chunk are read there: then the offset from one node of an element to the next is returned, otherwise 0.
     """
     small_code()
     b = wholes(group)
@@ -124,7 +126,7 @@ def collect(group, system, first, count, rows, copied):
 
 @routine("iiiiiniirr")
 def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
-    """Add forces f (nodes, size, ROW) of a batch to those of its nodes, which begin at a row."""
+    """Add the forces f (nodes, size, ROW) of a batch to the rows of its nodes in the chunks, from `row` on."""
     small_code()
     for n in range(nodes):
         own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)

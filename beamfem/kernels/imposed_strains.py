@@ -1,4 +1,4 @@
-"""Strains that loads impose: what is left of the strains of a point is what its resultants belong to."""
+"""Strains imposed by loads, which are subtracted from the strains of a point before its resultants are computed."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.point import STRAIN
@@ -8,7 +8,10 @@ from beamfem.kernels.record import ROW
 
 @routine("iiiiirr")
 def release(first, count, points, number, measures, natural, x):
-    """Take imposed strains (elements, points, measures) of a batch off those of a point; x: rows of it, see `point`."""
+    """Subtract imposed strains (elements, points, measures) from those of a point of a batch.
+
+    number: of the point; x: rows of the point, see `point`.
+    """
     for i in range(count):
         own = at(natural, ((first + i) * points + number) * measures)
         for row in range(measures):

@@ -1,4 +1,4 @@
-"""Inertia and body forces of a batch, and what inertia adds to its matrices; a row of lanes for each table entry."""
+"""Inertia and body forces of a batch, and the contribution of inertia to its matrices; each table entry is a row."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, zeros
@@ -10,9 +10,11 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiiiivvvvvv", fastmath=FAST)
 def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, gravity, length, body, e, f):
-    """Fill f (nodes, 2 vectors, ROW) with M e'' less body forces; e'' follows e, those of the next node `stride` on.
+    """Fill f (nodes, 2 vectors, ROW) with M e'' minus body forces.
 
-    apart: the mass of d has no entries with that of r0, as in every section that is as heavy above as below the axis.
+    e: e and then e'' of each node, `stride` numbers apart; apart: whether the mass does not couple d with r0, as for
+    any section whose centre of mass is on the axis; loaded, moving: whether there are body forces and accelerations;
+    body (4, ROW): acceleration of gravity and load per length.
     """
     small_code()
     slots, last = nodes * vectors, vectors - 1
@@ -38,7 +40,7 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, grav
 
 @routine("iidvv", fastmath=FAST)
 def add_scaled(rows, count, factor, source, to):
-    """Add rows times a factor to others."""
+    """Add the rows of `source` times a factor to those of `to`."""
     small_code()
     for row in range(rows):
         own, its = at(source, row * ROW), at(to, row * ROW)
@@ -48,9 +50,10 @@ def add_scaled(rows, count, factor, source, to):
 
 @routine("iiiiiidvvvv", fastmath=FAST)
 def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
-    """Add B^T M C to reduced matrices k; b, c (nodes, stride, ROW): of the vectors that turn, C = ca B + what turns.
+    """Add B^T M C to the reduced matrices k, with C = ca B + ck de''/dp + cv de''/dp'.
 
-    Vectors that are coordinates themselves have B = 1, C = ca.
+    b, c (nodes, stride, ROW): B and C of the vectors that depend on rotations; other vectors are coordinates
+    themselves, with B = 1 and C = ca.
     """
     linear = vectors - turned // 2
     coordinates = 2 * linear + turning

@@ -1,9 +1,9 @@
-"""Rows of numbers that compiled code takes several at a time: lanes, and pointers to rows of them.
+"""Explicit SIMD in compiled code: values of several lanes, and pointers to rows of them.
 
-A loop over single numbers leaves it to the compiler to make vectors of it, which asks at run time whether rows overlap
-and takes the last few numbers one by one: more work than a short row itself. `x[i]` of a pointer of kind "v" are the
-numbers i to i + WIDTH - 1 at once, so that a pass steps with range(0, count, WIDTH) and works on lanes beyond its count
-as well. Rows have room for them; what is in them is of no meaning and may be no number.
+If a loop over single numbers is left to the compiler's vectoriser, the code tests at run time whether rows overlap and
+processes the last few numbers one by one, which takes longer than a short row itself. For a pointer of kind "v", `x[i]`
+is the vector of the numbers i to i + WIDTH - 1, so a pass steps with range(0, count, WIDTH) and also processes lanes
+beyond its count. Rows are padded for them; the values in them have no meaning and may be NaN.
 """
 
 from llvmlite import ir
@@ -19,20 +19,20 @@ _BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 
 @operation
 def as_rows(build: Build, pointer: Value) -> Value:
-    """Return the pointer to rows at a pointer to numbers."""
+    """Return a pointer to numbers as a pointer to lanes."""
     return Value(ROWS, build.converted(pointer, ROWS))
 
 
 @operation
 def zeros(build: Build) -> Value:
-    """Return lanes that are all zero."""
+    """Return lanes of zeros."""
     return Value(LANES, ir.Constant(LANES.llvm, None))
 
 
 @operation
 def larger(build: Build, a: Value, b: Value) -> Value:
-    """Return the size of the larger of two, lane by lane; what is no number is larger than all."""
-    # sizes are ordered as their bits are, and the bits of what is no number come after those of infinity
+    """Return the larger of two absolute values, lane by lane; NaN counts as larger than any number."""
+    # non-negative doubles have the order of their bits taken as integers, and NaN comes after infinity
     sizes = [build.call(f"llvm.fabs.v{WIDTH}f64", Value(LANES, build.converted(each, LANES))).llvm for each in (a, b)]
     bits = [build.builder.bitcast(size, _BITS) for size in sizes]
     return Value(LANES, build.builder.select(build.builder.icmp_signed(">", *bits), *sizes))
@@ -40,7 +40,7 @@ def larger(build: Build, a: Value, b: Value) -> Value:
 
 @operation
 def largest(build: Build, value: Value) -> Value:
-    """Return the largest of lanes that are not negative, or what is no number."""
+    """Return the largest of non-negative lanes, or NaN if one of them is NaN."""
     name = f"llvm.vector.reduce.smax.v{WIDTH}i64"
     functions, kind = build.builder.module.globals, ir.FunctionType(WHOLE.llvm, [_BITS])
     reduce = functions.get(name) or ir.Function(build.builder.module, kind, name)
@@ -50,7 +50,7 @@ def largest(build: Build, value: Value) -> Value:
 
 @operation
 def merged(build: Build, value: Value, other: Value, count: Value) -> Value:
-    """Return the first `count` lanes of a value, and those of the other one beyond."""
+    """Return the first `count` lanes of `value` followed by the remaining lanes of `other`."""
     places = ir.Constant(ir.VectorType(ir.IntType(64), WIDTH), list(range(WIDTH)))
     inside = build.builder.icmp_signed("<", places, build.same(count.llvm))
     return Value(LANES, build.builder.select(inside, build.converted(value, LANES), build.converted(other, LANES)))
@@ -58,7 +58,7 @@ def merged(build: Build, value: Value, other: Value, count: Value) -> Value:
 
 @operation
 def gathered(build: Build, values: Value, places: Value) -> Value:
-    """Return the numbers at the first `WIDTH` places."""
+    """Return the entries of `values` at the first `WIDTH` indices in `places`."""
     builder, lanes = build.builder, ir.Constant(LANES.llvm, ir.Undefined)
     for lane in range(WIDTH):
         place = builder.load(builder.gep(places.llvm, [ir.IntType(64)(lane)], inbounds=True))

@@ -1,7 +1,8 @@
-"""The linear section law s = C (eps - eps0) over rows of points; resultants and stiffness are times the point's weight.
+"""The linear section law s = C (eps - eps0); resultants and stiffness are multiplied by the weight of the point.
 
-C comes as the rows of its upper triangle. Laws are passes over rows of a point of elements from
-`first` on: strains in, resultants and their derivatives out; those with history find it in the state of the system.
+A law is a pass over one quadrature point, `number`, of the `count` elements from `first` on: it computes resultants and
+their derivatives from strains. A law with history reads it from the state of the system. c: upper triangle of C, row by
+row; reference: eps0.
 """
 
 from beamfem.kernels.compiling import routine
@@ -15,7 +16,7 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiiivvvv", fastmath=FAST)
 def four_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
-    """Fill resultants of four measures and, where tangent, their stiffness; x: rows of a point, see `point`."""
+    """Fill the resultants of four measures and, if `tangent`, their stiffness; x: rows of a point, see `point`."""
     small_code()
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
     for i in range(0, count, WIDTH):
@@ -37,7 +38,7 @@ def four_resultants(group, system, first, number, count, tangent, weight, c, ref
 
 @routine("iiiiiivvvv", fastmath=FAST)
 def six_resultants(group, system, first, number, count, tangent, weight, c, reference, x):
-    """The same of six measures."""
+    """Do the same as `four_resultants` for six measures."""
     eps, s = at(x, STRAIN * ROW), at(x, RESULTANT * ROW)
     for i in range(0, count, WIDTH):
         w = weight[i]
@@ -64,9 +65,9 @@ def six_resultants(group, system, first, number, count, tangent, weight, c, refe
 
 @routine("iiddvvvv", fastmath=FAST)
 def add_viscous(count, measures, ck, cv, weight, c, time, x):
-    """Add resultants time C eps' of the rates of strains; weigh the stiffness by ck, and add theirs weighed by cv.
+    """Add the viscous resultants t C eps' (Kelvin-Voigt), and replace the stiffness K by ck K + cv t C.
 
-    time: row of retardation times [s]; Kelvin and Voigt. How eps' changes with p at constant p' is left out.
+    time: row of retardation times t [s]; the change of eps' with p at constant p' is neglected.
     """
     rate, s, stiffness, pair = at(x, RATE * ROW), at(x, RESULTANT * ROW), at(x, STIFFNESS * ROW), 0
     for row in range(measures):

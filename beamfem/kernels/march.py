@@ -61,10 +61,10 @@ def march(system, solver, calls):
     how many differences it has, what the last change of p'' changed in p, and the size of corrections that are noise.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
-    keep the tangent, over steps as well, turned with the sections, and stop where the estimated error is small (Hairer
-    and Wanner 1996, IV.8). Where that fails, each iterate has its own tangent, with independent stresses (see
-    `model_passes.predict_resultants`), from the acceleration of before or from the positions of before: first from what
-    was nearer in the last step.
+    keep the tangent, over steps as well, rotated with the sections, and end when the estimated error is small (Hairer
+    and Wanner 1996, IV.8). If that fails, the step is repeated with a new tangent for each iterate and independent
+    stresses (see `model_passes.predict_resultants`). It then starts from the previous acceleration or the previous
+    positions, first from those that were nearer in the last step.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)

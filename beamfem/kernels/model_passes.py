@@ -1,4 +1,4 @@
-"""Residual and tangent of a whole model, and what a step does to the resultants of its points."""
+"""Residual and tangent of a whole model, and prediction of the resultants after a step."""
 
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
@@ -14,7 +14,7 @@ _node_rates, _release = caller("iiiiiinrrr"), caller("iiiiirr")
 
 @inlined
 def clear(s, first, end, first_entry, end_entry):
-    """Set the residual of coordinates to zero and, where a matrix is wanted, entries of it."""
+    """Set a range of the residual and, if the tangent is needed, a range of the entries of the matrix to zero."""
     residual, matrix = reals(s[r.RESIDUAL]), reals(s[r.MATRIX])
     for i in range(first, end):
         residual[i] = 0.0
@@ -25,7 +25,7 @@ def clear(s, first, end, first_entry, end_entry):
 
 @inlined
 def add_group(s, system, number):
-    """Add the forces of a group to the residual, its tangent to the matrix."""
+    """Add the forces of a group to the residual and, if needed, its tangent to the matrix."""
     group, values = wholes(s[r.GROUP_RECORDS])[number], wholes(s[r.VALUES])
     b = wholes(group)
     call = wholes(b[r.ROUTINES])
@@ -38,7 +38,7 @@ def add_group(s, system, number):
 
 @inlined
 def add_springs(s):
-    """Add the forces of springs to the ground, and their stiffness."""
+    """Add the forces of springs to the ground to the residual and, if needed, their stiffness to the matrix."""
     p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[0]
     residual, matrix, stiffness, rest, place = (
         reals(s[r.RESIDUAL]),
@@ -55,7 +55,7 @@ def add_springs(s):
 
 @routine("i")
 def balance(system):
-    """Fill the residual (n,) and, where wanted, the matrix of a model."""
+    """Fill the residual (n,) and, if the tangent is needed, the matrix of a model."""
     small_code()
     s = wholes(system)
     clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
@@ -66,7 +66,10 @@ def balance(system):
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})
 def add_node_rates(first, count, linear, turned, turning, stride, dof, step, transform, rates):
-    """Fill rates (linear + turned, ROW) of nodal vectors: those of the coordinates, and B times those that turn."""
+    """Fill rates (linear + turned, ROW) of nodal vectors: coordinate rates, then b times those of the last coordinates.
+
+    step (n,): rates p'; transform (turned, turning, ROW): b, see `reduction`; dof (coordinates, stride).
+    """
     for row in range(linear):
         own, to = at(dof, row * stride + first), at(rates, row * ROW)
         for i in range(count):
@@ -84,7 +87,7 @@ def add_node_rates(first, count, linear, turned, turning, stride, dof, step, tra
 
 @routine("iii")
 def rate_nodes(group, system, row):
-    """Fill e' = B p' of all nodes of a group into rows of theirs from `row` on."""
+    """Fill e' = B p' of all nodes of a group into the rows of its chunks from `row` on; p': `COORDINATES_V`."""
     b, s = wholes(group), wholes(system)
     call, chunks, first = wholes(b[r.ROUTINES]), reals(b[r.CHUNKS]), 0
     while first < b[r.NODES]:
@@ -107,10 +110,11 @@ def rate_nodes(group, system, row):
 
 @routine("ii")
 def predict_resultants(group, system):
-    """Fill `STRESS` with C (eps + (d eps / de) B dp) less what is imposed; B and eps at p, dp in the place of p'.
+    """Fill `STRESS` with the resultants at the strains eps + (d eps / de) B dp, minus imposed strains, after a step dp.
 
-    The independent stresses of Magisano, Leonetti and Garcea 2017 for the geometric part of the tangent. Where rates
-    count, p' stands in the place of p'', and t C (d eps / de) B (p' + cv dp) of the retardation time t is added.
+    eps and B are those at p, and `COORDINATES_V` holds dp instead of p'. They are the independent stresses of Magisano,
+    Leonetti and Garcea 2017 for the geometric part of the tangent. If strain rates matter, `COORDINATES_A` holds p'
+    instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t.
     """
     b = wholes(group)
     call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
@@ -191,7 +195,10 @@ def predict_resultants(group, system):
 
 @routine("i", "d")
 def smallest_jacobian(group):
-    """Return the smallest r0' x d of all quadrature points, at the nodal vectors in the chunks; negative inside out."""
+    """Return the smallest r0' x d of all quadrature points, at most 1; it is negative where an element is inverted.
+
+    The nodal vectors are taken from the chunks.
+    """
     b = wholes(group)
     call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
     nodes, vectors, bends, elements = (

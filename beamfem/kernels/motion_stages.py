@@ -44,10 +44,10 @@ def predict(part, system, solver, calls):
 
 @routine("iiii", "d")
 def assemble(part, system, solver, calls):
-    """Fill the residual and, where wanted, the matrix; springs to the ground come with the last part.
+    """Fill the residual and, if needed, the matrix; springs to the ground are added with the last part.
 
-    Where it is asked how far sections have turned since the last tangent, that is filled as well; a new one keeps their
-    directions.
+    With `TURNS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
+    directions first.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
@@ -115,7 +115,7 @@ def _fill(s, b, first, end):
 
 @routine("iiii", "d")
 def solve(part, system, solver, calls):
-    """Fill the right-hand side with the solution of the kept tangent, turned with the sections, for the residual."""
+    """Solve for the correction with the kept tangent, rotated with the sections; it replaces the right-hand side."""
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     own, unknown, rollers, right = bounds_of(b, part), b[r.UNKNOWN], b[r.ROLLERS], reals(b[r.RIGHT])
@@ -133,7 +133,7 @@ def solve(part, system, solver, calls):
 
 @routine("iiii", "d")
 def fill_right(part, system, solver, calls):
-    """Fill the right-hand side, turned back with the sections; x and y of vectors follow one another along a chain."""
+    """Fill the right-hand side, rotated back with the sections; x and y of a vector are neighbours along a chain."""
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     own, pairs, turns, right = bounds_of(b, part), wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), reals(b[r.RIGHT])
     filled = own[r.FIRST_UNKNOWN]
@@ -181,7 +181,7 @@ def solve_in_two(part, system, solver, calls):
     if wholes(call[r.JOB])[r.JOB_SERVED] != 0:
         _in_two(call[r.IN_TWO], call[r.SOLVE_DOWN], system, solver, calls)
         _in_two(call[r.IN_TWO], call[r.SOLVE_UP], system, solver, calls)
-    else:  # both ends by turns wait half as long
+    else:  # one thread advances both ends in turns, so that their latencies overlap
         _solve(call[r.SOLVE_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
     _in_two(call[r.IN_TWO], call[r.TURN_BACK], system, solver, calls)
     return 0.0

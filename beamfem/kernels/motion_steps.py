@@ -1,4 +1,4 @@
-"""What a time step of the generalized-alpha method does to a state, apart from solving for corrections."""
+"""Operations of a generalized-alpha time step on the state: prediction, correction, convergence, end of the step."""
 
 import math
 
@@ -8,40 +8,42 @@ from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
 FAST = {"contract", "reassoc", "nsz"}
-# of the tolerance, of the estimated error where the tangent is not that of the last iterate
+# of the tolerance: largest estimated error if the tangent is not that of the last iterate
 _REMAINDER = 1e-5
-# Of what a change of acceleration changes in a step, which is as large as what it neglects. An error that is left
-# behind in every step adds up, and weighs 1 / h in p'; so it must fall with the step as well.
+# Largest estimated error as a fraction of the change of p in a step that the change of the acceleration causes, which
+# is of the size of the time integration error. Errors left in every step add up, and those of p' are larger by 1 / h,
+# so they must decrease with the step as well.
 _NEGLECTED = 1e-8
-FAR = 0.01  # of the model: after such a correction it is asked whether elements are inside out
-MOST = 3  # differences of the acceleration that extrapolate it: more than these pass on noise from step to step
-_LARGEST = 1e3  # of the model: what such a correction leads to belongs to another motion
-_GROWTH = 2.0  # of corrections with a tangent each, from the second on: more leads to another motion too
+FAR = 0.01  # of the model: after a larger correction, elements are checked for inversion
+MOST = 3  # differences of the acceleration used to extrapolate it; higher ones would amplify noise from step to step
+_LARGEST = 1e3  # of the model: a larger correction means divergence
+_GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
 @inlined
 def padded(n):
-    """Return the length of a row of n numbers that lanes fill."""
+    """Return the length of a row of n numbers, padded to a multiple of the lanes."""
     return (n + WIDTH - 1) // WIDTH * WIDTH
 
 
 def difference_rows(n: int, parts: int = 1) -> int:
-    """Return how many numbers the backward differences of n accelerations take.
+    """Return the size of the array for the backward differences of n accelerations.
 
-    Rows (MOST, padded(n)) of them, and their sizes (parts, MOST + 1, WIDTH), one for the change that they expect.
+    It contains the differences (MOST, padded(n)) and, for the choice of the order, sums (parts, MOST + 1, WIDTH) of the
+    squared errors of the extrapolations of order 0 to MOST.
     """
     return MOST * -(-n // WIDTH) * WIDTH + parts * (MOST + 1) * WIDTH
 
 
 @inlined
 def _larger_of(a, b):
-    """Return the larger of two sizes; what is no number is larger than all."""
+    """Return the larger of two non-negative numbers; NaN counts as larger than any number."""
     return b if not b <= a and a == a else a
 
 
 @inlined
 def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Do what `predict` does for coordinates from the first to the end."""
+    """Do what `predict` does for the coordinates from `first` to `end`."""
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
@@ -79,11 +81,12 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
 
 @routine("iidrrrnrr")
 def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Store the state (4, n) in `before` and start a step from it, prescribed coordinates at `values` (3, prescribed).
+    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their `values`.
 
-    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it, 1 is a line, and so on;
-    order -1 keeps p instead, which strains nothing where stiff parts ring within a step. differences: see
-    `difference_rows`, of which so many are known as the order. rule: step, alpha_m, alpha_f, gamma, beta.
+    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
+    linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
+    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known; rule:
+    step, alpha_m, alpha_f, gamma, beta.
     """
     predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
 
@@ -103,7 +106,7 @@ def correct_part(
     coefficients,
     change,
 ):
-    """Do what `correct` does for coordinates from the first to the end, and the unknown that are among them."""
+    """Do what `correct` does for the coordinates from `first` to `end` and the unknowns among them."""
     to_velocity, to_acceleration, size, rest = coefficients[1], coefficients[2], zeros(), 0.0
     begin, source, offset = first, change, 0
     if first_free >= 0:
@@ -131,22 +134,24 @@ def correct_part(
 
 @routine("iiirrnrrr", "d", fastmath=FAST)
 def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficients, change):
-    """Add corrections (unknown,) of p, and what they are of p' and p''; return the largest, relative to its scale.
+    """Add corrections (unknown,) to p, and their multiples to p' and p''; return the largest, relative to its scale.
 
-    first_free: of the unknown coordinates `free`, where they follow one another, else -1;
-    change (padded(n),): takes the corrections there, zero elsewhere.
+    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1, and then `free`
+    (unknown,) has their numbers and the corrections are copied to change (padded(n),), which is zero elsewhere;
+    coefficients (3,): those of p, p' and p''.
     """
     return correct_part(0, n, 0, unknown, n, first_free, state, right, free, inverse_scale, coefficients, change)
 
 
 @routine("iiiiddddrr", "i")
 def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
-    """Return 1 if a step is done after a correction, -1 if it is lost, 2 if a new tangent has to tell.
+    """Return whether a step has converged after a correction: 1 yes, 0 not yet, -1 diverged, 2 needs a new tangent.
 
-    own: this correction has a tangent of its own, full: each has; far: the first one was larger than `FAR`, so that the
-    tangent it was made with tells nothing of where it led; size, last: this correction and the one before;
-    changed: what a change of acceleration changes in the step. Updated: rate (1,) at which corrections shrink, noise
-    (1,): corrections of this size are round-off, as a new tangent has shown. Hairer and Wanner 1996, IV.8.
+    full: whether every correction has a new tangent (Newton's method); own: whether this one has; far: whether the
+    first correction was larger than `FAR`, so that its tangent says little about the state reached; size, last: sizes
+    of this correction and the previous one; changed: change of p in the step that the change of the acceleration
+    causes. Updated: rate (1,), the ratio of successive corrections; noise (1,), the size up to which corrections have
+    been found, with a new tangent, to be round-off. Hairer and Wanner 1996, IV.8.
     """
     if not size < _LARGEST:
         return -1
@@ -157,7 +162,7 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
                     noise[0] = 2.0 * last
                 return 1
             if size > 0.5 * last:
-                # they no longer shrink: round-off, or what is left is out of reach of a tangent that was kept
+                # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
                 return 1 if size <= noise[0] else 2
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
@@ -172,9 +177,9 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
 
 @inlined
 def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, known):
-    """Do what `complete` does for coordinates from the first to the end, but for the order; return the same.
+    """Do what `complete` does, except for the choice of the order, for the coordinates from `first` to `end`.
 
-    Sizes of differences are left for `best_order`.
+    known (2,): `extrapolation` of `complete`. The sums of squared errors are stored for `best_order`.
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
@@ -215,7 +220,7 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
 
 @inlined
 def best_order(parts, n, state, before, differences, inverse_scale, rule, extrapolation):
-    """Set the order that would have been best and how many differences are known, of the sizes of all parts."""
+    """Set the order of extrapolation that would have been best for this step, and the number of known differences."""
     top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
     order, least, errors = 0, math.inf, MOST * padded(n)
     for k in range(top + 1):
@@ -225,7 +230,8 @@ def best_order(parts, n, state, before, differences, inverse_scale, rule, extrap
                 error += differences[errors + (part * (MOST + 1) + k) * WIDTH + i]
         if error < least:
             order, least = k, error
-    if order == 0:  # unless positions have changed by half or less of what the acceleration would have moved them
+    # order -1 is better if p changed by less than half of the change that corresponds to that of the acceleration
+    if order == 0:
         h, beta, changed = rule[0], rule[4], 0.0
         for i in range(n):
             moved = (state[i] - before[i]) * inverse_scale[i]
@@ -238,10 +244,11 @@ def best_order(parts, n, state, before, differences, inverse_scale, rule, extrap
 
 @routine("iirrrrnrr", "d", fastmath=FAST)
 def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
-    """End a step: auxiliary acceleration and differences of p''; return the largest first difference.
+    """Update the auxiliary acceleration and the differences of p'' at the end of a step, and choose the next order.
 
-    inverse_scale (padded(n),): zero beyond n; extrapolation (2,): the order that would have been best, one more than
-    the last one at most (see `predict`), and how many differences are known.
+    Return the largest change of p'', relative to its scale. inverse_scale (padded(n),): zero beyond n; extrapolation
+    (2,), updated: the order of `predict` that would have been best, at most one more than the last one, and the number
+    of known differences.
     """
     change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation)
     best_order(1, n, state, before, differences, inverse_scale, rule, extrapolation)
@@ -250,7 +257,10 @@ def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rul
 
 @routine("inrrr")
 def count_turns(pairs, table, before, now, turned):
-    """Add to `turned` (pairs,) [rad] by how much vectors at coordinates (pairs, 2) have turned between states (n,)."""
+    """Add the rotations of vectors between two states (n,) to `turned` (pairs,) [rad].
+
+    table (pairs, 2): numbers of the coordinates x and y of each vector.
+    """
     small_code()
     for i in range(pairs):
         x, y = table[2 * i], table[2 * i + 1]
@@ -260,7 +270,7 @@ def count_turns(pairs, table, before, now, turned):
 
 @routine("iir")
 def keep_directions(group, first, kept):
-    """Store the vectors d (N, 2) of the nodes of a group, which are numbered from `first` on."""
+    """Store the vectors d of the nodes of a group in `kept` (N, 2), from row `first` on."""
     b = wholes(group)
     chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
     for node in range(b[NODES]):
@@ -270,7 +280,7 @@ def keep_directions(group, first, kept):
 
 @routine("iirr", fastmath=FAST)
 def turns_since(group, first, kept, turns):
-    """Fill cosine and sine (N, 2) of how far the nodes of a group have turned since their vectors d were kept."""
+    """Fill the cosine and sine (N, 2) of the rotation of each node of a group since `keep_directions` stored its d."""
     small_code()
     b = wholes(group)
     chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
@@ -284,10 +294,11 @@ def turns_since(group, first, kept, turns):
 
 @routine("idnrr", fastmath=FAST)
 def turn_pairs(pairs, sense, table, turns, right):
-    """Turn vectors in a right-hand side (n,) with their nodes, sense -1: back; table (pairs, 3): numbers x, y, node.
+    """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
-    A kept tangent turns with the sections: K(now) is near R K(kept) R^T, exact where a body has turned as a whole; then
-    a pendulum or a rotor needs no new tangent for its turning.
+    A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
+    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (pairs, 3): numbers of x, y
+    and the node of each vector; turns (N, 2): see `turns_since`.
     """
     small_code()
     for i in range(pairs):

@@ -12,7 +12,7 @@ _hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 @routine("irrr", "d", fastmath={"contract", "reassoc", "nsz"})
 def take_step(n, step, p, scale):
-    """Add a step (n,) to p; return its size relative to scale, no number where a part of it is none."""
+    """Add a step (n,) to p; return its largest component relative to scale, NaN if one is NaN."""
     change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(scale), zeros(), n // WIDTH * WIDTH
     for i in range(0, whole, WIDTH):
         own = change[i]
@@ -22,7 +22,7 @@ def take_step(n, step, p, scale):
     for i in range(whole, n):
         p[i] += step[i]
         last = abs(step[i]) / scale[i]
-        if not last <= size and size == size:  # what is no number is the largest
+        if not last <= size and size == size:  # NaN counts as the largest
             size = last
     return size
 

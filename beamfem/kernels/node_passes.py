@@ -1,4 +1,4 @@
-"""All nodes of a group: from the coordinates of the model to nodal vectors, and from nodal forces to the residual."""
+"""Loops over the nodes of a group: from coordinates to nodal vectors, and from nodal forces to the residual."""
 
 from beamfem.kernels import record as r
 from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
@@ -28,9 +28,9 @@ def _clear_forces(b, chunks):
 
 @routine("iii")
 def place_nodes(group, system, moving):
-    """Fill the chunks of a group with nodal vectors, and where wanted with accelerations and what tangents need.
+    """Fill the chunks of a group with nodal vectors and B, and set nodal forces to zero.
 
-    Forces on nodes are zero then.
+    If `moving`, also fill accelerations and, for a tangent, the derivatives of e''.
     """
     small_code()
     b, s = wholes(group), wholes(system)
@@ -94,7 +94,7 @@ def place_nodes(group, system, moving):
                         at(result, parts * ROW),
                         at(chunk, (b[r.ACCELERATION] + linear) * ROW),
                     )
-                # b stands in the last rows and columns that turn
+                # where kinds of nodes are mixed, b of a node may be smaller: it takes the last rows and columns
                 corner = (turned - parts) * turning + linear - (size - turned)
                 for part in range(parts):
                     to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
@@ -109,7 +109,7 @@ def place_nodes(group, system, moving):
 
 @routine("ii")
 def finish_nodes(group, system):
-    """Add the forces on all nodes of a group to the residual, and what turns with them to the matrix."""
+    """Add the nodal forces B^T f of a group to the residual, and their derivatives at constant f to the matrix."""
     small_code()
     b, s = wholes(group), wholes(system)
     call = wholes(b[r.ROUTINES])

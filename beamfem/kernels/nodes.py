@@ -1,4 +1,4 @@
-"""The nodes of a chunk: coordinates in, nodal vectors out; `record` has the rows of a chunk."""
+"""Nodes of a chunk: from coordinates to nodal vectors; `record` defines the rows of a chunk."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from beamfem.kernels.lanes import WIDTH, as_rows, gathered
 from beamfem.kernels.pointers import at, small_code
 from beamfem.kernels.record import ROW
 
-# half a turn's half in three parts, the first of few digits, so that products with whole numbers are exact
+# pi / 2 as a sum of three parts, the first two with few digits, so that their products with integers are exact
 _PART_1, _PART_2, _PART_3 = 1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21
 
 
 @inlined
 def _cosine_sine(angle):
-    """Return cosine and sine without a branch, so that a loop of them becomes vectors; Cody and Waite 1980."""
+    """Return cosine and sine without a branch, so that it also works on lanes; Cody and Waite 1980."""
     quarters = np.floor(angle * 0.63661977236758134308 + 0.5)
     x = (angle - quarters * _PART_1) - quarters * _PART_2
     x = x - quarters * _PART_3
@@ -32,7 +32,7 @@ def _cosine_sine(angle):
     c = -1.38888888888730564116e-3 + z * c
     c = 4.16666666666665929218e-2 + z * c
     cosine = 1.0 - 0.5 * z + z * z * c
-    # of the quarter turns: whether they are two or three, and whether one or three
+    # of the number of quarter turns: `half` if it is two or three, `odd` if it is one or three
     half = np.floor(0.5 * quarters) - 2.0 * np.floor(0.25 * quarters)
     odd = quarters - 2.0 * np.floor(0.5 * quarters)
     even, minus = 1.0 - odd, 1.0 - 2.0 * half
@@ -41,9 +41,10 @@ def _cosine_sine(angle):
 
 @inlined
 def take(first, count, coordinates, stride, source, values, last, rows):
-    """Copy values (n,) of coordinates of nodes to rows; source (coordinates, stride): see `record`.
+    """Copy the values (n,) of the coordinates of nodes to rows.
 
-    last: no lanes of other nodes follow these.
+    source (coordinates, stride): numbers of the coordinates, see `record.SOURCE`; last: no other nodes follow in these
+    rows, so that whole lanes may be written.
     """
     for row in range(coordinates):
         own, to = at(source, row * stride + first), at(rows, row * ROW)
@@ -58,7 +59,7 @@ def take(first, count, coordinates, stride, source, values, last, rows):
 
 @inlined
 def put(rows, count, last, source, to):
-    """Copy rows to lanes of a chunk; last: no lanes of other nodes follow these."""
+    """Copy rows to a chunk; last: no other nodes follow in its rows, so that whole lanes may be written."""
     if last:
         own, its = as_rows(source), as_rows(to)
         for i in range(0, count, WIDTH):
@@ -72,7 +73,10 @@ def put(rows, count, last, source, to):
 
 @routine("ivvvvv", fastmath={"contract"})
 def turn(count, angle, c, s, length, rows):
-    """Fill rows: cosine and sine of angles from a reference whose cosines and sines are c and s, and its length."""
+    """Fill rows (3, ROW) with the cosine and sine of the reference angle plus `angle`, and with `length`.
+
+    c, s: cosine and sine of the reference angle.
+    """
     small_code()
     for i in range(0, count, WIDTH):
         cosine, sine = _cosine_sine(angle[i])
@@ -83,7 +87,7 @@ def turn(count, angle, c, s, length, rows):
 
 @routine("irrr", fastmath={"contract"})
 def rotate(count, c, s, vector):
-    """Turn the vectors in two rows by angles with cosines c and sines s."""
+    """Rotate the vectors in two rows by angles with cosines c and sines s."""
     for i in range(count):
         x, y = vector[i], vector[ROW + i]
         vector[i] = c[i] * x - s[i] * y

@@ -1,4 +1,4 @@
-"""Forces, moments and springs at points of elements: each load is a lane of a batch, whatever element it acts on."""
+"""Forces, moments and springs at points of elements; each load is a lane of a batch, whatever element it acts on."""
 
 import math
 
@@ -15,7 +15,7 @@ _reduced, _forces = caller("iiiir"), caller("iiidrrrr", "i")
 
 @routine("iii")
 def add_loads(group, system, values):
-    """Subtract the generalized forces of all loads of a group from those of its nodes, their tangents from the matrix.
+    """Subtract the generalized forces of all loads of a group from its nodal forces, their tangents from the matrix.
 
     values: address of forces and moments (loads, 3) [N, N, N m].
     """
@@ -64,11 +64,11 @@ def add_loads(group, system, values):
 
 @routine("iiidrrrr", "i")
 def load_forces(group, load, stride, ck, values, e, f, k):
-    """Fill the nodal forces f of a load and subtract ck times their derivative from k; tell whether there is one.
+    """Fill f with the negative nodal forces of a load and, unless zero, k with ck df/de; return 1 if it did, else 0.
 
-    e (nodes, stride, ROW), f, k: rows from the lane of the load on. The moment acts on the vector g that gives the
-    section its direction: virtual work M (g x delta g) / |g|^2. A force that follows turns with g, a pressure grows
-    with |g| as well.
+    e (nodes, stride, ROW), f, k: pointers to the lane of the load in the first row of each. The moment acts on the
+    vector g that defines the direction of the section, with virtual work M (g x delta g) / |g|^2. A follower force
+    rotates with g, and a pressure is also proportional to |g|.
     """
     b = wholes(group)
     nodes, vectors, loads = b[r.NODES_PER_ELEMENT], b[r.VECTORS], b[r.LOADS]
@@ -93,7 +93,7 @@ def load_forces(group, load, stride, ck, values, e, f, k):
     fx, fy, moment = values[0], values[1], values[2]
     ux, uy = follow[0], follow[loads]
     follows = ux != 0.0 or uy != 0.0
-    # derivatives of the force by g
+    # derivatives of the force with respect to g
     fxx, fxy, fyx, fyy = 0.0, 0.0, 0.0, 0.0
     if follows:
         if reals(b[r.STRETCHES])[load] != 0.0:

@@ -1,7 +1,7 @@
-"""Plain memory in compiled code: pointers made of addresses, and calls of compiled functions by their address.
+"""Memory in compiled code: pointers made from addresses, and calls of compiled functions by their address.
 
-A function that calls another one by address is compiled on its own: neither waits for the other, and none is compiled
-twice. Addresses stand in tables of whole numbers that Python owns.
+Functions that call one another by address are compiled separately, and each only once. Addresses are passed in tables
+of integers that Python owns.
 """
 
 from collections.abc import Callable
@@ -19,19 +19,19 @@ from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Va
 
 @operation
 def at(build: Build, pointer: Value, count: Value) -> Value:
-    """Return the pointer `count` entries further on."""
+    """Return the pointer advanced by `count` entries."""
     return Value(pointer.kind, build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
 
 
 @operation
 def small_code(build: Build) -> None:
-    """Keep the code of the function that says so small: no loop of it is unrolled, or compiled once for each case."""
+    """Optimise the calling function for size: its loops are neither unrolled nor duplicated for special cases."""
     build.builder.function.attributes.add("optsize")
 
 
 @operation
 def room(build: Build, count: Value) -> Value:
-    """Return a pointer to so many numbers of the function's own; their count is written as a number."""
+    """Return a pointer to `count` numbers on the stack of the function; the count is a compile-time constant."""
     numbers = build.space(ir.ArrayType(REALS.llvm.pointee, count.llvm.constant))
     return Value(REALS, build.builder.bitcast(numbers, REALS.llvm))
 
@@ -51,7 +51,7 @@ slots = _pointer(SLOTS)
 
 @cache
 def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
-    """Return call(address, *arguments) for functions of these kinds of arguments, called as C does."""
+    """Return an operation call(address, *arguments) for functions with these kinds of arguments, in C convention."""
     wanted, result = [KINDS[kind] for kind in kinds], RESULTS[returns]
     outer = ir.VoidType() if result is None else result.llvm
     own = ir.FunctionType(outer, [kind.llvm for kind in wanted]).as_pointer()
@@ -69,4 +69,4 @@ def address_of(values: np.ndarray) -> int:
     """Return the address of the first number of an array."""
     if values.size and values.flags.writeable and values.flags.c_contiguous:
         return addressof(c_char.from_buffer(values.data))
-    return int(values.__array_interface__["data"][0])  # which takes NumPy twice as long
+    return int(values.__array_interface__["data"][0])  # works for all arrays, but takes twice as long

@@ -1,26 +1,26 @@
-"""Tables of whole numbers and addresses that describe a group of like elements, or a whole model, to compiled code.
+"""Layout of the tables of integers and addresses that describe a group of like elements, or a model, to compiled code.
 
-Python owns all arrays that addresses point to, and checks them once, where a table is made (`assembly.sheet`).
+Python owns all arrays that addresses point to, and checks them once, when it makes a table (`assembly.sheet`).
 
-Elements are worked on in batches, nodes in chunks, of at most `LANES`. A quantity of a batch is a row of `ROW` numbers,
-one a lane, so that the compiler turns loops along rows into vectors. Nodes are kept in chunks of such rows.
+Elements are processed in batches, nodes in chunks, of at most `LANES`. Each quantity of a batch is a row of `ROW`
+numbers, one per element, so that loops along rows use vector instructions. Nodes are stored in chunks of such rows.
 """
 
 LANES = 64
-ROW = 72  # longer than a batch, so that rows do not all fall onto the same places of the cache
+ROW = 72  # longer than a batch, so that rows do not all map to the same cache sets
 
 # ------------------------------------------------------------------ a group of like elements
 ELEMENTS = 0
 NODES = 1
 NODES_PER_ELEMENT = 2
-VECTORS = 3  # nodal vectors a node
+VECTORS = 3  # nodal vectors per node
 POINTS = 4  # quadrature points
 MEASURES = 5  # strain measures
-TURNED = 6  # components of nodal vectors, the last ones, that coordinates of the node turn: 0, 2 or 4
-TURNING = 7  # coordinates, the last ones, that turn them
-BENDS = 8  # the third vector of strain measures is r0''
+TURNED = 6  # number of components of nodal vectors, the last ones, that are not coordinates but w(u): 0, 2 or 4
+TURNING = 7  # number of coordinates u, the last ones, on which they depend
+BENDS = 8  # whether the third vector of strain measures is r0''
 BATCH = 9  # elements in a batch
-# rows of a class of elements: where each kind of table begins, and how many rows there are
+# rows of a class of elements: first row of each table, and the number of rows
 SLOPE = 10  # (points, slots)
 SECOND = 11  # (points, slots)
 STIFFNESS = 12  # (points, measures (measures + 1) / 2) upper triangle
@@ -34,29 +34,29 @@ TABLES = 19  # address (classes, table rows)
 DIRECTOR = 20  # address (points, nodes of an element)
 CLASS = 21  # address (elements,)
 BEAM = 22  # address (elements,)
-PLACE = 23  # address (nodes of an element, elements): where a node's first entry stands among the chunks, in rows of 1
+PLACE = 23  # address (nodes of an element, elements): offset of the node's first entry in the chunks
 DOF = 24  # address (coordinates of a node, nodes)
 FRAME = 25  # address (3, nodes)
 RUNS = 26  # address (runs, 3): kind of node, first node, number of nodes
 RUN_COUNT = 27
-NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): among the unknown, or -1
-SLOT = 29  # address (elements, coordinates, coordinates) in a sparse matrix
-HALF_WIDTH = 30  # of the band, -1 where the matrix is sparse
-FREE = 31  # address (n,): number of a coordinate among the unknown
-HOME = 32  # address (nodes, 2): an element of each node, and its place there
-COORDINATES = 33  # of a node
-# rows of a node: vectors first
+NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): number among the unknowns, or -1
+SLOT = 29  # address (elements, coordinates, coordinates): positions in the data of a sparse matrix
+HALF_WIDTH = 30  # half-bandwidth, -1 for a sparse matrix
+FREE = 31  # address (n,): number of a coordinate among the unknowns
+HOME = 32  # address (nodes, 2): an element that contains the node, and the node's number in that element
+COORDINATES = 33  # per node, at most
+# rows of a node, after its nodal vectors
 ACCELERATION = 34
 TRANSFORM = 35  # B (turned, turning)
-CONVECTIVE = 36  # change of e'' with p and p' (turned, turning)
+CONVECTIVE = 36  # derivatives of e'' with respect to p and p' (turned, turning)
 CURVATURE = 37  # derivative of B^T f (turning, turning)
 FORCE = 38
-PREDICTED_FORCE = 39  # the same with the stress resultants that the last step predicts
+PREDICTED_FORCE = 39  # the same with the stress resultants predicted by the last correction
 NODE_ROWS = 40
-# work space
+# workspace
 CHUNKS = 41  # address (chunks, node rows, ROW)
 STRESS = 42  # address (elements, points, measures)
-SPACE = 43  # address: rows of a batch, in the order of `batch`
+SPACE = 43  # address: workspace of a batch, laid out by `batch`
 # forces, moments and springs at points
 LOADS = 44
 LOAD_ELEMENT = 45
@@ -68,17 +68,17 @@ SPRING = 50  # (2, loads)
 ANCHOR = 51  # (2, loads)
 LOAD_PLACE = 52  # (nodes of an element, loads)
 LOAD_NUMBER = 53  # (nodes * coordinates, loads)
-FILLED = 54  # address (2,): whose tables are in the work space, and of how many elements
+FILLED = 54  # address (2,): class or elements whose tables are in the workspace, and the number of elements
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
-SHARED = 57  # whether other groups use the chunks and the work space as well
-DAMPED = 58  # whether resultants depend on rates of strains
-DAMPING = 59  # rows of a class: (1,) retardation time
-VELOCITY = 60  # rows of a node: e', where resultants depend on it
-APART = 61  # whether no entry of the mass is of d and r0
-NATURAL = 62  # address (elements, points, measures): strains that loads impose; 0 where none do
-ORDERED = 63  # whether each node of an element has a greater number than that of the element before
-SOURCE = 64  # address (coordinates of a node, nodes) and more: as DOF, 0 where there are fewer, read in vectors
+SHARED = 57  # whether other groups use the same chunks and workspace
+DAMPED = 58  # whether resultants depend on strain rates
+DAMPING = 59  # rows of a class: (1,) retardation time [s]
+VELOCITY = 60  # rows of a node: e', if resultants depend on it
+APART = 61  # whether the mass does not couple d with r0
+NATURAL = 62  # address (elements, points, measures): strains imposed by loads; 0 if there are none
+ORDERED = 63  # whether each node of an element has a greater number than the same node of the element before
+SOURCE = 64  # address (coordinates of a node, nodes), padded: as DOF with 0 for -1, so that lanes can be read blindly
 HISTORY = 65  # address (elements, points, k): coordinates that are history variables of a law
 VARIABLES = 66  # k
 BLOCK_FIELDS = 67
@@ -95,9 +95,9 @@ RESIDUAL = 7
 SIZE = 8
 MATRIX = 9
 ENTRIES = 10
-FACTORS = 11  # ck, cv, ca; and the time step from the committed history
+FACTORS = 11  # ck, cv, ca: weights of p, p' and p'' in the tangent; then the time step from the committed history
 TANGENT = 12
-PREDICTED = 13  # the geometric part of the tangent takes the resultants in `STRESS`
+PREDICTED = 13  # whether the geometric part of the tangent uses the resultants in `STRESS`
 MOVING = 14
 LOADED = 15
 SPRINGS = 16
@@ -105,7 +105,7 @@ SPRING_DOF = 17
 SPRING_STIFFNESS = 18
 SPRING_REST = 19
 SPRING_PLACE = 20
-RATED = 21  # rates of strains count
+RATED = 21  # whether strain rates matter
 SYSTEM_FIELDS = 22
 FACTOR_COUNT = 4
 
@@ -150,15 +150,15 @@ FACTOR_COUNT = 4
     VISCOUS,
     RELEASE,
 ) = range(38)
-PLACE_KIND = 38  # place, convect and curve of each kind of node that turns
+PLACE_KIND = 38  # place, convect and curve of each kind of node with a rotation
 ROUTINE_COUNT = 47
 
-# ------------------------------------------------------------------ the unknown coordinates and how to solve for them
+# ------------------------------------------------------------------ the unknown coordinates and the solution for them
 UNKNOWN = 0
 FREE_DOFS = 1  # address (unknown,)
 HALF = 2
 ROLLERS = 3
-ROLLER_FIRST = 4  # address (rollers,): number of the x of each among the unknown
+ROLLER_FIRST = 4  # address (rollers,): number of the x of each among the unknowns
 ROLLER_NORMAL = 5  # address (rollers, 2)
 ROWS = 6  # address (unknown, 2 half + 1)
 RIGHT = 7  # address (unknown,)
@@ -176,15 +176,15 @@ DIFFERENCES = 18  # see `motion_steps.difference_rows`
 INVERSE_SCALE = 19  # address (padded(n),)
 RULE = 20
 STATISTICS = 21
-PAIRS = 22  # vectors that turn with their section
+PAIRS = 22  # vectors that rotate with their section
 PAIR_TABLE = 23  # (pairs, 3): numbers of x and y, node
 KEPT = 24  # (N, 2)
 TURNS = 25  # (N, 2)
 STEPS = 26
 PRESCRIBED_VALUES = 27  # (steps, 3, prescribed)
 BODIES = 28  # (steps or 1, beams, 4)
-BODY_STRIDE = 29  # from step to step, 0 where nothing varies
-LOAD_VALUES = 30  # address of addresses, of each group (steps or 1, loads, 3)
+BODY_STRIDE = 29  # from step to step, 0 if nothing varies
+LOAD_VALUES = 30  # address of addresses, for each group (steps or 1, loads, 3)
 LOADS_VARY = 31
 SAVED = 32  # (rows, 3, n)
 FIRST_STEP = 33
@@ -194,13 +194,13 @@ TURN_TABLE = 36  # (counted, 2)
 TURNED_BY = 37
 SAVED_TURNS = 38
 LINEAR = 39  # address (n,)
-NATURALS = 40  # address of addresses, of each group (steps or 1, elements, points, measures), 0 where there are none
+NATURALS = 40  # address of addresses, for each group (steps or 1, elements, points, measures), 0 if there are none
 NATURALS_VARY = 41
-CHANGE = 42  # address (padded(n),): corrections, zero where there are none
-FIRST_FREE = 43  # the first of the unknown where they follow one another, else -1
+CHANGE = 42  # address (padded(n),): corrections, zero for prescribed coordinates
+FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutive numbers, else -1
 
-# ------------------------------------------------------------------ parts of a chain that stages of a step work on
-PARTS = 44  # 1, or 3: two halves and what is between them
+# ------------------------------------------------------------------ parts of a chain that stages of a step process
+PARTS = 44  # 1, or 3: two halves and the part between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
 TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
@@ -210,15 +210,15 @@ SOLVER_FIELDS = 49
 FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)
 BOUND_FIELDS = 8
 
-# ------------------------------------------------------------------ what the second of two threads is asked to do
-JOB_STATE = 0  # alone in a line of the cache
+# ------------------------------------------------------------------ the job of the second of two threads
+JOB_STATE = 0  # alone in its cache line, which both threads poll
 JOB_STAGE = 8
 JOB_SYSTEM = 9
 JOB_SOLVER = 10
 JOB_CALLS = 11
 JOB_RESULT = 12
 JOB_SERVED = 13  # whether there is a second thread
-JOB_YIELD = 14  # address of the system's function that lets other threads have the core, 0 where there is none
+JOB_YIELD = 14  # address of the system's function that yields the core to other threads, 0 if there is none
 JOB_FIELDS = 16
 
 (
@@ -244,7 +244,7 @@ JOB_FIELDS = 16
     SOLVE,
     CORRECT,
     COMPLETE,
-    # of long chains
+    # long chains
     IN_TWO,
     JOB,  # address of the job of the second thread
     FILL_RIGHT,

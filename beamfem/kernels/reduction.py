@@ -1,7 +1,7 @@
-"""The reduction e' = B p' of batches and nodes: forces B^T f, matrices B^T k B, and their places in the model.
+"""Reduction to coordinates, e' = B p': forces B^T f, matrices B^T k B, and their assembly into the model.
 
-Coordinates of a node are components of nodal vectors, then those that turn the last `turned` components: B = diag(1,
-b), b (turned, turning) a node. What a node has no coordinate for is numbered -1.
+The coordinates of a node are its first components of nodal vectors, followed by those on which the last `turned`
+components depend: B = diag(1, b) with b (turned, turning) for each node. Coordinates that a node lacks are numbered -1.
 """
 
 from beamfem.kernels.compiling import inlined, routine
@@ -14,7 +14,7 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiiiiivvv", fastmath=FAST)
 def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
-    """Replace k by k B: columns of each node of `size` components; b (nodes, stride, ROW); space (2, ROW)."""
+    """Replace k (columns, rows, ROW) by k B; b (nodes, stride, ROW), size: components of a node; space (2, ROW)."""
     rows, linear = nodes * size, size - turned
     for n in range(nodes):
         own = at(k, rows * (n * size + linear) * ROW)
@@ -38,7 +38,7 @@ def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
 
 @routine("iiiiiivvv", fastmath=FAST)
 def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
-    """Replace k B by B^T k B, in the same way."""
+    """Replace k B by B^T k B, with the arguments of `reduce_columns`."""
     rows, linear = nodes * size, size - turned
     for m in range(nodes):
         for its in range(linear + turning):
@@ -63,7 +63,7 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
 
 @routine("iiiiinirr")
 def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix):
-    """Add reduced matrices k of a batch to a band (n, 2 half + 1); number (nodes * coordinates, stride)."""
+    """Add the reduced matrices k of a batch to a band matrix (n, 2 half + 1); number (nodes * coordinates, stride)."""
     rows, width = nodes * size, 2 * half
     for m in range(nodes):
         for its in range(coordinates):
@@ -80,7 +80,10 @@ def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix
 
 @routine("iiiinsrr")
 def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
-    """Add reduced matrices k of a batch to the data of a sparse matrix; slots (elements, coordinates, coordinates)."""
+    """Add the reduced matrices k of a batch to the data of a sparse matrix.
+
+    slots (elements, nodes * coordinates, nodes * coordinates): positions in the data, -1 for prescribed coordinates.
+    """
     rows, per = nodes * size, nodes * coordinates
     for i in range(count):
         table = at(slots, elements[i] * per * per)
@@ -95,9 +98,9 @@ def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
 
 @inlined
 def add_node_forces(first, count, size, turned, turning, stride, dof, rows, force, chunk, space, residual):
-    """Add B^T f of nodes of a chunk to the residual (n,).
+    """Add B^T f of the nodes of a chunk to the residual (n,).
 
-    dof (coordinates, stride); force: row where f begins; space (ROW,).
+    dof (coordinates, stride); rows, force: first rows of b and f in the chunk; space (ROW,): workspace.
     """
     linear = size - turned
     for row in range(linear):
@@ -121,9 +124,10 @@ def add_node_forces(first, count, size, turned, turning, stride, dof, rows, forc
 def add_curvature(
     first, count, nodes, linear, turning, stride, row, coordinates, dof, free, home, half, slots, chunk, matrix, factor
 ):
-    """Add the derivative of B^T f (turning, turning) of nodes of a chunk, times a factor, to the matrix.
+    """Add a factor times the derivative of B^T f at constant f (turning, turning) of nodes of a chunk to the matrix.
 
-    chunk: from the first of these nodes on; linear: coordinates of a node before those that turn.
+    chunk: from the lane of the first of these nodes on; row: where the derivative begins; linear: coordinates of a node
+    before those on which B depends.
     """
     per = nodes * coordinates
     for j in range(turning):

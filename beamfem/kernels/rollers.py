@@ -1,4 +1,4 @@
-"""Pairs of unknowns (x, y) of which only one direction is prescribed: a roller on an inclined plane."""
+"""Rollers on inclined planes: pairs of unknowns (x, y) of which only the normal direction is prescribed."""
 
 from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at
@@ -6,9 +6,10 @@ from beamfem.kernels.pointers import at
 
 @routine("iiirnr")
 def hold_normals(n, half, rollers, rows, first, normal):
-    """Turn each pair of unknowns to (normal, tangent) in a band matrix and hold the normal one at zero change.
+    """Rotate each pair of unknowns to (normal, tangent) in a band matrix, and constrain the normal one to zero change.
 
-    rows (n, 2 half + 1) in place; first (rollers,) number of the pair's x; normal (rollers, 2) unit vectors.
+    rows (n, 2 half + 1): the matrix, changed in place; first (rollers,): number of the x of each pair among the
+    unknowns; normal (rollers, 2): unit vectors.
     """
     width = 2 * half + 1
     for k in range(rollers):
@@ -33,7 +34,7 @@ def hold_normals(n, half, rollers, rows, first, normal):
 
 @routine("inrr")
 def rotate_in(rollers, first, normal, right):
-    """Turn each pair of a right-hand side (n,) to (normal, tangent) in place, the normal one zero."""
+    """Rotate each pair of a right-hand side (n,) to (normal, tangent) in place, with a normal component of zero."""
     for k in range(rollers):
         i, j = first[k], first[k] + 1
         right[j] = -normal[2 * k + 1] * right[i] + normal[2 * k] * right[j]
@@ -42,7 +43,7 @@ def rotate_in(rollers, first, normal, right):
 
 @routine("inrr")
 def rotate_back(rollers, first, normal, x):
-    """Turn the solution's pairs (normal, tangent) back to (x, y), in place."""
+    """Rotate each pair of the solution from (normal, tangent) back to (x, y), in place."""
     for k in range(rollers):
         i, j = first[k], first[k] + 1
         c, s = normal[2 * k], normal[2 * k + 1]

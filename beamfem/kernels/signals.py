@@ -1,4 +1,4 @@
-"""What two threads tell each other through whole numbers in memory."""
+"""Atomic operations on integers in memory, by which two threads synchronise."""
 
 from llvmlite import binding, ir
 
@@ -11,19 +11,19 @@ _PAUSE = "llvm.x86.sse2.pause"
 
 @operation
 def acquired(build: Build, pointer: Value, index: Value) -> Value:
-    """Return an entry; what the thread that released it has written before is seen from here on."""
+    """Load an entry with acquire ordering: all writes that preceded its `release` by another thread are now visible."""
     return Value(WHOLE, build.builder.load_atomic(build.place(pointer, index), "acquire", 8))
 
 
 @operation
 def release(build: Build, pointer: Value, index: Value, value: Value) -> None:
-    """Set an entry, for a thread that acquires it."""
+    """Store an entry with release ordering, for a thread that loads it with `acquired`."""
     build.builder.store_atomic(build.converted(value, WHOLE), build.place(pointer, index), "release", 8)
 
 
 @operation
 def replaced(build: Build, pointer: Value, index: Value, old: Value, new: Value) -> Value:
-    """Set an entry if it has a value; return whether it had. Of two threads one finds that it had."""
+    """Compare and swap: set an entry to `new` if it is `old`; return whether it was. Of two threads, one succeeds."""
     place = build.place(pointer, index)
     found = build.builder.cmpxchg(place, old.llvm, new.llvm, "acq_rel", "acquire")
     return Value(FLAG, build.builder.extract_value(found, 1))
@@ -31,7 +31,7 @@ def replaced(build: Build, pointer: Value, index: Value, old: Value, new: Value)
 
 @operation
 def pause(build: Build) -> None:
-    """Leave the core to its other thread for a moment."""
+    """Pause in a spin loop, which leaves the core to its other hardware thread for a moment."""
     if binding.get_process_triple().startswith("x86_64"):
         functions = build.builder.module.globals
         own = functions.get(_PAUSE) or ir.Function(build.builder.module, ir.FunctionType(ir.VoidType(), []), _PAUSE)

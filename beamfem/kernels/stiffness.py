@@ -1,7 +1,7 @@
-"""Elastic matrices of a batch: B^T (T^T h T summed over quadrature points) B, T the tables of q = (r0', d, third).
+"""Elastic matrices of a batch: B^T (sum of T^T h T over quadrature points) B with q = T e, q = (r0', d, third).
 
-h has 21 rows a point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy each), dd (xx, xy, yy), dt (xx, xy, yx, yy)
-and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
+h has 21 rows for each point: the blocks rr (xx, xy, yy), rd, rt (xx, xy, yx, yy each), dd (xx, xy, yy), dt (xx, xy, yx,
+yy) and tt (xx, xy, yy). A matrix (columns, rows, ROW) has a row of lanes for each entry.
 """
 
 from beamfem.kernels.compiling import routine
@@ -14,7 +14,7 @@ FAST = {"contract", "reassoc", "nsz"}
 
 @routine("iiidvvrvv", fastmath=FAST)
 def columns(vectors, bends, count, ck, slope, second, director, h, z):
-    """Fill z (2 vectors, 6, ROW): ck h times the tables of the vectors of a node, in rows r, d, t (x and y of each)."""
+    """Fill z (2 vectors, 6, ROW) with ck h T for the nodal vectors of one node; the six rows are r, d, t (x and y)."""
     last = vectors - 1
     for s in range(last):
         w, u, own = at(slope, s * ROW), at(second, s * ROW), at(z, 12 * s * ROW)
@@ -69,7 +69,10 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
 
 @routine("iiiivvv", fastmath=FAST)
 def combine(rows, turned, turning, count, b, own, space):
-    """Replace vectors own (turned, rows, ROW) by their sums with b (turned, turning, ROW); space (turning, ROW)."""
+    """Replace the `turned` columns of own (columns, rows, ROW) by the `turning` columns own b.
+
+    b (turned, turning, ROW); space (turning, ROW): workspace.
+    """
     for row in range(rows):
         for column in range(turning):
             to = at(space, column * ROW)
@@ -90,10 +93,10 @@ def combine(rows, turned, turning, count, b, own, space):
 
 @routine("iiiiiiivvrvv", fastmath=FAST)
 def products(vectors, bends, count, points, coordinates, slots, z_stride, slope, second, director, z, k):
-    """Fill rows of a node in the columns of another: tables times z, summed over points.
+    """Fill the rows of one node in the columns of another one: T^T z, summed over quadrature points.
 
-    z (points, z_stride, ROW) with 6 rows a coordinate; tables of the node: slope, second (points, slots, ROW), director
-    (points, nodes); k (coordinates, 2 vectors, ROW).
+    z (points, z_stride, ROW): 6 rows for each coordinate; slope, second (points, slots, ROW) and director (points,
+    nodes): tables T, from the node of the rows on; k (coordinates, 2 vectors, ROW).
     """
     last, size, nodes = vectors - 1, 2 * vectors, slots // vectors
     for c in range(coordinates):
@@ -118,9 +121,10 @@ def products(vectors, bends, count, points, coordinates, slots, z_stride, slope,
 
 @routine("iiiiiivvv", fastmath=FAST)
 def store(size, turned, turning, coordinates, count, rows, b, own, k):
-    """Put rows of a node (coordinates, size, ROW), their last ones summed with its b, into columns and rows of k.
+    """Store own (coordinates, size, ROW) in k, with its last `turned` rows multiplied by the transpose of b.
 
-    k: from the entry of the first coordinates of both nodes on; it has `rows` rows in all.
+    own: rows of one node in the columns of another one; b (turned, turning, ROW): of the node of the rows; k: from the
+    entry of the first coordinates of both nodes on; rows: number of rows of k.
     """
     linear = size - turned
     own_count = linear + turning
@@ -147,7 +151,7 @@ def store(size, turned, turning, coordinates, count, rows, b, own, k):
 
 @routine("iiv")
 def mirror(size, count, k):
-    """Copy the upper triangle of k (size, size, ROW), columns first, to the lower one."""
+    """Copy the upper triangle of k (columns, rows, ROW) to the lower one."""
     for column in range(size):
         for row in range(column):
             own, to = at(k, (column * size + row) * ROW), at(k, (row * size + column) * ROW)

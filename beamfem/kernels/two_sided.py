@@ -28,7 +28,7 @@ SHORT = 50  # unknowns: fewer are solved for as fast from one end
 
 @cache
 def two_sided(half_width: int, short: bool) -> TwoSided:
-    """Return the compiled functions for a half width: of its own where it is a usual one; short: from one end."""
+    """Return the compiled functions for a half width; they work from one end if `short` or if it is not in `KNOWN`."""
     if half_width not in KNOWN:
         return _one_sided(0)
     return _one_sided(half_width) if short else _two_sided(half_width)
@@ -125,7 +125,7 @@ def _one_sided(known: int) -> TwoSided:
 
     @routine("iirr", case=case, fastmath={"contract"})
     def solve(n, half, lu, x):
-        """The same from one end."""
+        """Do the same as `solve` of `_two_sided`, from one end."""
         _solve_lower(n, n, half, lu, x)
         _solve_upper(n, n, half, lu, x)
 

@@ -1,6 +1,6 @@
-"""Stages of work on a long chain, its halves on two threads.
+"""Stages of a time step of a long chain, whose two halves are processed by two threads.
 
-Each half has coordinates, groups and work space of its own, so that results do not tell which thread worked on it.
+Each half has separate coordinates, groups and workspace, so the results do not depend on which thread processed it.
 """
 
 from beamfem.kernels import record as r
@@ -9,14 +9,14 @@ from beamfem.kernels.pointers import caller, reals, small_code, wholes
 from beamfem.kernels.signals import acquired, pause, release, replaced
 
 FREE, POSTED, TAKEN, DONE, CLOSED = range(5)  # states of a job
-_SPINS = 400  # some microseconds; whoever waits longer lets others have the core
+_SPINS = 400  # some microseconds; a thread that waits longer yields the core to other threads
 
 _stage, _yield = caller("iiii", "d"), caller("", "i")
 
 
 @inlined
 def _wait(j, turns):
-    """Wait a little, and longer after many turns."""
+    """Pause briefly, or yield the core after many turns of a spin loop."""
     if turns < _SPINS:
         pause()
     elif j[r.JOB_YIELD] != 0:
@@ -25,7 +25,7 @@ def _wait(j, turns):
 
 @routine("i")
 def serve(job):
-    """Do the second half of every stage that is posted, until the job is closed."""
+    """Run the second half of every stage that is posted, until the job is closed."""
     small_code()
     j, turns = wholes(job), 0
     state = acquired(j, r.JOB_STATE)
@@ -43,9 +43,10 @@ def serve(job):
 
 @routine("iiii", "d")
 def in_two(stage, system, solver, calls):
-    """Do a stage for both halves, at once where a thread serves, then for what is between; return the largest result.
+    """Run a stage for both halves, in parallel if a second thread serves, and then for the part between them.
 
-    What is no number is the largest. A second half that the other thread has not begun in time is done here.
+    Return the largest result, NaN if one is NaN. If the second thread has not started its half by the time this one has
+    finished the first half, this one takes it too.
     """
     small_code()
     job = wholes(calls)[r.JOB]

@@ -1,1 +1,1 @@
-"""Matrices of the unknown coordinates, their factors and their eigenpairs; they know no model."""
+"""Matrices of the unknown coordinates, their factorisations and eigenpairs, independent of any model."""

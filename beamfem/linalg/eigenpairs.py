@@ -1,4 +1,4 @@
-"""Eigenpairs next to a shift, by the factors of a shifted matrix."""
+"""Eigenpairs nearest to a shift, by iterations with the factors of the shifted matrix."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,14 +11,14 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 from beamfem.errors import ConvergenceError
 from beamfem.linalg.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
 
-_DENSE = 200  # unknowns up to which all eigenpairs are as quick as a few
-_LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are found where the iteration for a few fails
-MOST_RESTARTS = 100  # of an iteration, which takes some ten where round-off leaves it digits
+_DENSE = 200  # unknowns up to which computing all eigenpairs takes no longer than computing a few
+_LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are computed if the iteration for a few fails
+MOST_RESTARTS = 100  # of an iteration, which needs about ten unless round-off leaves no accurate digits
 _LANCZOS_VECTORS = (1, 3)  # times the usual number
 
 
 class Solver(Protocol):
-    """The factors of a matrix; `solve` leaves constrained directions at zero."""
+    """The factors of a matrix; `solve` gives zero in constrained directions."""
 
     def solve(self, right: np.ndarray) -> np.ndarray: ...
 
@@ -28,7 +28,7 @@ Pairs = tuple[np.ndarray, np.ndarray]
 
 @contextmanager
 def digits_for(what: str) -> Iterator[None]:
-    """Raise ConvergenceError if LAPACK or ARPACK give up, or numbers leave double precision; what: is looked for."""
+    """Raise ConvergenceError if LAPACK or ARPACK fail, or numbers overflow; what: the quantities sought, in words."""
     try:
         yield
     except (LinAlgError, ArpackError, ZeroDivisionError, OverflowError) as error:
@@ -43,12 +43,12 @@ def nothing_known(n: int) -> Pairs:
 
 
 def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarray) -> Pairs:
-    """Return the largest mu (m,), descending, and x (n, m) with S mass x = mu x, x^T mass x = 1, S the inverse.
+    """Return the largest mu (m,), descending, and x (n, m) with K^-1 mass x = mu x and x^T mass x = 1.
 
-    mass: positive definite; factors: of a symmetric matrix, positive definite along the free directions; count: how
-    many to find besides the vectors (n, k) that are `known`, with x^T mass x = 1. They are projected out of the inverse
-    on both sides: taking their mu away instead leaves what round-off makes of it, which may pass for a mode. m is
-    smaller if there are no more. Raises ConvergenceError.
+    mass: positive definite; factors: of K, symmetric and positive definite along the free directions; count: number of
+    pairs to find besides the vectors x (n, k) that are `known`, with x^T mass x = 1. These are projected out of the
+    inverse on both sides; subtracting their mu instead would leave round-off that may look like a mode. m < count if
+    there are no more pairs. Raises ConvergenceError.
     """
     n = mass.shape[0]
     carried = mass @ known
@@ -68,7 +68,7 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
             return np.asarray(solved - known @ (carried.T @ solved))
 
         inverse = LinearOperator((n, n), matvec=projected, dtype=float)
-        # ARPACK asks the matrix itself nothing where it is given the inverse
+        # ARPACK does not use the matrix itself if it is given the inverse
         reciprocal, x = eigsh(
             LinearOperator((n, n), matvec=np.asarray, dtype=float),
             count,
@@ -91,8 +91,8 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
 def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
     """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
 
-    mass: symmetric, positive definite; stiffness: any matrix, with its factors; known: pairs that the result does not
-    hold, with x^T mass x = 1. Raises ConvergenceError.
+    mass: symmetric, positive definite; stiffness: any matrix, and its factors; known: pairs that are not to be found
+    again, with x^T mass x = 1. Raises ConvergenceError.
     """
     n = mass.shape[0]
     carried = mass @ known[1]
@@ -111,13 +111,16 @@ def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count:
     values, x = first_that_works(dense, few, n, count + 1)
     order = np.argsort(-np.abs(values), kind="stable")[:count]
     values, x = values[order], x[:, order]
-    # Wielandt: deflation leaves the other values, and adds components along the known directions to their vectors
+    # Wielandt's deflation preserves the other eigenvalues, but changes their vectors along the known ones
     fractions = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
     return values, x + known[1] @ fractions
 
 
 def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:
-    """Return what finds a `few` eigenpairs of n unknowns, or what finds all where these are not many or that fails."""
+    """Return `count` eigenpairs of n unknowns from `few`, or all from `dense` if n is small or the iteration fails.
+
+    few(times): iterates with `times` the usual number of vectors, see `lanczos_vectors`. Raises ConvergenceError.
+    """
     if n > _DENSE and 2 * count < n:
         for vectors in _LANCZOS_VECTORS:
             try:
@@ -130,10 +133,10 @@ def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int
 
 
 def lanczos_vectors(times: int, count: int, n: int) -> int:
-    """Return how many vectors an iteration for `count` eigenpairs works with."""
+    """Return the number of Lanczos vectors for `count` eigenpairs, `times` the usual one."""
     return min(n, times * max(2 * count + 1, 20))
 
 
 def first_vector(n: int) -> np.ndarray:
-    """Return a start of the iteration that is the same in every run and has a component along every mode."""
+    """Return a start vector that is the same in every run and has a component along every mode."""
     return np.random.default_rng(0).standard_normal(n)

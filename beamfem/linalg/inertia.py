@@ -1,4 +1,4 @@
-"""How many eigenvalues of a sparse symmetric matrix are negative, whatever their signs and order."""
+"""Number of negative eigenvalues of a sparse symmetric matrix, which may be indefinite."""
 
 import numpy as np
 from scipy.linalg import eigh
@@ -8,21 +8,21 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from beamfem.linalg.lapack import LinAlgError, symmetric_factors
 
-_FEWEST = 24  # rows of a block; of fewer the calls cost more than the work
-_WINDOW = 96  # rows in which a block may end: an element of high order has fewer
+_FEWEST = 24  # rows of a block; with fewer, calls take longer than the computations
+_WINDOW = 96  # rows within which a block may end: more than an element of high order has
 _LARGEST = 3000  # rows of a block that is eliminated at once
-_DECOMPOSED = 400  # rows of a block whose directions may wait one by one
-_GROWTH = 1e5  # of the largest number in front of it: what would leave more behind waits for what follows
+_DECOMPOSED = 400  # rows of a block up to which single directions may be delayed
+_GROWTH = 1e5  # of the largest entry of a front: directions that would cause more growth are delayed
 
 
 def negative_eigenvalues(matrix: csr_array) -> int | None:
-    """Return how many eigenvalues of a symmetric matrix (n, n) are negative; Sylvester's law of inertia.
+    """Return the number of negative eigenvalues of a symmetric matrix (n, n), by Sylvester's law of inertia.
 
-    L D L^T block by block, with exchanges inside of blocks (Bunch and Kaufman 1977), which end where the fewest rows
-    are coupled with what follows: between two elements. Directions of a block that are nearly singular without what
-    follows are eliminated together with it, as in multifrontal elimination (Duff and Reid 1983); where these are many,
-    the blocks are joined, up to 3000 rows. None if these are not enough. Raises LinAlgError if numbers are not
-    finite.
+    The matrix is factorised as L D L^T block by block, with pivoting within blocks (Bunch and Kaufman 1977). A block
+    ends where the fewest rows are coupled with later ones, which is between two elements. Directions in which a block
+    alone is nearly singular are delayed and eliminated with the next block, as in the multifrontal method (Duff and
+    Reid 1983); if there are many, the blocks are merged, up to 3000 rows. Returns None if that is not enough. Raises
+    LinAlgError if entries are not finite.
     """
     order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
     ordered = csr_array(triu(matrix[order][:, order]))
@@ -54,10 +54,10 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
 
 
 def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | None:
-    """Return the negative eigenvalues that go with the first rows of a matrix (n, n), and what these leave behind.
+    """Eliminate the first `inside` rows of a front (n, n), except for directions that would cause too much growth.
 
-    That is how many directions of them wait for rows to come, as what these would leave is too large, and the matrix of
-    those and the other rows. None if more than a few would wait.
+    Return the number of negative eigenvalues eliminated, the number of delayed directions, and the matrix that remains
+    for these and the other rows; None if more than half of the directions, or any of a large block, would be delayed.
     """
     largest = np.abs(front).max()
     factored, exchanged = symmetric_factors(front[:inside, :inside])
@@ -80,12 +80,15 @@ def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | 
 
 
 def _negative(matrix: np.ndarray) -> int:
-    """Return how many eigenvalues of a dense symmetric matrix are negative."""
+    """Return the number of negative eigenvalues of a dense symmetric matrix."""
     return _negative_blocks(*symmetric_factors(matrix))
 
 
 def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.ndarray:
-    """Return the rows from `start` to `end` of a symmetric matrix, and their columns, of `rows` (m,) it has (m, m)."""
+    """Return the matrix (m, m) with the entries of rows `start` to `end` of a symmetric one, and of the same columns.
+
+    upper: upper triangle of the symmetric matrix; rows (m,): its rows that the result contains, others are zero.
+    """
     part = slice(upper.indptr[start], upper.indptr[end])
     row = np.repeat(np.arange(end - start), np.diff(upper.indptr[start : end + 1]))
     column = np.searchsorted(rows, upper.indices[part])
@@ -95,7 +98,7 @@ def _rows_of(upper: csr_array, start: int, end: int, rows: np.ndarray) -> np.nda
 
 
 def _first_coupled(matrix: csr_array) -> np.ndarray:
-    """Return the first row (n,) that each is coupled with, itself if there is none before; of an upper half."""
+    """Return for each row the first one (n,) that it is coupled with, at most itself; matrix: upper triangle."""
     row, column = matrix.nonzero()
     result = np.arange(matrix.shape[0])
     np.minimum.at(result, column, row)
@@ -103,7 +106,7 @@ def _first_coupled(matrix: csr_array) -> np.ndarray:
 
 
 def _block_ends(coupled: np.ndarray) -> list[int]:
-    """Return where blocks end: in each window where the fewest rows that follow are coupled with some before."""
+    """Return the rows at which blocks end, each in its window where the fewest later rows are coupled with earlier."""
     size, steps = len(coupled), np.zeros(len(coupled) + 2, dtype=np.int64)
     np.add.at(steps, coupled + 1, 1)
     np.add.at(steps, np.arange(size) + 1, -1)
@@ -115,9 +118,9 @@ def _block_ends(coupled: np.ndarray) -> list[int]:
 
 
 def _negative_blocks(factored: np.ndarray, exchanged: np.ndarray) -> int:
-    """Return how many eigenvalues of the blocks of one and of two in D are negative."""
+    """Return the number of negative eigenvalues of D, which has 1 x 1 and 2 x 2 blocks; see `symmetric_factors`."""
     pivots, beside = np.diagonal(factored).copy(), np.diagonal(factored, -1)
-    first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a block of two are marked
+    first = np.flatnonzero(exchanged < 0)[::2]  # both rows of a 2 x 2 block are marked
     mean, half = 0.5 * (pivots[first] + pivots[first + 1]), 0.5 * (pivots[first] - pivots[first + 1])
     away = np.hypot(half, beside[first])
     pivots[first], pivots[first + 1] = mean - away, mean + away

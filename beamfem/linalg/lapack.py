@@ -1,6 +1,6 @@
-"""LAPACK through scipy, where numbers that are not finite are lost digits, and every other mistake is ours.
+"""Functions of scipy.linalg that raise LinAlgError for arrays that are not finite, a numerical failure.
 
-scipy tells both by a ValueError, and LinAlgError is one as well.
+scipy raises ValueError for these as for programming errors, and LinAlgError is a ValueError too.
 """
 
 from collections.abc import Callable
@@ -27,7 +27,7 @@ __all__ = [
 
 
 def _told_apart(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of scipy that raises LinAlgError if an array that it is given is not finite."""
+    """Return a function of scipy that raises LinAlgError instead of ValueError if one of its arrays is not finite."""
 
     @wraps(function)
     def called(*arguments: Any, **options: Any) -> Any:
@@ -55,9 +55,10 @@ svd = _told_apart(scipy.linalg.svd)
 
 
 def symmetric_factors(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the factors L D L^T (n, n) of a symmetric matrix in its lower half, and its row exchanges (n,).
+    """Return the factors L and D (n, n) of a symmetric matrix L D L^T, and the row exchanges (n,), as by dsytrf.
 
-    Exchanges are negative in both rows of a block of two in D. Raises LinAlgError for numbers that are not finite.
+    They are in the lower triangle; exchanges are negative for both rows of a 2 x 2 block of D. Raises LinAlgError if
+    entries are not finite.
     """
     if not np.isfinite(matrix).all():
         raise LinAlgError("a matrix has numbers that are not finite")

@@ -1,4 +1,4 @@
-"""A tangent with multipliers: [K, G'; G, 0] with the conditions G behind the coordinates."""
+"""Tangents with Lagrange multipliers, [K, G^T; G, 0]: G are the gradients of the conditions."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ from beamfem.linalg.tangent import UNROTATED, Rotated, SparseFactors, SparseTang
 
 @dataclass(frozen=True)
 class SaddleFactors:
-    """Factors of [K + c G'G, G'; G, 0], which has as many negative eigenvalues as [K, G'; G, 0] (Sylvester).
+    """Factors of [K + G^T c G, G^T; G, 0], which has as many negative eigenvalues as [K, G^T; G, 0] (Sylvester).
 
-    With G' = G transposed. What conditions alone hold has no stiffness in K; here it does, so that pivots stay where
-    they are and their signs count. stiffening: c G' (n - k, k).
+    K has no stiffness in directions that only conditions constrain. The added term gives them stiffness, so that no
+    rows need to be exchanged and the signs of pivots can be counted. stiffening: G^T c (n - k, k), c diagonal.
     """
 
     factors: SparseFactors
@@ -23,7 +23,7 @@ class SaddleFactors:
 
     @property
     def negative_pivots(self) -> int:
-        """How many eigenvalues are negative for motions that meet the conditions."""
+        """Number of negative eigenvalues of K for motions that satisfy the conditions."""
         return self.factors.negative_pivots - self.multipliers
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -35,13 +35,13 @@ class SaddleFactors:
         return np.asarray(turn.T @ self.factors.solve(whole))
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError."""
+        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
         return self.solve(-unbalanced), None
 
 
 @dataclass(frozen=True)
 class SaddleTangent:
-    """A sparse matrix whose last rows and columns are those of multipliers."""
+    """A sparse matrix whose last rows and columns belong to Lagrange multipliers."""
 
     whole: SparseTangent
     multipliers: int
@@ -50,7 +50,7 @@ class SaddleTangent:
         """Return the factors. Raises LinAlgError."""
         matrix, k = self.whole.sparse(rotated), self.multipliers
         conditions = csr_array(matrix[-k:, :-k])
-        # each condition as stiff as the coordinates that it binds
+        # each condition is made as stiff as the stiffest coordinate
         sizes = np.abs(conditions).max(axis=1).toarray().ravel()
         stiffest = float(np.abs(matrix.diagonal()[:-k]).max(initial=0.0)) or 1.0
         weights = stiffest / np.where(sizes > 0.0, sizes, 1.0) ** 2

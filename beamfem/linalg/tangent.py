@@ -1,4 +1,4 @@
-"""The matrix of the unknown coordinates: how it is solved with, and what its pivots tell."""
+"""Tangents, the matrices of the unknown coordinates: their factorisation, solution and counts of negative pivots."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -15,19 +15,19 @@ from beamfem.linalg.lapack import LinAlgError, solve_banded
 SMALLEST_PIVOT = 1e-13
 _NOTHING = np.empty(0)
 
-# numbers (nt,) among the unknown of the x of inclined rollers, and their normals (nt, 2)
+# for inclined rollers: number of each x among the unknowns (nt,), and unit normals (nt, 2)
 Rotated = tuple[np.ndarray, np.ndarray]
-# rotates and holds nothing: for what is found among the directions that a solve leaves free
+# neither rotates nor constrains: for matrices applied to vectors that satisfy the constraints of rollers already
 UNROTATED: Rotated = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 Stresses = tuple[np.ndarray, ...]
 
 
 class Factorised(Protocol):
-    """A tangent in its factors, for any number of right-hand sides."""
+    """A factorised tangent, for any number of right-hand sides."""
 
     @property
     def negative_pivots(self) -> int:
-        """How many eigenvalues of a symmetric tangent are negative (Sylvester's law of inertia)."""
+        """Number of negative eigenvalues of a symmetric tangent (Sylvester's law of inertia)."""
         ...
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -35,15 +35,15 @@ class Factorised(Protocol):
         ...
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
+        """Return the Newton correction (n,) for the residual (n,) of the state of the tangent. Raises LinAlgError.
 
-        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
+        Also return the stress resultants (ne, nq, ns) of each block after it if they are separate unknowns, else None.
         """
         ...
 
 
 class Tangent(Protocol):
-    """A matrix of the unknown coordinates."""
+    """A matrix of the unknown coordinates, before factorisation."""
 
     def factorised(self, rotated: Rotated) -> Factorised:
         """Return the factors. Raises LinAlgError."""
@@ -60,9 +60,10 @@ class Tangent(Protocol):
 
 @dataclass(frozen=True)
 class BandFactors:
-    """Factors of a band.
+    """Factors of a band matrix.
 
-    rows: the matrix, inclined rollers constrained; plain: whether lu may be used, or pivots are needed.
+    rows: the matrix with inclined rollers constrained; lu: its factors without pivoting; plain: whether these are
+    accurate enough; otherwise each solve factorises with pivoting.
     """
 
     rows: np.ndarray
@@ -72,8 +73,8 @@ class BandFactors:
 
     @property
     def negative_pivots(self) -> int:
-        """How many eigenvalues of a symmetric tangent are negative (Sylvester's law of inertia)."""
-        # the factorisation keeps the inverse of each pivot on the diagonal
+        """Number of negative eigenvalues of a symmetric tangent (Sylvester's law of inertia)."""
+        # the factorisation stores the inverse of each pivot on the diagonal
         return int((self.lu[:, self.lu.shape[1] // 2] < 0.0).sum())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -94,10 +95,7 @@ class BandFactors:
         return x
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
-
-        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
-        """
+        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
         return self.solve(-unbalanced), None
 
 
@@ -109,7 +107,7 @@ class BandTangent:
     reach: np.ndarray
 
     def factorised(self, rotated: Rotated) -> BandFactors:
-        """Return the factors; pivots only where the plain factorisation meets a tiny pivot."""
+        """Return the factors; pivoting is used only if the factorisation without it meets a tiny pivot."""
         rows = _held(self.rows, rotated)
         lu = rows.copy()
         n, half = len(lu), lu.shape[1] // 2
@@ -136,7 +134,7 @@ class SparseFactors:
 
     @property
     def negative_pivots(self) -> int:
-        """How many eigenvalues of a symmetric tangent are negative, as long as no row was exchanged for another."""
+        """Number of negative eigenvalues of a symmetric tangent, provided that no rows were exchanged."""
         return int((self.lu.U.diagonal() < 0.0).sum())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -150,10 +148,7 @@ class SparseFactors:
         return np.asarray(x)
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return Newton's step (n,) where a residual (n,) was left when the tangent was formed. Raises LinAlgError.
-
-        And the stress resultants after it, of each block (ne, nq, ns), where they are unknowns of their own.
-        """
+        """Return the Newton correction (n,) for a residual (n,), and None; see `Factorised`. Raises LinAlgError."""
         return self.solve(-unbalanced), None
 
 
@@ -164,9 +159,12 @@ class SparseTangent:
     matrix: csc_array
 
     def factorised(self, rotated: Rotated) -> SparseFactors:
-        """Return the factors, with diagonal pivots unless tiny, so that their signs count. Raises LinAlgError."""
+        """Return the factors, with diagonal pivots unless these are tiny, so that their signs can be counted.
+
+        Raises LinAlgError.
+        """
         matrix = csc_array(self.sparse(rotated)) if len(rotated[0]) else self.matrix
-        # the unknowns are in an order of little fill; wide panels and relaxed supernodes cost more than they save here
+        # the ordering already limits fill-in; wide panels and relaxed supernodes cost more than they save here
         settings = {"permc_spec": "NATURAL", "diag_pivot_thresh": 1e-10, "relax": 1, "panel_size": 1}
         try:
             lu = splu(matrix, **settings, options={"SymmetricMode": True})
@@ -193,14 +191,14 @@ class SparseTangent:
 
 
 def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
-    """Turn pairs of a right-hand side, or of a solution, in place."""
+    """Rotate the pairs of inclined rollers in x, in place; routine: `rotate_in` or `rotate_back`."""
     first, normal = rotated
     if len(first):
         routine(len(first), first, normal, x)
 
 
 def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
-    """Return a band with the normals of inclined rollers constrained."""
+    """Return a copy of a band matrix with the normals of inclined rollers constrained."""
     result, (first, normal) = rows.copy(), rotated
     if len(first):
         hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
@@ -208,7 +206,7 @@ def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
 
 
 def turning(size: int, rotated: Rotated) -> csr_array:
-    """Return the rotation (n, n) that takes the normals of inclined rollers to x."""
+    """Return the rotation matrix (n, n) that takes the normals of inclined rollers to x."""
     first, normal = rotated
     diagonal, above, below = np.ones(size), np.zeros(size), np.zeros(size)
     diagonal[first] = diagonal[first + 1] = normal[:, 0]
@@ -217,7 +215,7 @@ def turning(size: int, rotated: Rotated) -> csr_array:
 
 
 def _diagonals(rows: np.ndarray) -> np.ndarray:
-    """Return the band (2 w + 1, n) in the storage of SciPy: entry (w + i - j, j) is A[i, j]."""
+    """Return the band (2 w + 1, n) in the storage scheme of SciPy: entry (w + i - j, j) is A[i, j]."""
     n, width = rows.shape
     half = width // 2
     diagonals = np.zeros((width, n))

@@ -1,1 +1,1 @@
-"""From the Python that kernels are written in to machine code, by LLVM: `translation` says which Python that is."""
+"""Compiler from a subset of Python, defined in `translation`, to machine code by means of LLVM."""

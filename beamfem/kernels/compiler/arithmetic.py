@@ -1,4 +1,4 @@
-"""What operators and functions of Python are in compiled code."""
+"""LLVM instructions for the operators and functions of Python."""
 
 import ast
 import math
@@ -23,7 +23,7 @@ def _common(a: Value, b: Value, least: Kind) -> Kind:
 
 
 def combined(build: Build, operation: ast.operator, a: Value, b: Value) -> Value:
-    """Return a + b, a - b, a * b, a / b, a // b, a % b or a ** b, as Python has them."""
+    """Return a + b, a - b, a * b, a / b, a // b, a % b or a ** b, with the meaning they have in Python."""
     kind = _common(a, b, NUMBER if isinstance(operation, ast.Div | ast.Pow) else WHOLE)
     both = [Value(kind, build.converted(each, kind)) for each in (a, b)]
     first, second = both[0].llvm, both[1].llvm
@@ -40,7 +40,7 @@ def combined(build: Build, operation: ast.operator, a: Value, b: Value) -> Value
 
 
 def _floored(builder: ir.IRBuilder, operation: ast.operator, a: ir.Value, b: ir.Value) -> ir.Value:
-    """Return quotient or remainder of whole numbers rounded down; LLVM rounds towards zero."""
+    """Return the quotient of integers rounded down, or its remainder; those of LLVM round towards zero."""
     left, zero = builder.srem(a, b), WHOLE.llvm(0)
     signs_differ = builder.icmp_signed("<", builder.xor(left, b), zero)
     rounded_up = builder.and_(builder.icmp_signed("!=", left, zero), signs_differ)
@@ -50,7 +50,7 @@ def _floored(builder: ir.IRBuilder, operation: ast.operator, a: ir.Value, b: ir.
 
 
 def compared(build: Build, operation: ast.cmpop, a: Value, b: Value) -> Value:
-    """Return whether a < b, and so on; a number that is none is unequal to all and neither smaller nor larger."""
+    """Return whether a < b, and so on; NaN is unequal to every number, and neither smaller nor larger."""
     kind, sign = _common(a, b, WHOLE), _COMPARISONS[type(operation)]
     first, second = build.converted(a, kind), build.converted(b, kind)
     if kind is WHOLE:
@@ -71,7 +71,7 @@ def negative(build: Build, value: Value) -> Value:
 
 
 def chosen(build: Build, condition: Value, a: Value, b: Value) -> Value:
-    """Return a if a condition holds, else b; both have been computed."""
+    """Return a if a condition holds, else b; both are computed in any case."""
     kind = _common(a, b, WHOLE)
     both = [build.converted(each, kind) for each in (a, b)]
     return Value(kind, build.builder.select(condition.llvm, *both))
@@ -114,7 +114,7 @@ def _arctangent(build: Build, y: Value, x: Value) -> Value:
     return build.call("atan2", *(Value(NUMBER, build.converted(each, NUMBER)) for each in (y, x)))
 
 
-# what functions of Python are
+# by function of Python
 FUNCTIONS: dict[Any, Callable[..., Value]] = {
     min: _least,
     max: _largest,

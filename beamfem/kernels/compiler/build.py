@@ -1,4 +1,4 @@
-"""A function of LLVM that is being built, and how values of one kind become another in it."""
+"""Emission of LLVM instructions: memory access, calls, and conversions between kinds of values."""
 
 from dataclasses import dataclass
 
@@ -9,18 +9,18 @@ from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, REALS, ROWS, WHO
 
 @dataclass
 class Build:
-    """Where instructions go; flags: liberties that LLVM may take with sums and products of numbers."""
+    """The position at which instructions are emitted; flags: fast-math flags of floating-point instructions."""
 
     builder: ir.IRBuilder
     flags: tuple[str, ...] = ()
 
     def space(self, llvm: ir.Type) -> ir.Value:
-        """Return room for a value on the stack of the function."""
+        """Allocate a value on the stack of the function, and return its address."""
         with self.builder.goto_entry_block():
             return self.builder.alloca(llvm)
 
     def call(self, name: str, value: Value, *others: Value) -> Value:
-        """Call a function of LLVM or of the C library for values of one kind."""
+        """Call a function of LLVM or of the C library whose arguments and result are of one kind."""
         types = [each.kind.llvm for each in (value, *others)]
         functions = self.builder.module.globals
         own = functions.get(name) or ir.Function(self.builder.module, ir.FunctionType(types[0], types), name)
@@ -28,14 +28,14 @@ class Build:
         return Value(value.kind, self.builder.call(own, arguments, fastmath=self.flags))
 
     def same(self, number: ir.Value) -> ir.Value:
-        """Return lanes that all hold one number, or its like for whole numbers."""
+        """Return a vector whose lanes all hold one number or integer."""
         undefined = ir.Constant(ir.VectorType(number.type, WIDTH), ir.Undefined)
         first = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
         inserted = self.builder.insert_element(undefined, number, ir.IntType(32)(0))
         return self.builder.shuffle_vector(inserted, undefined, first)
 
     def converted(self, value: Value, kind: Kind) -> ir.Value:
-        """Return a value as one of another kind; raise TypeError if that loses something."""
+        """Convert a value to another kind; raise TypeError if that would lose information."""
         if value.kind is kind or {value.kind, kind} == {REALS, ROWS}:
             return value.llvm
         if value.kind is FLAG and kind is WHOLE:
@@ -56,7 +56,7 @@ class Build:
         raise TypeError(f"a {value.kind.name} is neither true nor false")
 
     def place(self, pointer: Value, index: Value) -> ir.Value:
-        """Return where an entry of a pointer is."""
+        """Return the address of an entry of a pointer."""
         if index.kind is not WHOLE:
             raise TypeError(f"a {index.kind.name} is no place in memory")
         place = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)

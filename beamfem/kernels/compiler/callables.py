@@ -1,4 +1,4 @@
-"""What compiled code can call besides functions of Python: operations, and functions that stand in place."""
+"""Functions that compiled code can call, besides a few of Python: operations and inlined functions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,31 +6,31 @@ from typing import Any
 
 from beamfem.kernels.compiler.kinds import NUMBER, WHOLE, Kind, Value
 
-# What a function gives back that is called by its address: nothing, a whole number or a number.
+# Results of functions that are called by their address: nothing, an integer or a floating-point number.
 RESULTS: dict[str, Kind | None] = {"": None, "i": WHOLE, "d": NUMBER}
 
 
 @dataclass(frozen=True)
 class Operation:
-    """What compiled code does where a function is called; emit(build, *values) returns its value, if it has one."""
+    """A call that is replaced by instructions: emit(build, *values) writes them, and returns their value if any."""
 
     emit: Callable[..., Value | None]
 
 
 @dataclass(frozen=True)
 class Inlined:
-    """A function whose instructions stand where it is called; flags: see `build.Build`, None: those of its caller."""
+    """A function that is inlined where it is called; flags: see `build.Build`, None for those of the caller."""
 
     function: Callable[..., Any]
     flags: tuple[str, ...] | None = None
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the function as the Python that it is."""
+        """Call the function as ordinary Python."""
         return self.function(*arguments)
 
 
 def operation(emit: Callable[..., Value | None]) -> Any:
-    """Return the operation that a function of a build and of values writes."""
+    """Return the operation whose instructions are written by emit(build, *values); usable as a decorator."""
     made = Operation(emit)
     object.__setattr__(made, "__doc__", emit.__doc__)
     return made

@@ -1,4 +1,4 @@
-"""Values of expressions."""
+"""Translation of expressions into LLVM values."""
 
 import ast
 from collections.abc import Callable, Sequence
@@ -15,10 +15,11 @@ from beamfem.kernels.compiler.kinds import FLAG, NUMBER, WHOLE, Kind, Value
 
 @dataclass(frozen=True)
 class Scope:
-    """What names stand for in a function.
+    """The meaning of names in a function.
 
-    inline(function, values): writes the instructions of another function here and returns what it returns; assigned:
-    names of the variables that have a value here, whatever way led here.
+    outside: objects by name that are not variables, see `source.outside`; inline(function, values): writes the
+    instructions of another function here and returns its results; variables: kind and address by name; assigned: names
+    of the variables that have a value here on every path through the function.
     """
 
     build: Build
@@ -29,7 +30,7 @@ class Scope:
 
 
 def object_of(scope: Scope, node: ast.expr) -> Any:
-    """Return an object of Python."""
+    """Return the Python object that a constant, or a name from outside the function, stands for."""
     match node:
         case ast.Constant(value=value):
             return value
@@ -41,7 +42,7 @@ def object_of(scope: Scope, node: ast.expr) -> Any:
 
 
 def one_value(scope: Scope, node: ast.expr) -> Value:
-    """Return the value of an expression that has one."""
+    """Return the value of an expression that has exactly one. Raises TypeError otherwise."""
     found = values(scope, node)
     if isinstance(found, Value):
         return found
@@ -49,12 +50,12 @@ def one_value(scope: Scope, node: ast.expr) -> Value:
 
 
 def truth(scope: Scope, node: ast.expr) -> ir.Value:
-    """Return whether a condition holds."""
+    """Return a condition as an LLVM Boolean."""
     return scope.build.truth(one_value(scope, node))
 
 
 def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
-    """Return the value of an expression, or those of several."""
+    """Return the value of an expression, or the list of values of a tuple or a call."""
     build = scope.build
     match node:
         case ast.Tuple(elts=parts):
@@ -104,7 +105,7 @@ def _called(scope: Scope, function: Any, arguments: list[Value]) -> Value | list
 
 
 def _either(build: Build, condition: ir.Value, first: Callable[[], Value], second: Callable[[], Value]) -> Value:
-    """Return one of two values, of which only that one is computed."""
+    """Return one of two values by a branch, so that only this one is computed."""
     builder, found = build.builder, list[tuple[Value, ir.Block]]()
     then, otherwise, after = (builder.append_basic_block(name) for name in ("then", "else", "after"))
     builder.cbranch(condition, then, otherwise)
@@ -123,7 +124,7 @@ def _either(build: Build, condition: ir.Value, first: Callable[[], Value], secon
 
 
 def _joined(scope: Scope, all_hold: bool, first: ast.expr, others: list[ast.expr]) -> Value:
-    """Return whether all conditions hold, or any; none is computed that does not matter."""
+    """Return the conjunction or disjunction of conditions, evaluated only as far as needed."""
     here = one_value(scope, first)
     if here.kind is not FLAG:
         raise TypeError(f"and, or join conditions, and {ast.unparse(first)} is a {here.kind.name}")

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from llvmlite import ir
 
-WIDTH = 8  # lanes: a cache line of doubles, one or two registers of today's processors
+WIDTH = 8  # lanes: a cache line of doubles, which fills one or two vector registers of current processors
 _DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
 
 
@@ -13,8 +13,8 @@ _DOUBLE, _INTEGER = ir.DoubleType(), ir.IntType(64)
 class Kind:
     """A kind of values.
 
-    llvm: their type in LLVM; rank: a number becomes one of a kind of higher rank where two meet, -1 for pointers;
-    entry: what an entry of a pointer is, which lies in memory as `stored`.
+    name: used in error messages; llvm: type in LLVM; rank: in an operation with a value of higher rank, values are
+    converted to that kind, -1 for pointers; entry: kind of the entries of a pointer, whose type in memory is `stored`.
     """
 
     name: str
@@ -25,7 +25,7 @@ class Kind:
 
 
 class Value(NamedTuple):
-    """A value that compiled code works on."""
+    """An LLVM value and its kind."""
 
     kind: Kind
     llvm: ir.Value
@@ -40,5 +40,5 @@ ROWS = Kind("pointer to lanes", _DOUBLE.as_pointer(), entry=LANES, stored=LANES.
 WHOLES = Kind("pointer to whole numbers", _INTEGER.as_pointer(), entry=WHOLE, stored=_INTEGER)
 SLOTS = Kind("pointer to 32-bit whole numbers", ir.IntType(32).as_pointer(), entry=WHOLE, stored=ir.IntType(32))
 
-# One letter an argument.
+# Kinds of arguments by letter.
 KINDS = {"r": REALS, "v": ROWS, "n": WHOLES, "s": SLOTS, "i": WHOLE, "d": NUMBER}

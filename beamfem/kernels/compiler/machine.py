@@ -1,4 +1,4 @@
-"""Machine code of this computer: LLVM makes it of a module and links it into the process."""
+"""Generation of machine code for this computer by LLVM, and its linking into the process."""
 
 import os
 from contextlib import suppress
@@ -8,15 +8,15 @@ from functools import cache
 from llvmlite import binding as llvm
 from llvmlite import ir
 
-SYMBOL = "kernel"  # what the one function of a module is called
-# functions of the C library that LLVM calls where the processor has no instruction, and for loops that copy
+SYMBOL = "kernel"  # name of the only function of each module
+# functions of the C library that LLVM calls if the processor has no instruction, and for loops that copy or clear
 _OF_C = ("atan2", "pow", "floor", "sqrt", "memcpy", "memmove", "memset")
-_engines: list[llvm.ExecutionEngine] = []  # machine code lives as long as what linked it
+_engines: list[llvm.ExecutionEngine] = []  # kept, because machine code lives as long as the engine that linked it
 
 
 @cache
 def _target() -> llvm.Target:
-    with suppress(RuntimeError):  # newer versions do it by themselves, and refuse it
+    with suppress(RuntimeError):  # newer versions of llvmlite do it automatically, and raise this error
         llvm.initialize()
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
@@ -34,7 +34,7 @@ def _processor() -> tuple[str, str]:
 
 
 def description() -> str:
-    """Return what machine code is for: system, processor and version of LLVM."""
+    """Return a description of the target of machine code: system, processor and version of LLVM."""
     _target()
     return repr((llvm.get_process_triple(), *_processor(), llvm.llvm_version_info))
 
@@ -48,12 +48,12 @@ _machine = cache(_new_machine)
 
 
 def object_code(module: ir.Module) -> bytes:
-    """Return the machine code of a module."""
+    """Return the object file of a module."""
     return _machine().emit_object(_optimised(module))
 
 
 def assembly_code(module: ir.Module) -> str:
-    """Return the machine code of a module as text."""
+    """Return the assembly code of a module."""
     return _machine().emit_assembly(_optimised(module))
 
 
@@ -68,7 +68,7 @@ def _optimised(module: ir.Module) -> llvm.ModuleRef:
 
 
 def linked(code: bytes) -> int:
-    """Link machine code into the process; return the address of its function."""
+    """Link an object file into the process; return the address of its function."""
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()

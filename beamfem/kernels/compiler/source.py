@@ -1,4 +1,4 @@
-"""The text of functions, and what names in it stand for that are not variables."""
+"""Source text of functions as syntax trees, and the objects that names other than variables stand for."""
 
 import ast
 import builtins
@@ -11,14 +11,14 @@ from typing import Any
 
 @cache
 def _functions(file: str, text: str) -> dict[int, ast.FunctionDef]:
-    """Return the functions of a file by the lines where they begin, with their decorators."""
+    """Return the functions of a file by the number of their first line, decorators included."""
     found = (node for node in ast.walk(ast.parse(text, file)) if isinstance(node, ast.FunctionDef))
     return {min([node.lineno, *(each.lineno for each in node.decorator_list)]): node for node in found}
 
 
 @cache
 def _codes(file: str, text: str) -> list[CodeType]:
-    """Return what Python makes of all functions of a file."""
+    """Return the code objects of all functions of a file."""
     found, left = list[CodeType](), [compile(text, file, "exec", dont_inherit=True)]
     while left:
         inner = [constant for constant in left.pop().co_consts if isinstance(constant, CodeType)]
@@ -30,8 +30,8 @@ def _codes(file: str, text: str) -> list[CodeType]:
 def definition(function: Callable[..., Any]) -> ast.FunctionDef:
     """Return the syntax tree of a function, with the lines of its file.
 
-    Raises TypeError if there is no text, where it is that of another function, as after a change of the file, and
-    for arguments that are more than names.
+    Raises TypeError if there is no source text, if it is that of another function because the file has changed since
+    the import, or if arguments have defaults or are not plain positional ones.
     """
     code = function.__code__
     linecache.checkcache(code.co_filename)
@@ -49,7 +49,7 @@ def definition(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def outside(function: Callable[..., Any]) -> dict[str, Any]:
-    """Return what names mean to a function that are not its own: built-in, of its module, of a function around it."""
+    """Return by name what a function finds outside: built-ins, globals and the variables of enclosing functions."""
     code = function.__code__
     known = vars(builtins) | function.__globals__ | dict(_enclosed(function))
     for name in (*code.co_varnames, *code.co_cellvars):

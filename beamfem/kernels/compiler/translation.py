@@ -1,14 +1,14 @@
-"""The Python that kernels are written in, and how it becomes instructions of LLVM.
+"""Translation of the subset of Python that kernels are written in to LLVM instructions.
 
-Kernels are functions of whole numbers, numbers and pointers. A variable has one kind of value, that of its first
-assignment; a number takes whole numbers too, and outside of loops and branches a name may begin anew with another kind.
-There are `for` over `range` with a step that is written as a number, `while`, `if`, conditional expressions, `break`,
-`continue`, `return`, and assignments to names and entries of pointers, several at once as well. What is called is an
-`Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function are numbers,
-modules or what is called. Anything else raises TypeError with the line.
+Kernels are functions of integers, floating-point numbers and pointers. A variable has one kind of value, that of its
+first assignment; a floating-point variable can be assigned integers, and outside of loops and branches a name can be
+assigned a value of another kind. The statements are `for` over `range` with a constant step, `while`, `if`, `break`,
+`continue`, `return`, calls, and assignments, also of tuples, to names and entries of pointers. A function that is
+called is an `Operation`, an `Inlined` function or one of `arithmetic.FUNCTIONS`. Names from outside the function stand
+for numbers, modules or such functions. Anything else raises TypeError with the line.
 
-Whole numbers have 64 bits, and are turned into numbers where they meet one. What is divided by the whole number zero
-ends the process, as in C; the number zero gives an infinity or no number.
+Integers have 64 bits, and are converted in operations with floating-point numbers. Integer division by zero ends the
+process, as in C; floating-point division by zero gives an infinity or NaN.
 """
 
 import ast
@@ -28,10 +28,10 @@ from beamfem.kernels.compiler.source import definition, outside
 def translate(
     function: Callable[..., Any], kinds: str, returns: str, flags: Sequence[str], fixed: Mapping[str, int], name: str
 ) -> ir.Module:
-    """Return a module with one function that is called as C does.
+    """Return a module with one function in C calling convention.
 
-    kinds: letters of `kinds.KINDS`, one an argument; returns: a letter of `callables.RESULTS`; flags: see `Build`;
-    fixed: whole numbers that take the place of arguments.
+    kinds: letters of `kinds.KINDS`, one per argument; returns: a letter of `callables.RESULTS`; flags: see `Build`;
+    fixed: integers by name that replace arguments.
     """
     module, result = ir.Module(name), RESULTS[returns]
     outer = ir.VoidType() if result is None else result.llvm
@@ -53,22 +53,22 @@ def translate(
 
 
 class _Body:
-    """The body of a function that is written where a builder stands."""
+    """The body of a function, whose instructions are written at the position of a builder."""
 
     def __init__(self, build: Build, function: Callable[..., Any], arguments: Sequence[Value]) -> None:
         self._build, self._builder, self._function = build, build.builder, function
         self._scope = Scope(build, outside(function), self._inline)
         self._end = self._builder.append_basic_block("end")
-        self._depth = 0  # of loops and branches around a statement
-        self._loops: list[tuple[ir.Block, ir.Block]] = []  # where `continue` and `break` lead
-        self._results: list[tuple[Kind, ir.Value]] | None = None  # of the first return
-        self._breaks: list[set[str] | None] = []  # what is assigned wherever a loop is left, None where it is not
+        self._depth = 0  # number of loops and branches around a statement
+        self._loops: list[tuple[ir.Block, ir.Block]] = []  # targets of `continue` and `break`
+        self._results: list[tuple[Kind, ir.Value]] | None = None  # kinds and addresses, from the first return
+        self._breaks: list[set[str] | None] = []  # names assigned at every `break` of a loop, None without any
         self._definition = definition(function)
         for argument, value in zip(self._definition.args.args, arguments, strict=True):
             self._assign(ast.Name(argument.arg), value)
 
     def run(self) -> list[Value]:
-        """Write all instructions; return what the function returns."""
+        """Write all instructions; return the results of the function."""
         self._suite(self._definition.body)
         if self._results and not self._builder.block.is_terminated:
             raise TypeError(f"{self._function.__qualname__} returns a value, but not where it ends")
@@ -95,7 +95,7 @@ class _Body:
                 if not hasattr(error, "__notes__"):
                     error.add_note(where)
                 raise
-            except Exception as error:  # whatever a statement that nobody thought of leads to
+            except Exception as error:  # an unforeseen statement may fail anywhere
                 named = TypeError(f"{ast.unparse(statement).splitlines()[0]}: {error!r}")
                 named.add_note(where)
                 raise named from error
@@ -264,7 +264,7 @@ class _Body:
         self._loop(condition, body, begin, advance)
 
     def _step(self, node: ast.expr) -> int:
-        """Return the step of a range, which is known here."""
+        """Return the step of a range, a compile-time constant."""
         match node:
             case ast.UnaryOp(op=ast.USub(), operand=value):
                 return -self._step(value)

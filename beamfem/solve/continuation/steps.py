@@ -23,7 +23,7 @@ _LARGEST_CORRECTION = 0.5  # of the step
 _ARC = 0.75
 _BESIDE = 0.03
 _ANOTHER = 1e-4  # of the model: the least distance of another path; near limit points the tangent itself has an error
-_FARTHEST = 2.0  # of the step: iterates further away do not come back
+_FARTHEST = 2.0  # of the step: iterates further away are considered to diverge
 _WANTED_ITERATIONS = 8
 _LARGEST_INCREASE = 4.0
 

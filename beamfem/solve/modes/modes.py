@@ -53,7 +53,7 @@ class Modes:
     modes : array, (count, n)
         Shapes phi over all coordinates, phi^T M phi = 1, complex only if follower loads make the tangent unsymmetric.
     rigid : tuple of str
-        For each rigid mode what it moves.
+        What each rigid mode moves, in words.
 
     Examples
     --------

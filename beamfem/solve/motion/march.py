@@ -28,7 +28,7 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics (9,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    statistics (10,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
     the stored states.
     """
 
@@ -52,7 +52,7 @@ class Last:
     _spare: np.ndarray | None = None
 
     def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
-        """Take another step, by one assignment, so that it is complete after an interruption."""
+        """Record another step by a single assignment, so that the record is complete even after an interruption."""
         before, room = self.step[1], np.empty_like(state) if self._spare is None else self._spare
         room[:] = state
         self.step = done, room, turned.copy()

@@ -26,7 +26,7 @@ class EquationsOfMotion:
     """M(p) p'' + inertia of first order + elastic forces - loads = 0, for the unknown coordinates.
 
     An `Integrator` receives it; `free` (unknown,) are the numbers of the unknown coordinates among all coordinates, and
-    `scale` (unknown,) is what a correction of each is measured by.
+    `scale` (unknown,) the values relative to which their corrections are measured.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class EquationsOfMotion:
         return self.system.scale[self.system.free_dofs]
 
     def residual(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float) -> np.ndarray:
-        """Return the left side of the equations in a state.
+        """Return the left-hand side of the equations in a state.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class EquationsOfMotion:
         blocks : sequence of sequence of csr_array, (s, s)
             The tangents.
         right : array, (s, unknown)
-            Right sides.
+            Right-hand sides.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""A second thread for the motion of a long chain: it waits in compiled code, for as long as one call of it takes."""
+"""A second thread for the motion of a long chain, which waits in compiled code during a call of `kernels.march`."""
 
 import os
 from collections.abc import Iterator
@@ -19,9 +19,10 @@ from beamfem.solve.newton import cut_chain
 
 @contextmanager
 def routines(system: System, in_two: bool) -> Iterator[np.ndarray]:
-    """Lend the addresses of what `kernels.march` calls; in_two: with a thread for the second halves of its stages.
+    """Provide the addresses of the routines that `kernels.march` calls; in_two: for a chain in two halves.
 
-    There is one where two cores may be used and no law of a section calls Python. It ends before the context does.
+    A second thread then processes the second halves, if two cores may be used and no section law calls Python. It ends
+    before the context does.
     """
     calls = system.solver_table.routines(moving=True, in_two=in_two)
     if not in_two:
@@ -46,6 +47,6 @@ def routines(system: System, in_two: bool) -> Iterator[np.ndarray]:
 
 @cache
 def _address_of_yield() -> int:
-    """Return the address of the system's function that lets other threads have the core, 0 where there is none."""
+    """Return the address of the system's function that yields the core to other threads, 0 if there is none."""
     found = CDLL("kernel32").SwitchToThread if os.name == "nt" else getattr(CDLL(None), "sched_yield", None)
     return (cast(found, c_void_p).value if found else 0) or 0

@@ -30,7 +30,7 @@ class SparseMotion:
     """Marches through time steps; keeps the factors of its tangent between calls.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
-    coordinate, largest number of iterations; statistics (9,): see `kernels.march.march`.
+    coordinate, largest number of iterations; statistics (10,): see `kernels.march.march`.
     """
 
     def __init__(self, system: System, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray) -> None:
@@ -153,7 +153,7 @@ class SparseMotion:
                 and (full or first_size > FAR)
                 and not self.system.assembler().smallest_jacobian(state[0]) > 0.0
             ):
-                judged = -1  # turned inside out, which no motion can reach
+                judged = -1  # an element is inverted, which no motion can lead to
             done, fresh, rate = judged == 1, judged == 2, float(self._number[0])
             if not fresh and (judged < 0 or (not full and iteration > 1 and rate >= 0.5)):
                 break
@@ -170,7 +170,7 @@ class SparseMotion:
         """
         p, v, a, _ = state
         if renew or self._factors is None:
-            self._factors = None  # frees their memory before the new ones are made
+            self._factors = None  # frees memory before the new factorisation
             unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self._dt)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1

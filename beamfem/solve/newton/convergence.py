@@ -43,8 +43,8 @@ class Correction:
 class Balance:
     """Balance of forces in a state p (n,): residual (n,), its largest unconstrained component, and the largest force.
 
-    Forces are multiplied by the scale of their coordinate, so that they compare with moments [N m]. inverted: whether
-    the beam is turned inside out somewhere, which polynomial elastic forces do not prevent.
+    Forces are multiplied by the scale of their coordinate, so that they can be compared with moments [N m]. inverted:
+    whether an element is inverted somewhere, which polynomial elastic forces do not prevent.
     """
 
     p: np.ndarray

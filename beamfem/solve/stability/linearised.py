@@ -1,4 +1,4 @@
-"""Critical load factors of the linearised loading path, as if it went on as it starts."""
+"""Critical load factors of the loading path linearised at its start."""
 
 import numpy as np
 from scipy.sparse import csr_array

@@ -7,7 +7,7 @@ from beamfem.assembly.system import System, system_of
 from beamfem.results.solution import Solution
 from beamfem.solve.modes.modes import solve_modes
 
-_MODES = 12  # the lowest ones, for flutter under follower loads
+_MODES = 12  # lowest modes that are checked for flutter under follower loads
 
 
 def stable_rows(solution: Solution) -> np.ndarray:

@@ -17,8 +17,10 @@ from beamfem.solve.newton.iteration import Newton
 
 _FIRST_STEP = 1e-2  # along the path, see Continuation
 _PACE = 40  # steps, rejected ones included, from which the number of further steps is estimated
-_SLOWER = 0.8  # likewise where it slows down, as towards a limit point
-_FASTER = 1.2  # what a half of them gains over the other where a path speeds up and nothing can be foretold
+# Ratio of the load gained in the second half of these steps to that in the first half. Outside of this range the path
+# slows down, as towards a limit point, or speeds up, and the number of further steps cannot be estimated.
+_SLOWER = 0.8
+_FASTER = 1.2
 _GAIN = 1e-7  # of the load factor: a path that would gain less before it turns back has reached its limit point
 _MOST_STEPS = 10_000  # each moves the structure by up to half its size or half a radian
 

@@ -41,7 +41,7 @@ def reach(
     Raises LimitPointError and ConvergenceError with the solution so far.
     """
     remembers = len(system.history.numbers) > 0
-    # models with history go through the requested steps, to the end of each, however they are cut
+    # with history, the result depends on the steps, so the end of each requested step is a stop, even if it is cut
     asked = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
     ahead = sorted({stop for stop in asked if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)

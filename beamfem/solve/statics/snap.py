@@ -2,7 +2,7 @@
 
 Slow loading and damping: the motion is overdamped, M q' = -r(q), in implicit Euler steps that grow as it comes to rest.
 Under loads of constant direction the potential energy decreases in every step, so the motion ends in a stable
-equilibrium, as long as no step leaves its energy valley: M / dt + K must be positive definite in every step.
+equilibrium, as long as no step leaves its potential well: M / dt + K must be positive definite in every step.
 """
 
 import numpy as np
@@ -84,7 +84,7 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
     """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations.
 
-    It also fails if the step is so long that several states are possible at its end, some of them in other valleys.
+    It also fails if the step is so long that several states are possible at its end, some in other potential wells.
     """
     free, moved, zeros = system.free_dofs, p.copy(), np.zeros(len(p))
     mass = _mass(system, p, load_factor)

@@ -36,6 +36,7 @@ from studies.benchmarks.peer_ratios import LOAD_STEPS, Row, row
 STATIC_MESHES = {
     1: (8, 16, 32, 64, 128, 256, 512),
     2: (4, 8, 16, 32, 64, 128),
+    3: (3, 4, 5, 6, 7, 8, 10, 12, 16),
     4: (1, 2, 3, 4, 6, 8, 12),
     6: (1, 2, 3, 4),
 }

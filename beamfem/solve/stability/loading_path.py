@@ -48,7 +48,8 @@ class LoadingPath:
 
     def advance(self, point: PathPoint) -> PathPoint:
         """Return the next point of the path, by a step as long as its curvature allows. Raises PathLostError."""
-        size, reason = min(self.size, longest_step(self.line, point)), ""
+        size = min(self.size, longest_step(self.line, point))
+        reason = f"beyond load factor {point.load_factor:.6g} its steps are so short that round-off hides them"
         while not too_small(self.line, point, size):
             change = size * point.tangent
             try:

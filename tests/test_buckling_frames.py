@@ -147,7 +147,7 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
 def test_a_path_whose_steps_are_lost_in_round_off_says_so():
     """A tie pulled with 400,000 times its load: the path turns within a step that its load factor does not show."""
     tie = random_recipe(582).build().model
-    with pytest.raises(bf.ConvergenceError, match="beyond load factor 393242 .* round-off hides them") as caught:
+    with pytest.raises(bf.ConvergenceError, match=r"beyond load factor 393242 .* round-off hides them") as caught:
         bf.solve_buckling(tie)
     assert caught.value.solution.load_factor[-1] == pytest.approx(393242.0, rel=1e-5)
 

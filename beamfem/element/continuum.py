@@ -1,4 +1,4 @@
-"""Elastic forces of the whole body."""
+"""Elastic forces of the beam as a continuum."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from beamfem.physics.measures import evaluate, green_lagrange
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import flag
 
-_STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
+_STEP = 2.0**-300  # complex step, so small that its square is negligible
 # a law maps a material to the stiffness (3, 3) of (exx, eyy, 2 exy) in the volume
 Law = Callable[[Material], np.ndarray]
 
@@ -26,27 +26,27 @@ class _Body:
 
     @property
     def code(self) -> int:
-        """Number of the law in compiled code."""
+        """Number of the strain measures in compiled code."""
         return GREEN_LAGRANGE
 
     @property
     def turns_with(self) -> str:
-        """Nodal vector with which the section turns."""
+        """Nodal vector with which the section rotates."""
         return "r_y"
 
     @property
     def fills_body(self) -> bool:
-        """Whether the strain is that of every point of the body."""
+        """Whether strains are defined at every point of the body."""
         return True
 
     @property
     def shear_measures(self) -> tuple[bool, ...]:
-        """Which of the six measures are shear (6,)."""
+        """Whether each of the six measures is a shear strain (6,)."""
         return (False, False, False, False, True, True)
 
     @property
     def thickness_measures(self) -> tuple[bool, ...]:
-        """None: eyy is coupled with the strain along the beam."""
+        """Whether each measure is a pure thickness strain (6,): none, since eyy is coupled with exx."""
         return (False,) * 6
 
     def strains(self, at: Axis) -> np.ndarray:
@@ -54,10 +54,10 @@ class _Body:
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the change of the measures by free strains (m, n, 4), as `Structural.imposed`.
+        """Return the change of the measures for free strains (m, n, 4), as `Structural.imposed`.
 
-        The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
-        are quadratic in these vectors, so that complex steps give both parts without a difference.
+        The unconstrained body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The
+        measures are quadratic in these vectors, so that complex steps give both parts exactly.
         """
         along, across = section_frame(reference.d)
         stretch, shear, curvature, thickness = np.moveaxis(free, -1, 0)[..., None]
@@ -74,7 +74,7 @@ class _Body:
         return first, 0.5 * np.array(second)
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points that integrate the energy of a straight element exactly; it is quartic in r0' and in d."""
+        """Return the number of Gauss points for the exact energy of a straight element, quartic in r0' and d."""
         return 2 * max(degree - 1, director_degree) + 1
 
 
@@ -82,13 +82,13 @@ class _Body:
 class ContinuumMechanics(_Body):
     """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body.
 
-    The element bends with E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy cannot
-    vary over y.
+    The bending stiffness is E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy
+    cannot vary over y.
 
     Parameters
     ----------
     plane_stress : bool, default False
-        Take E nu / (1 - nu^2) for lambda instead of the 3D value.
+        Use lambda = E nu / (1 - nu^2) instead of the 3D value.
 
     References
     ----------
@@ -116,7 +116,7 @@ class ContinuumMechanics(_Body):
         return np.array([[lam + 2.0 * mu, lam, 0.0], [lam, lam + 2.0 * mu, 0.0], [0.0, 0.0, mu]])
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return second Piola-Kirchhoff stress xx, yy, xy [Pa] of Green strain components."""
+        """Return the second Piola-Kirchhoff stress xx, yy, xy [Pa] for Green strain components."""
         mu = material.shear_modulus
         trace = material.lame_lambda(self.plane_stress) * (xx + yy)
         return trace + 2 * mu * xx, trace + 2 * mu * yy, 2 * mu * xy
@@ -126,9 +126,9 @@ class ContinuumMechanics(_Body):
 class SplitContinuum(_Body):
     """Green-Lagrange strain, with Poisson coupling on the centreline only.
 
-    Over the section the stress is E exx, E eyy, 2 k_s mu exy; the centreline adds what is missing to plane stress. The
-    element bends with E I. If rotations keep the thickness constant, the centreline has nothing to couple with and
-    stretches with E A.
+    Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline, the Poisson coupling of plane stress
+    is added. The bending stiffness is E I. If rotations keep the thickness constant, there is no coupling, and the
+    axial stiffness is E A.
 
     References
     ----------
@@ -158,7 +158,7 @@ class SplitContinuum(_Body):
         return matrix
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components away from the centreline, without Poisson coupling."""
+        """Return the stress xx, yy, xy [Pa] for strain components off the centreline, without Poisson coupling."""
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
@@ -166,8 +166,8 @@ class SplitContinuum(_Body):
 def _over_section(section: CrossSection, material: Material | None, reference: Axis, law: Law) -> np.ndarray:
     """Integrate a law over the section: stiffness (..., 6, 6) of (a, b, c, eyy, g0, g1).
 
-    A reference that is straight takes the section's moments; a curved one the equivalent rectangle, on which the body
-    has the metric of its own reference, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
+    For a straight reference, the moments of the section are used; for a curved one, strips of the section and the
+    metric of the curved body, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
     """
     low, high = section.bounds
     if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:
@@ -203,7 +203,7 @@ _POWERS = {0: _table([(0, 0), (1, 3), (2, 4)]), 1: _table([(0, 1), (2, 5)]), 2: 
 
 
 def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Map convected strain (exx, eyy, 2 exy) to the reference's own frame (..., 3, 3); and det J (...)."""
+    """Return the map (..., 3, 3) from convected strain (exx, eyy, 2 exy) to the section frame, and det J (...)."""
     along, across = section_frame(reference.d)
     first = reference.r_s + y * reference.d_s
     j11, j21, j22 = dot(first, along), dot(first, across), np.linalg.norm(reference.d, axis=-1)
@@ -220,6 +220,6 @@ def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _slope(at: Sequence[np.ndarray], change: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the derivative (n, 6) of the measures of r0', d and d' (n, 2) along a change of them."""
+    """Return the derivative (n, 6) of the measures at r0', d and d' (n, 2) along a change of these."""
     moved = [one + 1j * _STEP * own for one, own in zip(at, change, strict=True)]
     return evaluate(green_lagrange, *moved).imag / _STEP

@@ -17,8 +17,8 @@ from beamfem.section.protocol import CrossSection
 class ElasticLine:
     """Elastic line with stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2.
 
-    It resists them with E A, E I, G A and, with gradients, E A. The curvature is the change of the angle of r_x along
-    the reference, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
+    The stiffnesses are E A, E I, G A and, with gradients, E A. The curvature is the derivative of the angle of r_x by
+    the reference arc length, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
 
     References
     ----------
@@ -47,16 +47,16 @@ class ElasticLine:
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the measures of free strains (m, n, 4), as `Structural.imposed`; of the thickness t + t^2 / 2."""
+        """Return the measures for free strains (m, n, 4), as `Structural.imposed`; for the thickness, t + t^2 / 2."""
         products = np.zeros((len(free), *free.shape))
         products[..., 3] = 0.5 * free[:, None, :, 3] * free[None, :, :, 3]
         return free[:, :, [0, 2, 1, 3]], products
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        """Return the stress xx, yy, xy [Pa] for strain components, without Poisson coupling."""
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points of full integration: exact for curvature and shear of a straight line at small strain."""
+        """Return the number of Gauss points, exact for curvature and shear of a straight line at small strain."""
         return degree + 1

@@ -1,4 +1,4 @@
-"""An element as a user chooses it: a field, nodal coordinates and elastic forces."""
+"""The definition of an element: a field, nodal coordinates and elastic forces."""
 
 from collections.abc import Hashable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Integration = Literal["full", "reduced", "lobatto"]
 
 @dataclass(frozen=True)
 class Element:
-    """A field, the nodal coordinates that carry it and the elastic forces that resist it.
+    """A beam element: a field, its nodal coordinates and the elastic forces.
 
     Parameters
     ----------
@@ -32,18 +32,17 @@ class Element:
     forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural
         Elastic forces.
     integration : {"full", "reduced", "lobatto"}, optional
-        "full" integrates the energy of a straight element exactly. "reduced" takes as many Gauss points as the order of
+        "full" integrates the energy of a straight element exactly. "reduced" uses as many Gauss points as the order of
         the field, and 2 if its nodes have no shear (3 for all strains but shear, with a stretch coordinate). "lobatto"
-        takes strains of the cubic field at its nodes and its middle, where it does not lock however slender the beam
-        is. The default is "lobatto" for the cubic field with structural forces or the elastic line, and "full"
-        otherwise.
+        evaluates strains of the cubic field at its nodes and midpoint, which avoids locking at any slenderness. The
+        default is "lobatto" for the cubic field with structural forces or the elastic line, and "full" otherwise.
     label : str, optional
         Name for legends and files.
 
     Raises
     ------
     InputError
-        For a combination that makes no sense.
+        For an invalid combination.
 
     Examples
     --------
@@ -94,12 +93,12 @@ class Element:
 
     @property
     def _compared(self) -> tuple[Hashable, ...]:
-        # what a user derives from a field or from forces may be more than these are compared by
+        # classes derived by users may have data that the base classes do not compare
         return whole(self.field), whole(self.coordinates), whole(self.forces), self.integration, self.label
 
     @property
     def name(self) -> str:
-        """Fit for a file name and a legend."""
+        """Name for file names and legends."""
         return self.label or f"{self.field.name}-{self.coordinates.name}"
 
     @property
@@ -108,7 +107,7 @@ class Element:
         return len(labels(self.coordinates.code, self.field.vectors))
 
     def quadrature(self) -> tuple[np.ndarray, np.ndarray]:
-        """Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
+        """Return the Gauss points (nq,) and weights (nq,) on [0, 1] where section forces are evaluated."""
         if self.integration == "lobatto":
             return gauss(len(lobatto.STATIONS))
         reduced = 2 if isinstance(self.coordinates, ShearFree) else self.field.degree
@@ -116,22 +115,25 @@ class Element:
         return gauss(reduced if self.integration == "reduced" else full)
 
     def energy_points(self) -> tuple[np.ndarray, np.ndarray]:
-        """Points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
+        """Return the points (nq,) and weights (nq,) on [0, 1] of the strain energy."""
         return _energy_points(self)
 
     def energy_stiffness(self, stiffness: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
-        """Return what of the section stiffness (ne, nq, ns, ns) counts at these points; jacobian (ne, nq) [m]."""
+        """Return the section stiffness (ne, nq, ns, ns) that enters the energy at its points.
+
+        stiffness: that of the sections there; jacobian (ne, nq): ds/dxi [m].
+        """
         if self.integration == "lobatto":
             return lobatto.energy_stiffness(self.forces, self.coordinates, stiffness, jacobian)
         counted = _counted(self)
         return stiffness if counted is None else stiffness * counted
 
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
-        """Gauss points, weights on [0, 1] and which strain measures (ns,) each rule integrates; one where all agree.
+        """Return the points and weights on [0, 1] and the mask of strain measures (ns,) of each quadrature rule.
 
-        With 2 points alone a stretch coordinate could change without resistance: r_x + c at every node leaves r0' as it
-        is at both of them. So all but shear takes 3 there. What resists a change of |d| alone is taken at the nodes of
-        d: between them |d| is below 1 wherever the beam bends, which would lock a thin one.
+        With 2 points for all measures, a stretch coordinate has a zero-energy mode: r_x + c at every node does not
+        change r0' at these points. All measures but shear therefore use 3. A pure thickness strain is evaluated at the
+        nodes of d: between them |d| is below 1 wherever the beam bends, which would cause locking of thin beams.
         """
         forces = self.forces
         shear, thickness = np.array(forces.shear_measures), np.array(forces.thickness_measures)
@@ -142,9 +144,9 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
-@lru_cache(maxsize=64)  # asked for by every beam of a model
+@lru_cache(maxsize=64)  # every beam of a model needs them
 def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points and weights (nq,) of the strain energy, which cannot be written to."""
+    """Return the points and weights (nq,) of the strain energy, read-only."""
     if element.integration == "lobatto":
         found = lobatto.energy_points(element.forces)
     else:
@@ -157,6 +159,6 @@ def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=64)
 def _counted(element: Element) -> np.ndarray | None:
-    """Return which parts of the stiffness count at the points of the energy (nq, ns, ns); None if all of them do."""
+    """Return the mask (nq, ns, ns) of the stiffness entries that enter the energy at its points, None if all do."""
     counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in element.energy_rules()])
     return None if counted.all() else counted[:, :, None] & counted[:, None, :]

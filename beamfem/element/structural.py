@@ -17,7 +17,7 @@ from beamfem.section.protocol import CrossSection
 class Structural:
     """Geometrically exact beam with the section along d.
 
-    It resists stretch with E A, shear with k_s G A and curvature with E I; with gradients, thickness stretch with E A.
+    The stiffnesses are E A for stretch, k_s G A for shear, E I for curvature and, with gradients, E A for thickness.
 
     References
     ----------
@@ -41,7 +41,7 @@ class Structural:
         """Return the section stiffness (..., 4, 4) at points of the reference axis.
 
         E A, k_s G A, E I, E A on the diagonal and the section's coupling of stretch with curvature; the last E A is
-        zero if the nodes hold the length of d.
+        zero if the nodes keep the length of d constant.
         """
         rigidity = section.rigidity(material)
         matrix = np.zeros((4, 4))
@@ -52,23 +52,23 @@ class Structural:
         return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the measures of free strains (m, n, 4): stretch, shear, curvature and thickness stretch.
+        """Return the measures for m free strains (m, n, 4): stretch, shear, curvature and thickness stretch.
 
-        Parts (m, n, ns) that are linear in them, and (m, m, n, ns) that are products of two.
+        The first part (m, n, ns) is linear in them; the second (m, m, n, ns) consists of products of two.
         """
         return free, np.zeros((len(free), *free.shape))
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return stress xx, yy, xy [Pa] of strain components, without Poisson coupling."""
+        """Return the stress xx, yy, xy [Pa] for strain components, without Poisson coupling."""
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Gauss points of full integration, as many as for the continuum."""
+        """Return the number of Gauss points of full integration, the same as for the continuum."""
         return 2 * max(degree - 1, director_degree) + 1
 
 
 def section_frame(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors along the section's normal and along d (..., 2)."""
+    """Return the unit vectors along the section's normal and along d (..., 2)."""
     across = d / np.linalg.norm(d, axis=-1, keepdims=True)
     return np.stack([across[..., 1], -across[..., 0]], axis=-1), across

@@ -1,4 +1,4 @@
-"""Sections whose resultants are no linear functions of their strains: laws of their own, with history or without."""
+"""Section laws: resultants that are nonlinear functions of the strains, with or without history."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,40 +11,40 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.validation import called, finite, fulfils, items
 
-COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
+COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
 
 @runtime_checkable
 class SectionLaw(Protocol):
-    """What a section (`CrossSection`) has besides if its resultants are no linear functions of its strains.
+    """Additional members of a section (`CrossSection`) whose resultants are nonlinear functions of its strains.
 
-    Its `rigidity` is its stiffness at zero strain. Tangents are derivatives of `resultants` by complex steps, exact to
-    round-off, so that both must consist of analytic functions of many strains at once: `np.tanh`, `x**2`, not `abs`.
-    Cases are told apart by real parts, `np.where(strain[:, 0].real < 0.0, ...)`. This is tested when a beam is made.
+    `rigidity` must be the stiffness at zero strain. Tangents are complex-step derivatives of `resultants`, exact to
+    round-off, so `resultants` and `energy` must consist of analytic functions of arrays: `np.tanh`, `x**2`, not `abs`.
+    Cases are distinguished by real parts, `np.where(strain[:, 0].real < 0.0, ...)`. This is tested when a beam is made.
     """
 
     def resultants(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
         """Return normal force [N], shear force [N] and moment [N m] (n, 3), which are zero at zero strain.
 
-        strain (n, 3), real or complex: stretch, shear and change of curvature [1/m] from the state without stress.
+        strain (n, 3), real or complex: stretch, shear and change of curvature [1/m] from the stress-free state.
         """
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None) -> np.ndarray:
-        """Return the strain energy per length (n,) [J/m] of the same strains; `resultants` is its derivative."""
+        """Return the strain energy per length (n,) [J/m] for these strains; `resultants` is its derivative."""
         ...
 
 
 @runtime_checkable
 class RememberingLaw(Protocol):
-    """A section law with history, such as plasticity or creep: what a section has instead of a `SectionLaw`.
+    """Members of a section law with history, such as plasticity or creep, instead of those of `SectionLaw`.
 
-    strain (n, 3), material: see `SectionLaw`; history (n, k): the committed history variables of the same points, those
-    of the last accepted step; dt [s]: time since then, 0 in statics and wherever an accepted state is looked at again.
-    They are part of the state: a rejected step restores them, and a result has them row by row. So a state must
-    determine its resultants: with the history that `remember` returns and dt = 0 they are those of the step, the
-    derivative of the stored energy at this history, and the tangent is its second derivative. This is tested when a
-    beam is made. Simo and Hughes 1998, chapter 1.
+    strain (n, 3), material: see `SectionLaw`; history (n, k): committed history variables of the same points, from the
+    last accepted step; dt [s]: time since then, 0 in statics and whenever an accepted state is evaluated again. History
+    variables are part of the state: a rejected step restores them, and a result has them row by row. A state must
+    therefore determine its resultants: with the history that `remember` returns and dt = 0, `resultants` must be those
+    of the step and the derivative of the stored energy at this history, whose second derivative is the tangent. This is
+    tested when a beam is made. Simo and Hughes 1998, chapter 1.
     """
 
     @property
@@ -61,13 +61,13 @@ class RememberingLaw(Protocol):
         ...
 
     def energy(self, strain: np.ndarray, material: Material | None, history: np.ndarray) -> np.ndarray:
-        """Return the stored energy and the one dissipated since the start, per length (n, 2) [J/m]."""
+        """Return the stored energy, and the energy dissipated since the start, per length (n, 2) [J/m]."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class ConstitutiveLaw:
-    """A section with a law of its own and its material; without history, k = 0."""
+    """A section law and the material of the section; without history, k = 0."""
 
     section: SectionLaw | RememberingLaw
     material: Material | None
@@ -103,14 +103,14 @@ class ConstitutiveLaw:
         return np.tile(self.start, (count, 1))
 
     def resultants(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return the resultants (n, 3) of strains (n, 3), both real or complex. Raises InputError for what are none."""
+        """Return the resultants (n, 3) for strains (n, 3), real or complex. Raises InputError for an invalid result."""
         past = (history, dt) if self.remembers else ()
-        with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; then the iteration goes back
+        with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; the iteration recovers from it
             found = self._called("resultants", strain, *past)
         return self._checked("resultants", found, strain.shape)
 
     def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (n, 3) and their derivatives (n, 3, 3) at real strains (n, 3), the consistent tangent."""
+        """Return resultants (n, 3) and consistent tangent (n, 3, 3), made symmetric, at real strains (n, 3)."""
         count = len(strain)
         moved = np.tile(strain.astype(complex), (3, 1))
         for column in range(3):
@@ -121,14 +121,14 @@ class ConstitutiveLaw:
         return found[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
 
     def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return the history (n, k) after an accepted step to strains (n, 3). Raises InputError for what is none."""
+        """Return the history (n, k) after an accepted step to strains (n, 3). Raises InputError for invalid values."""
         found = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
         if found.dtype.kind == "c" or not np.isfinite(found).all():
             raise InputError(f"remember of {self.name} must return finite numbers, real ones for real strains")
         return found
 
     def energy(self, strain: np.ndarray, history: np.ndarray) -> np.ndarray:
-        """Return the energies per length (n, 2) [J/m], stored and dissipated. Raises InputError for what are none."""
+        """Return stored and dissipated energy per length (n, 2) [J/m]. Raises InputError for an invalid result."""
         if self.remembers:
             return self._checked("energy", self._called("energy", strain, history), (len(strain), 2))
         stored = self._checked("energy", self._called("energy", strain), (len(strain),))
@@ -152,5 +152,5 @@ class ConstitutiveLaw:
 
 
 def law_of(section: object, material: Material | None) -> ConstitutiveLaw | None:
-    """Return the law of a section that has one, or None."""
+    """Return the law of a section, None if it has none."""
     return ConstitutiveLaw(cast(SectionLaw, section), material) if fulfils(section, SectionLaw) else None

@@ -1,4 +1,4 @@
-"""Sections of layers of different materials."""
+"""Sections with layers of different materials."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class Layer:
 class Layered:
     """Rectangular layers of one width, each with its own material.
 
-    A beam of this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
+    A beam with this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
     curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis.
 
     Parameters
@@ -96,12 +96,12 @@ class Layered:
 
     @property
     def height(self) -> float:
-        """Height of all layers [m]."""
+        """Total height of the layers [m]."""
         return float(sum(layer.thickness for layer in self.layers))
 
     @property
     def area(self) -> float:
-        """Area of all layers [m^2]."""
+        """Total area of the layers [m^2]."""
         return self.width * self.height
 
     @property
@@ -110,7 +110,7 @@ class Layered:
         return float(self._edges[0]), float(self._edges[-1])
 
     def rigidity(self, material: Material | None = None) -> Rigidity:
-        """Return the resistance of all layers; y d' points against the tangent, hence the sign of the coupling."""
+        """Return the stiffness of all layers; curvature strains a fibre by -y kappa, hence the sign of the coupling."""
         parts = self.moments(material)
         axial, first, bending = (sum(m.youngs_modulus * moments[n] for m, moments in parts) for n in range(3))
         shear = self.shear_factor * sum(m.shear_modulus * moments[0] for m, moments in parts)
@@ -132,12 +132,12 @@ class Layered:
         ]
 
     def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material of each layer with the heights in it; on a face between two layers the upper one."""
+        """Return the material of each layer with a mask of the heights in it; between two layers, the upper one."""
         place = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
         return [(layer.material, place == number) for number, layer in enumerate(self.layers)]
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return the material of each layer with heights and weights."""
+        """Return the material of each layer with quadrature heights [m] and weights [m^2]."""
         result = []
         for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
             heights, weights = gauss_between(low, high, _STRIPS)

@@ -1,4 +1,4 @@
-"""Sections of one material, by their area moments."""
+"""Sections of one material, given by area moments."""
 
 from dataclasses import dataclass
 
@@ -12,8 +12,8 @@ from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.stiffness import StiffnessSection
 from beamfem.validation import convert, positive
 
-_ROUNDING = 1e-9  # of numbers from tables
-_STRIPS = 8  # Gauss points over the height, for a body whose reference is curved
+_ROUNDING = 1e-9  # relative, of values from tables
+_STRIPS = 8  # Gauss points over the height, for curved bodies
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Section:
         I4 = integral of y^4 dA, by default that of the rectangle of the same area and second moment, I4 = A h^4 / 80
         with h = sqrt(12 I / A).
     height : float, [m], optional
-        Height, for the faces of the body and their stress. Without a height the body is drawn as that rectangle and its
-        faces have no stress.
+        Height, which gives the faces of the body and their stress. Without a height, the body is drawn as that
+        rectangle and its faces have no stress.
     centroid : float, [m], optional
         Height of the centroid above the lower face, by default mid-height.
 
@@ -58,7 +58,7 @@ class Section:
 
     def __post_init__(self) -> None:
         convert(self, positive, "area", "second_moment", "shear_factor")
-        least = self.second_moment / self.area * self.second_moment  # the rectangle's is 9/5 of it
+        least = self.second_moment / self.area * self.second_moment  # that of a rectangle is 9/5 of it
         if self.fourth_moment is None:
             object.__setattr__(self, "fourth_moment", 1.8 * least)
         fourth = positive("fourth_moment of Section", self.fourth_moment)
@@ -93,7 +93,7 @@ class Section:
     ) -> StiffnessSection:
         """Return a section given by its stiffness, which needs no material.
 
-        With coupling, from a neutral axis that is not on the beam's axis, N = E A eps + C kappa and M = C eps + E I
+        If the neutral axis is not on the beam's axis, there is a coupling: N = E A eps + C kappa and M = C eps + E I
         kappa.
 
         Parameters
@@ -135,7 +135,7 @@ class Section:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper y [m] of the faces, those of the equivalent rectangle where no height is given."""
+        """Lower and upper y [m] of the faces, those of the equivalent rectangle if no height is given."""
         if self.height is None or self.centroid is None:
             return -0.5 * self._equivalent_height, 0.5 * self._equivalent_height
         return -self.centroid, self.height - self.centroid
@@ -161,24 +161,24 @@ class Section:
         return [(required(material), np.array([self.area, 0.0, self.second_moment, 0.0, self.fourth_moment]))]
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material at all heights."""
+        """Return the material with a mask that is True at all heights."""
         return [(required(material), np.ones_like(y, dtype=bool))]
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return the material with heights and weights over the equivalent rectangle."""
+        """Return the material with quadrature heights [m] and weights [m^2] over the equivalent rectangle."""
         half = 0.5 * self._equivalent_height
         heights, weights = gauss_between(-half, half, _STRIPS)
         return [(required(material), heights, self.width * weights)]
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return the section as one part of which the moments are known, and the height where it was given."""
+        """Return the section as one part with known moments, and a known height if one was given."""
         low, high = self.bounds
         moments = (self.area, 0.0, self.second_moment, 0.0, float(self.fourth_moment or 0.0))
         return (Part(required(material).youngs_modulus, MomentsOutline(moments, low, high, self.height is not None)),)
 
 
 def required(material: Material | None) -> Material:
-    """Return the material, or raise InputError if a section needs one and has none."""
+    """Return the material of a section that needs one. Raises InputError without a material."""
     if material is None:
         raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
     return material

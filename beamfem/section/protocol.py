@@ -1,4 +1,4 @@
-"""What elastic forces and inertia need of a section."""
+"""Protocols of sections, for elastic forces and inertia."""
 
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
@@ -11,7 +11,7 @@ from beamfem.section.outline import Part
 
 @dataclass(frozen=True)
 class Rigidity:
-    """Resistance of a section: axial [N], shear [N], bending [N m^2] and coupling of stretch with curvature [N m]."""
+    """Stiffness of a section: axial [N], shear [N], bending [N m^2] and coupling of stretch with curvature [N m]."""
 
     axial: float
     shear: float
@@ -30,7 +30,7 @@ class Inertia:
 
 @runtime_checkable
 class CrossSection(Protocol):
-    """A section; the material is None if the section brings its own."""
+    """A section; the material is None if the section includes its materials."""
 
     @property
     def shear_factor(self) -> float: ...
@@ -44,7 +44,7 @@ class CrossSection(Protocol):
         ...
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return each material with the heights of y [m] where it is, as booleans of the shape of y."""
+        """Return each material with a mask of the heights y [m] at which it is found."""
         ...
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
@@ -54,8 +54,8 @@ class CrossSection(Protocol):
 
 @runtime_checkable
 class HasParts(Protocol):
-    """A section that knows its shape, or as much of it as there is to know."""
+    """A section that provides its outline, as far as it is known."""
 
     def parts(self, material: Material | None) -> tuple[Part, ...]:
-        """Return its parts of one material from the bottom up, each with its outline."""
+        """Return the parts of the section from the bottom up, each with its Young's modulus and outline."""
         ...

@@ -1,4 +1,4 @@
-"""A section that is given by its stiffness."""
+"""A section given by its stiffness."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,9 @@ from beamfem.validation import convert, finite, positive
 
 @dataclass(frozen=True)
 class StiffnessSection:
-    """Section by its stiffness and mass; see `Section.from_stiffness`.
+    """Section given by its stiffness and mass; see `Section.from_stiffness`.
 
-    It is drawn as high as the rectangle of its E I and E A. Raises InputError.
+    It is drawn with the height of the rectangle that has its ratio E I / E A. Raises InputError.
     """
 
     axial: float
@@ -35,7 +35,7 @@ class StiffnessSection:
 
     @property
     def shear_factor(self) -> float:
-        """The shear stiffness is given as it is."""
+        """Always 1, because the given shear stiffness includes the factor."""
         return 1.0
 
     @property
@@ -49,24 +49,24 @@ class StiffnessSection:
         return -0.5 * self.height, 0.5 * self.height
 
     def rigidity(self, material: Material | None) -> Rigidity:
-        """Return what was given."""
+        """Return the given stiffness."""
         return Rigidity(self.axial, self.shear, self.bending, self.coupling)
 
     def inertia(self, material: Material | None) -> Inertia:
-        """Return what was given."""
+        """Return the given mass and rotary inertia."""
         return Inertia(self.mass, 0.0, self.rotary_inertia)
 
     def moments(self, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Raise InputError: a stiffness tells nothing of the body."""
+        """Raise InputError: a stiffness does not determine a body."""
         raise InputError(
             "continuum forces integrate over a body, but a section from its stiffness has none: "
             "use Structural or ElasticLine forces, or a Section with a material"
         )
 
     def materials_at(self, y: np.ndarray, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-        """Return none: a stiffness tells nothing of the body."""
+        """Return no materials: a stiffness does not determine a body."""
         return []
 
     def strips(self, material: Material | None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Raise InputError: a stiffness tells nothing of the body."""
+        """Raise InputError: a stiffness does not determine a body."""
         return [(part, moments, moments) for part, moments in self.moments(material)]

@@ -25,11 +25,11 @@ class BSpline:
     degree : int
         Degree of the pieces.
     knots : sequence of float, (n + degree + 1,)
-        Knots, not decreasing, clamped or not; u runs from knots[degree] to knots[n].
+        Non-decreasing knots, clamped or not; u runs from knots[degree] to knots[n].
     control_points : sequence, [m], (n, 2)
         Control points P.
     weights : sequence of float, [-], (n,), optional
-        Weights w > 0, by default ones.
+        Weights w > 0, by default 1.
 
     Raises
     ------
@@ -94,20 +94,20 @@ class BSpline:
 
     @cached_property
     def breaks(self) -> np.ndarray:
-        """Different knots from start to end (m + 1,)."""
+        """Distinct knots from start to end (m + 1,)."""
         inside = np.array(self.knots[self.degree : len(self.control_points) + 1])
         return np.unique(inside)
 
     def multiplicity(self, knot: float) -> int:
-        """Return how often a number is among the knots."""
+        """Return the multiplicity of a number among the knots."""
         return self.knots.count(float(knot))
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:
-        """Return r at parameters (n,), from knots[degree] to knots[n] (n, 2) [m]."""
+        """Return r (n, 2) [m] at parameters (n,) from knots[degree] to knots[n]."""
         return np.array(self.control_points[0]) + self._homogeneous(u)[0]
 
     def derivative(self, u: np.ndarray) -> np.ndarray:
-        """Return dr/du at parameters (n,); where it jumps, the one after (n, 2) [m]."""
+        """Return dr/du (n, 2) [m] at parameters (n,); where it jumps, the value after the jump."""
         position, rate, weight = self._homogeneous(u)
         return (rate[:, :2] - rate[:, 2:] * position) / weight
 
@@ -155,7 +155,7 @@ class BSpline:
         return Spline(np.array(self.knots), table, self.degree)
 
     def _homogeneous(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return r from the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
+        """Return r relative to the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
         start, end = self.breaks[0], self.breaks[-1]
         if self.multiplicity(end) > 1 and self.knots[len(self.control_points) - 1] == end:
             end = np.nextafter(end, start)  # the span that would be evaluated at the end is empty

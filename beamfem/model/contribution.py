@@ -19,15 +19,15 @@ class At:
     Parameters
     ----------
     q : array, (m, 3)
-        x, y [m] and rotation from the reference [rad] of its points.
+        x, y [m] and rotation from the reference [rad] of the points.
     v, a : array, (m, 3)
-        Velocities and accelerations of its points, zero in statics.
+        Velocities and accelerations of the points, zero in statics.
     own : array, (k,)
-        Its own unknowns.
+        Multipliers.
     memory : array, (h,)
-        Its history variables of the last step.
+        History variables after the last accepted step.
     reference : array, (m, 3)
-        q in the stress-free model.
+        q in the stress-free reference.
     time : float, [s]
         Time, in statics the load factor.
     gravity : array, [m/s^2], (2,)
@@ -58,11 +58,11 @@ class Contribution(Protocol):
     Attributes
     ----------
     points : tuple of Point, (m,)
-        Points of beams that it acts on.
+        Points of beams that the forces act on.
     unknowns : int
-        Number k of its multipliers.
+        Number k of multipliers.
     conservative : bool
-        Whether its force at rest has a potential, so that its stiffness is symmetric.
+        Whether the force at rest has a potential, so that the stiffness is symmetric.
     """
 
     @property
@@ -81,16 +81,16 @@ class Contribution(Protocol):
         ...
 
     def force(self, at: At) -> np.ndarray:
-        """Return its resisting forces at its points, then its conditions.
+        """Return the resisting forces at the points, then the constraint conditions.
 
-        In equilibrium these and all other forces add up to zero: a spring that pulls a point back to the left has a
-        positive fx. A condition is a function of q that is zero when it is satisfied; its multiplier times its
-        derivative is part of the forces.
+        They have the sign of internal forces: a spring that pulls a point back to the left has a positive fx. A
+        condition is a function of q that is zero when it is satisfied; its multiplier times its derivative by q is part
+        of the forces.
 
         Parameters
         ----------
         at : At
-            State to evaluate it at.
+            State of evaluation.
 
         Returns
         -------
@@ -100,12 +100,12 @@ class Contribution(Protocol):
         ...
 
     def energy(self, at: At) -> tuple[float, float]:
-        """Return its kinetic and potential energy.
+        """Return the kinetic and potential energy.
 
         Parameters
         ----------
         at : At
-            State to evaluate it at.
+            State of evaluation.
 
         Returns
         -------
@@ -119,7 +119,7 @@ class Contribution(Protocol):
 class Remembering(Contribution, Protocol):
     """A contribution with history, such as friction.
 
-    Its history variables are part of the state: a rejected step restores them, and a result has them row by row.
+    History variables are part of the state: a rejected step restores them, and a result has them row by row.
 
     Attributes
     ----------

@@ -30,13 +30,13 @@ class Joint:
         require_point(kind, getattr(self, "b", None), "b")
 
     def shapes(self) -> tuple[Ring, ...]:
-        """Return its shapes: a ring if the angle may change."""
+        """Return the shapes to draw: a ring if the angle may change."""
         return () if self.keeps_angle else (Ring(self.a),)
 
 
 @dataclass(frozen=True, slots=True)
 class Rigid(Joint):
-    """Join two points rigidly: displacement and rotation are the same, at whatever angle the beams meet.
+    """Join two points rigidly: displacement and rotation are the same, at any angle between the beams.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The kinds of loads, which enter the equations in different ways; every load derives from one of them."""
+"""The base classes of loads, which enter the equations in different ways."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -20,7 +20,7 @@ _ARROWS = 11  # along a beam
 
 
 class Load(ABC):
-    """A load times a factor: amplitude(time), or the load factor if `scale` is True, or 1.
+    """A load with a factor: amplitude(time), or else, in statics, the load factor if `scale` is True, or else 1.
 
     Loads are frozen dataclasses that derive from `PointLoad`, `LineLoad`, `BodyLoad` or `ImposedStrain`.
     """
@@ -37,16 +37,16 @@ class Load(ABC):
     @property
     @abstractmethod
     def place(self) -> Beam | Point | None:
-        """The beam or point that it acts on, None for all beams."""
+        """The loaded beam or point, None for all beams."""
 
     @property
     @abstractmethod
     def conservative(self) -> bool:
-        """Whether it has a potential for a constant factor, whatever the supports."""
+        """Whether it has a potential for a constant factor, with any supports."""
 
     @abstractmethod
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw in a state, times a weight."""
 
 
 class BodyLoad(Load):
@@ -71,7 +71,7 @@ class BodyLoad(Load):
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw in a state, times a weight."""
         return (Acceleration(weight * np.array(self.vector)),)
 
 
@@ -110,7 +110,7 @@ class PointLoad(Load):
         return not (self.follower and any(self.value[:2]))
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw in a state, times a weight."""
         force, moment = weight * np.array([self.value[:2]]), weight * self.value[2]
         if self.follower:
             force = rotated(force, np.array([placed.rotation(self.point)]))
@@ -121,8 +121,8 @@ class PointLoad(Load):
 class LineLoad(AlongBeam, Load):
     """Forces per length along a beam.
 
-    The axes of the forces are "plane": x and y, per reference length; "section": x and y of the reference, rotated with
-    the section, per reference length; or "axis": along r0' and across it, to the left, per deformed length.
+    The axes of the forces are "plane": x and y, per reference length; "section": x and y, rotated with the section from
+    the reference, per reference length; or "axis": along r0' and normal to it, to the left, per deformed length.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class LineLoad(AlongBeam, Load):
         return self.axes == "plane"
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw in a state, times a weight."""
         at = _arrows(self, placed)
         vectors, points = weight * forces_of(self, at), [self.beam.at(part) for part in at / self.beam.curve.length]
         if self.axes == "section":
@@ -221,7 +221,7 @@ class ImposedStrain(AlongBeam, Load):
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return what it looks like, times a weight, in a state."""
+        """Return the shapes to draw in a state, times a weight."""
         values: dict[str, tuple[float | None, str]] = {}
         for name, unit in zip(self.along, self.units, strict=True):
             value = getattr(self, name)
@@ -233,9 +233,9 @@ class ImposedStrain(AlongBeam, Load):
 
 
 def factor(load: Load, time: float, static: bool) -> float:
-    """Return the multiplier of a load at a time, in statics at a load factor.
+    """Return the factor of a load at a time, in statics at a load factor.
 
-    amplitude(time) if there is one; else the load factor in statics for loads with `scale`, else 1.
+    It is amplitude(time) if there is one, or else, in statics, the load factor for loads with `scale`, or else 1.
     """
     if load.amplitude is not None:
         return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)

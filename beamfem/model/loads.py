@@ -1,4 +1,4 @@
-"""Loads."""
+"""The loads of the package: gravity, loads along beams, and loads at points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Gravity(BodyLoad):
     vector : (float, float), [m/s^2]
         Acceleration (gx, gy).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether gravity grows with the load factor in statics, if it has no amplitude.
 
@@ -44,7 +44,7 @@ class Gravity(BodyLoad):
 
 @dataclass(frozen=True)
 class DistributedLoad(LineLoad):
-    """Force per reference length along the axis of a beam.
+    """Distributed force on a beam, per reference length.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class DistributedLoad(LineLoad):
         Force per length (qx, qy) in the global axes x and y; or a function of the arc length [m] from the start that
         returns it. Elements end at the `kinks` of a function (declared, or jumps that are found).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the load grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False
@@ -93,7 +93,7 @@ class DistributedLoad(LineLoad):
 
     @property
     def uniform(self) -> bool:  # type: ignore[override]
-        """Whether it is the same at every arc length."""
+        """Whether the load is the same at every arc length."""
         return not callable(self.vector)
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ class DistributedLoad(LineLoad):
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError if a function gives none."""
+        """Return (qx, qy) [N/m] at arc lengths (n,) [m] as (n, 2). Raises InputError for an invalid value."""
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
         given, name = self.vector, "vector of DistributedLoad"
@@ -129,7 +129,7 @@ class Pressure(LineLoad):
         or a function of the reference arc length [m] that returns it. Elements end at the `kinks` of a function
         (declared, or jumps that are found).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the pressure grows with the load factor in statics, if it has no amplitude.
 
@@ -159,7 +159,7 @@ class Pressure(LineLoad):
 
     @property
     def uniform(self) -> bool:  # type: ignore[override]
-        """Whether it is the same at every arc length."""
+        """Whether the load is the same at every arc length."""
         return not callable(self.value)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
@@ -167,7 +167,7 @@ class Pressure(LineLoad):
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError if a function gives none."""
+        """Return the pressure [N/m] at arc lengths (n,) [m]. Raises InputError for an invalid value."""
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
         given, name = self.value, "value of Pressure"
@@ -189,7 +189,7 @@ class PointForce(PointLoad):
     vector : (float, float), [N]
         Force (fx, fy).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the force grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False
@@ -228,7 +228,7 @@ class PointMoment(PointLoad):
     moment : float, [N m]
         Moment.
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the moment grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False

@@ -16,8 +16,8 @@ class BeamMesh(Grid):
     """Grid of a beam with its numbers in the model.
 
     carried: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
-    number of its block; history (ne, nq, k): numbers of the history variables at its integration points, empty
-    without.
+    number of this block; history (ne, nq, k): numbers of the history variables at the quadrature points, empty without
+    history.
     """
 
     carried: Nodes
@@ -42,13 +42,13 @@ class BeamMesh(Grid):
         return tuple((int(code), np.flatnonzero(codes == code)) for code in np.unique(codes))
 
     def labels(self, node: int) -> tuple[str, ...]:
-        """Names of a node's coordinates."""
+        """Return the names of a node's coordinates."""
         return labels(int(self.carried.node_kind[node]), self.vectors)
 
     def coordinates_of(self, node: int) -> dict[str, int]:
-        """Number in the model of each coordinate of a node, by name."""
+        """Return the number in the model of each coordinate of a node, by name."""
         return dict(zip(self.labels(node), self.carried.dof[node].tolist(), strict=False))
 
     def table(self, p: np.ndarray) -> np.ndarray:
-        """Coordinates (steps, nodes, npn) of states p (steps, n); columns that a node does not have hold anything."""
+        """Return the coordinates (steps, nodes, npn) in states p (steps, n); unused columns of a node are arbitrary."""
         return p[:, self.carried.dof]

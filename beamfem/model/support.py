@@ -1,4 +1,4 @@
-"""The kinds of supports: at a point or along a beam; every support derives from one of them."""
+"""The base classes of supports: at a point or along a beam."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -18,11 +18,11 @@ class Support(ABC):
     @property
     @abstractmethod
     def place(self) -> Beam | Point:
-        """The beam or point that is supported."""
+        """The supported beam or point."""
 
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
 
 
 class PointSupport(Support):
@@ -42,14 +42,14 @@ class PointSupport(Support):
         require_point(type(self).__name__, getattr(self, "point", None))
 
     def prescribed(self) -> Mapping[str, Value]:
-        """Return the prescribed values by direction: numbers, which grow with the load factor, or functions of time.
+        """Return the prescribed values by direction: numbers, in statics times the load factor, or functions of time.
 
         "normal": 0.0 constrains the displacement along `direction`; no other value is possible.
         """
         return {}
 
     def springs(self) -> Mapping[str, float]:
-        """Return the stiffness [N/m], [N m/rad] of the springs to the ground by direction, none of them zero."""
+        """Return the nonzero stiffnesses [N/m], [N m/rad] of the springs to the ground, by direction."""
         return {}
 
     @property
@@ -63,7 +63,7 @@ class PointSupport(Support):
         return self.point
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
         prescribed, springs = self.prescribed(), self.springs()
         found: tuple[SupportShape, ...] = ()
         if prescribed:
@@ -97,5 +97,5 @@ class LineSupport(Support):
         return self.beam
 
     def shapes(self) -> tuple[SupportShape, ...]:
-        """Return what it looks like."""
+        """Return the shapes to draw."""
         return (SpringsAlong(self.beam, self.stiffness),)

@@ -1,1 +1,1 @@
-"""From a model to numbers: the tables that compiled code works on."""
+"""Assembly: the tables that compiled code needs of a model, and the residual and tangent that it returns."""

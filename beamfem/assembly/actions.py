@@ -1,4 +1,4 @@
-"""Forces, moments and springs at points of elements, as the kernels take them."""
+"""Forces, moments and springs at points of elements, in the form that the kernels expect."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,16 +15,16 @@ from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
 
-_FEW = 8  # points at once whose tables are kept
+_FEW = 8  # points; tables of more points are not cached
 
 
 @dataclass(frozen=True)
 class Actions:
-    """Point loads of a block and what they are at a time.
+    """Point loads of a block and their values at a time.
 
-    unit (nl, 3): force [N] and moment [N m] of each before its factor; source (nl,): number of its load, -1 for none;
-    xi (nl,): place in the element; rule (nl,): Gauss points of the element that share what is spread over it, 0 for
-    what acts at a point.
+    unit (nl, 3): force [N] and moment [N m] of each, without its factor; source (nl,): index of the load in `loads`, -1
+    for springs; xi (nl,): position in the element; rule (nl,): number of Gauss points per element over which a load or
+    foundation along a beam is distributed, 0 at a point.
     """
 
     points: PointLoads
@@ -41,7 +41,7 @@ class Actions:
 
 
 def build_actions(model: Model, block: int) -> Actions:
-    """Return everything that acts at points of the elements of a block."""
+    """Return the point loads of a block; loads and foundations along beams act at Gauss points."""
     points = model.point_loads
     lines = [load for load in model.line_loads if not (load.uniform and load.axes == "plane")]
     parts: list[dict[str, np.ndarray]] = []
@@ -77,13 +77,13 @@ def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
 
 
 def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
-    """Rows of the point loads for a load along a beam."""
+    """Return the rows of the point loads for a load along a beam."""
     element, xi, weight = length_points(mesh)
     unit, rule = np.zeros((len(xi), 3)), len(xi) // mesh.elements
     unit[:, :2] = weight[:, None] * forces_of(load, mesh.arc_length(element, xi))
     if load.axes != "axis":
         return _part(mesh, element, xi, unit, source, load.axes == "section", rule)
-    # along and across the derivative of the position, which takes the place of the section's direction
+    # the forces are along and normal to r0', which therefore replaces the director
     part = _part(mesh, element, xi, unit, source, True, rule)
     part["direction"] = _slope(mesh, element, xi) * scales(mesh.beam.element, mesh.lengths[element])
     part["follows"] = np.tile([1.0, 0.0], (len(xi), 1))
@@ -92,7 +92,7 @@ def _line(mesh: BeamMesh, load: LineLoad, source: int) -> dict[str, np.ndarray]:
 
 
 def _slope(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Table (n, nv) of the derivative of the position by the arc length, of nodal vectors times their scale."""
+    """Return the table (n, nv) that gives r0' at points from the scaled nodal vectors."""
     field = mesh.beam.element.field
     table = np.zeros((len(xi), len(field.nodes) * len(field.vectors)))
     table[:, r_slots(field)] = field.centreline(xi, 1) / jacobians(mesh, element, xi)[0][:, None]
@@ -121,13 +121,13 @@ def _empty(size: int) -> dict[str, np.ndarray]:
 def _part(
     mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
 ) -> dict[str, np.ndarray]:
-    """Rows of the point loads for points (element, xi) of a beam."""
+    """Return the rows of the point loads at points (element, xi) of a beam."""
     own, count = mesh.beam.element, len(element)
     scale = scales(own, mesh.lengths[element])
     position, direction = _tables(own, xi) if count > _FEW else _tables_few(own, xi.tobytes())
     if own.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
-    # of the interpolated reference, not of the curve: on a curved beam they differ by the error of interpolation
+    # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
     reference = reference_axis(mesh, element, xi)
     along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
     (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
@@ -149,13 +149,13 @@ def _part(
 
 
 def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tables (n, nv) of r0 and d at points, of nodal vectors times their scale."""
+    """Return the tables (n, nv) that give r0 and d at points from the scaled nodal vectors."""
     field = element.field
     position, direction = np.zeros((2, len(xi), len(field.nodes) * len(field.vectors)))
     position[:, r_slots(field)], direction[:, d_slots(field)] = field.centreline(xi), field.director(xi)
     return position, direction
 
 
-@lru_cache(maxsize=64)  # loads at the ends of beams ask for the same ones time and again
+@lru_cache(maxsize=64)  # loads at the ends of beams need the same tables repeatedly
 def _tables_few(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
     return _tables(element, np.frombuffer(xi))

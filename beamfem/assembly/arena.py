@@ -1,4 +1,4 @@
-"""Arrays in one piece of memory: NumPy takes a microsecond to tell an address, so it is asked once for all of them."""
+"""Arrays in one block of memory: NumPy takes a microsecond to return an address, so only one is requested."""
 
 from collections.abc import Mapping, Sequence
 from math import prod
@@ -9,13 +9,13 @@ import numpy as np
 from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 
-_ITEM = 8  # bytes of a number, real or whole
+_ITEM = 8  # bytes of a float or an integer
 
 
 class Arena:
-    """New arrays of one type, by name, and their addresses.
+    """New arrays of zeros of one type and their addresses, by name.
 
-    Each begins where a line of the cache does, so that lanes do not lie across two lines.
+    Each begins at a cache line, so that vectors of lanes do not straddle two lines.
     """
 
     def __init__(self, shapes: Mapping[Any, Sequence[int]], dtype: type = float) -> None:

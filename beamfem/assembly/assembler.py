@@ -1,4 +1,4 @@
-"""One evaluation of all equations of a model: a state and weights in, residual and tangent out."""
+"""Evaluation of all equations of a model: residual and tangent in a state, for given weights."""
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ _NONE = np.empty(0)
 
 @dataclass(frozen=True, eq=False)
 class Work:
-    """A group of elements with space of its own, so that solves do not disturb each other."""
+    """A group of elements with a separate workspace, so that solves do not interfere."""
 
     sheet: Sheet
     table: np.ndarray
@@ -30,7 +30,7 @@ class Work:
     stress: np.ndarray
 
     def rows(self, first: int, count: int) -> np.ndarray:
-        """Return rows of all nodes (N, count)."""
+        """Return `count` rows of all nodes from row `first` on (N, count), in the order of node numbers."""
         nodes = int(self.table[record.NODES])
         own = self.chunks[:, first : first + count, : record.LANES]
         found = np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
@@ -42,9 +42,9 @@ class Work:
 
 
 class Equations:
-    """Groups of elements and springs as compiled code takes them, without any work space.
+    """Groups of elements and springs in the form that compiled code expects, without workspace.
 
-    table: see `kernels.record`; springs: the arrays whose addresses it holds.
+    table: see `kernels.record`; springs: the arrays that the table points to.
     """
 
     def __init__(self, sheets: Sequence[Sheet], springs: Springs, size: int) -> None:
@@ -61,11 +61,12 @@ class Equations:
 
 
 class Assembler:
-    """Equations with space of their own: one for each solve and thread.
+    """Equations with a workspace: one for each solve and thread.
 
-    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in` gives
-    it memory to work in before each solve; spaces: numbers of the work space of each group, so that groups of one chain
-    that are worked on in turn may have one in common; numbers: in its work space; scratch: of them in that memory.
+    stresses: resultants (ne, nq, ns) of each group for the geometric part of the tangent; lent: whether `work_in`
+    provides scratch memory before each solve; spaces: workspace number of each group, by which groups of one chain that
+    are processed in sequence share a workspace; numbers: size of the workspace in floats; scratch: the part of it in
+    scratch memory.
     """
 
     def __init__(
@@ -135,12 +136,12 @@ class Assembler:
             self.work_in(new(self.scratch))
 
     def work_in(self, scratch: Scratch) -> None:
-        """Take memory (scratch,) or more for what passes work on; it must not hold anything that counts."""
+        """Use scratch memory of at least `scratch` floats; its contents are overwritten."""
         if scratch.user is self and self._scratch is scratch.memory:
-            return  # tables of elements are still there
+            return  # the element tables in it are still valid
         self._scratch, place, places = scratch.memory, scratch.address, {}
         for own, size in self._spaces.items():
-            place += -place % (8 * WIDTH)  # lanes do not lie across two lines of the cache
+            place += -place % (8 * WIDTH)  # vectors of lanes must not straddle two cache lines
             places[own] = place
             place += 8 * size
         for work, own in zip(self.works, self._which, strict=True):
@@ -150,26 +151,26 @@ class Assembler:
 
     @property
     def stresses(self) -> tuple[np.ndarray, ...]:
-        """Resultants (ne, nq, ns) of each group that the last step predicts, for the geometric part of the tangent."""
+        """Resultants (ne, nq, ns) of each group for the geometric part of the tangent: given, or as last predicted."""
         return tuple(work.stress for work in self.works)
 
     @property
     def memory(self) -> tuple[np.ndarray, ...]:
-        """The arrays that compiled code reads and writes, but for those that a state is placed in."""
+        """The arrays that compiled code reads and writes, except those set by `place`."""
         kept = [array for sheet in self.equations.sheets for array in sheet.kept]
         acting = (self._scratch, *self._acting, *self._natural)
         return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *acting)
 
     def take(self, loads: LoadsAt) -> None:
-        """Take what acts, unless it is what was taken last."""
+        """Set the loads, unless they are already set."""
         if loads is not self._taken:
             self.load(loads.body, loads.points, loads.imposing)
             self._taken = loads
 
     def load(self, body: np.ndarray, values: Sequence[np.ndarray], imposing: np.ndarray = _NONE) -> list[int]:
-        """Take body forces (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may come first.
+        """Set body loads (..., beams, 4) and point loads (..., nl, 3) of each group; time steps may be the first axis.
 
-        imposing: see `impose`. Return their addresses, but for those of imposed strains.
+        imposing: see `impose`. Return the addresses of body and point loads.
         """
         self.impose(imposing)
         parts = (body, *values)
@@ -183,7 +184,7 @@ class Assembler:
         return places
 
     def impose(self, factors: np.ndarray) -> list[int]:
-        """Take factors (..., k) of the loads that impose strains; return the address of those of each group, or 0."""
+        """Set the factors (..., k) of imposed strains; return the address of the strains of each group, 0 for none."""
         self._taken = None
         if not self._imposes:
             return [0] * len(self.works)
@@ -195,27 +196,27 @@ class Assembler:
         return places
 
     def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
-        """Take the weights ck, cv, ca of p, p', p'' in the tangent; ca = 0 leaves inertia out of the residual too.
+        """Set the weights ck, cv, ca of p, p', p'' in the tangent; with ca = 0 the residual has no inertia forces.
 
-        Likewise cv = ca = 0 leaves out damping. dt [s]: time step from the committed history.
+        With cv = ca = 0 it has no damping forces. dt [s]: time step since the committed history.
         """
         self._factors[:] = *coefficients, dt
         moving, rated = coefficients[2] != 0.0, coefficients[1] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 
     def require(self, *tasks: str) -> None:
-        """Have everything compiled that compiled drivers will call: forces always, "tangent", "prediction"."""
+        """Compile the routines that compiled drivers will call: forces always; tasks: also "tangent", "prediction"."""
         moving = self.table[record.MOVING] != 0 and "tangent" in tasks
         for work in self.works:
             work.sheet.require("forces", *tasks, *(("mass",) if moving else ()))
 
     def place(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> None:
-        """Take the arrays (n,) of a state and where results go; who calls keeps them alive."""
+        """Set the arrays (n,) of the state and of the results; the caller must keep them alive."""
         states = [_address(values, self.size) for values in (p, v, a, residual)]
         self.place_at((states[0], states[1], states[2]), states[3], _address(matrix), matrix.size)
 
     def place_at(self, states: tuple[int, int, int], residual: int, matrix: int, entries: int) -> None:
-        """Take the addresses of the same, and how many entries the matrix has."""
+        """Set the addresses of state and results (see `place`), and the number of entries of the matrix."""
         table = self.table
         table[record.COORDINATES_P], table[record.COORDINATES_V], table[record.COORDINATES_A] = states
         table[record.RESIDUAL], table[record.MATRIX], table[record.ENTRIES] = residual, matrix, entries
@@ -223,9 +224,9 @@ class Assembler:
     def balance(
         self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray, predicted: bool
     ) -> None:
-        """Fill the residual (n,) and, unless it is empty, the flat matrix.
+        """Assemble the residual (n,) and, unless it is empty, the flat matrix.
 
-        predicted: take the geometric part of the tangent from `stresses`.
+        predicted: whether the geometric part of the tangent uses `stresses`.
         """
         self.require(*(("tangent",) if matrix.size else ()))
         self.place(p, v, a, residual, matrix)
@@ -235,7 +236,7 @@ class Assembler:
         self.raise_errors()
 
     def predict(self, p: np.ndarray, step: np.ndarray, v: np.ndarray | None = None) -> None:
-        """Fill `stresses` with those after a linearised step (n,) from p (n,); v: p' (n,), where rates count."""
+        """Predict `stresses` after a linearised step (n,) from p (n,); v: p' (n,), for damping."""
         self.require("prediction")
         states = [_address(values, self.size) for values in (p, step, step if v is None else v)]
         fields = record.COORDINATES_P, record.COORDINATES_V, record.COORDINATES_A
@@ -246,14 +247,14 @@ class Assembler:
         self.raise_errors()
 
     def raise_errors(self) -> None:
-        """Raise what the laws of sections have raised in compiled code; drivers that call them end with this."""
+        """Raise the error of a section law in compiled code, if any; call this after every compiled driver."""
         for law in self._laws:
             law.raise_error()
 
     def elastic(self, p: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return e, e'' and forces of the strains and their rates (N, per_node) of the only group in p, p', p''.
+        """Return e, e'' and the elastic and damping forces (N, per_node) of the only group in a state p, p', p''.
 
-        Strains that loads impose are taken off.
+        Imposed strains are subtracted.
         """
         (work,), table, nothing = self.works, self.table, np.zeros(self.size)
         self.place(p, v, a, nothing, np.empty(0))
@@ -267,7 +268,7 @@ class Assembler:
         return work.rows(0, size), work.rows(size, size), work.rows(force, size)
 
     def nodal_vectors(self, p: np.ndarray) -> list[np.ndarray]:
-        """Return the vectors e (N, per_node) of the nodes of each group in a state (n,)."""
+        """Return the nodal vectors e (N, per_node) of each group in a state (n,)."""
         self.require()
         self.table[record.COORDINATES_P] = _address(p, self.size)
         found = []
@@ -277,7 +278,7 @@ class Assembler:
         return found
 
     def smallest_jacobian(self, p: np.ndarray) -> float:
-        """Return the smallest r0' x d of all quadrature points in a state (n,); negative inside out."""
+        """Return the smallest r0' x d of all quadrature points in a state (n,), at most 1; negative if inverted."""
         self.require()
         self.table[record.COORDINATES_P] = _address(p, self.size)
         smallest = 1.0
@@ -288,14 +289,14 @@ class Assembler:
 
 
 def _space(sheet: Sheet, number: int, spaces: Sequence[int] | None) -> Hashable:
-    """Return the name of the work space of a group: shared if nothing in it is constant and its rows are alike."""
+    """Return the key of the workspace of a group, which is shared if its rows match and none of them is constant."""
     if spaces is None or sheet.constant is not None:
         return number
     return spaces[number], int(sheet.table[record.CURVATURE]), int(sheet.table[record.TABLE_ROWS])
 
 
 def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:
-    """Return the strains (..., ne, nq, ns) that loads with factors (..., k) impose, None if there are none."""
+    """Return the strains (..., ne, nq, ns) imposed by loads with factors (..., k), None if there are none."""
     if sheet.imposed is None or not factors.any():
         return None
     if factors.ndim == 1:
@@ -304,7 +305,7 @@ def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:
 
 
 def _address(values: np.ndarray, size: int | None = None) -> int:
-    """Return the address of plain numbers (size,)."""
+    """Return the address of a contiguous array of floats (size,)."""
     if values.dtype != np.float64 or not values.flags.c_contiguous or (size is not None and values.size != size):
         raise ValueError(f"compiled code takes {size} contiguous floats, got {values.dtype} {values.shape}")
     return address_of(values)

@@ -1,4 +1,4 @@
-"""The arrays that the compiled iteration of a band works on, kept for the next solve of the same model."""
+"""Workspace of the compiled Newton iteration with a band matrix, reused by the next solve of the same model."""
 
 from beamfem.assembly import scratch
 from beamfem.assembly.arena import Arena
@@ -7,13 +7,13 @@ from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.pointers import address_of
 
-_KEPT = 100_000  # entries of a tangent up to which making arrays takes a part of a solve that anybody would notice
+_KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
 
 
 class BandSpace:
-    """Space for one static solve of a model whose tangent is a band, and the tables that tell compiled code of it.
+    """Workspace for one static solve with a band matrix, and the tables that describe it to compiled code.
 
-    addresses: of the equations, the unknowns and the routines, which compiled drivers take.
+    addresses: tables of the equations, the unknowns and the routines, the arguments of compiled drivers.
     """
 
     def __init__(self, system: System) -> None:
@@ -48,19 +48,19 @@ class BandSpace:
         self._entries = arrays[record.ROWS].size
 
     def give_back(self, system: System) -> None:
-        """Leave it for the next solve, if it is small."""
+        """Return the scratch memory, and keep the workspace for the next solve if it is small."""
         scratch.take_back(self._scratch)
         if self._entries <= _KEPT:
             system.spare.append(self)
 
     def take(self, lent: scratch.Scratch) -> None:
-        """Take memory to work in until it is given back."""
+        """Use lent scratch memory until `give_back`."""
         self._scratch = lent
         self.assembler.work_in(lent)
 
 
 def band_space(system: System) -> BandSpace:
-    """Return space that no other solve works in."""
+    """Return a workspace that no other solve uses."""
     try:
         found: BandSpace = system.spare.pop()
     except IndexError:

@@ -1,4 +1,4 @@
-"""From beam meshes to the plain arrays of the kernels."""
+"""Conversion of beam meshes to the arrays that the kernels expect."""
 
 from collections.abc import Hashable, Sequence
 from functools import lru_cache
@@ -13,21 +13,21 @@ from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
-_FEW = 2000  # elements; what belongs to larger blocks is not kept
+_FEW = 2000  # elements; results for larger blocks are not cached
 _PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
 
 def build_block(
     element: Element, meshes: Sequence[tuple[int, BeamMesh]], imposing: Sequence[tuple[int, ImposedStrain]] = ()
 ) -> Block:
-    """Return the block of all beams (number, mesh) that share an element and a law of the section.
+    """Return the block of all beams (number, mesh) that share an element and a section law.
 
     imposing: loads that impose strains, each with the number of its beam.
     """
     xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
-    known: dict[Hashable, np.ndarray] = {}  # classes of the elements of like beams
+    known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
     parts: dict[str, list[np.ndarray]] = {name: [] for name in _PER_CLASS}
     kinds = []
     for mesh, like in zip(own, likenesses(own), strict=True):
@@ -51,7 +51,7 @@ def build_block(
 
 
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
-    """Return what the elements and nodes of beams (number, mesh) have of their own, see `kernels.block.Block`."""
+    """Return the fields of `kernels.block.Block` that differ by element or node, for beams (number, mesh)."""
     own = [mesh for _, mesh in meshes]
     elements, nodes = np.array([(mesh.elements, mesh.nodes) for mesh in own]).T
     node = _joined([mesh.node for mesh in own])
@@ -70,7 +70,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
 
 
 def _homes(node: np.ndarray, nodes: int) -> np.ndarray:
-    """Return an element of each node and its place there (nodes, 2)."""
+    """Return for each node an element that contains it, and its local number there (nodes, 2)."""
     home = np.empty((nodes, 2), dtype=np.int64)
     for place, there in enumerate(node.T):
         home[there, 0], home[there, 1] = np.arange(len(node)), place
@@ -85,7 +85,7 @@ def _homes_of_few(node: bytes, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Return parts one after the other; a single one as it is, for it may be large."""
+    """Concatenate arrays; a single one is not copied, because it may be large."""
     return np.ascontiguousarray(parts[0]) if len(parts) == 1 else np.concatenate(parts)
 
 

@@ -1,4 +1,4 @@
-"""A single chain of elements, and parts of it as blocks of their own."""
+"""Parts of a single chain of elements as separate blocks."""
 
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def is_chain(system: "System") -> bool:
-    """Return whether a model is one beam, whose coordinates follow one another and are solved for as a band."""
+    """Return whether a model is a single beam with a band matrix, without joints, inclined rollers or history."""
     model = system.model
     single = len(model.beams) == 1 and not model.joints and not system.inclined and not len(system.history.numbers)
     return single and system.unknowns.pattern is None
 
 
 def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:
-    """Return elements of a chain as a block, its coordinates counted from the first."""
+    """Return some elements of a chain as a block, whose coordinates are numbered from `first_dof`."""
     node = whole.node[elements]
     nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
     dof = whole.dof[nodes]
@@ -33,7 +33,7 @@ def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:
 
 
 def loads_of(whole: PointLoads, elements: slice) -> tuple[PointLoads, np.ndarray]:
-    """Return loads on elements of a chain, which are counted from the first, and which of all they are."""
+    """Return the loads on some elements of a chain, which are numbered from the first, and the indices of the loads."""
     loaded = np.flatnonzero((whole.element >= elements.start) & (whole.element < elements.stop))
     points = PointLoads(*(column[loaded] for column in whole))
     return points._replace(element=points.element - elements.start), loaded

@@ -1,4 +1,4 @@
-"""Coordinates by their names, of all nodes with like carriers."""
+"""Coordinates of a beam, grouped by name and kind of node."""
 
 from functools import lru_cache
 
@@ -9,19 +9,19 @@ from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
 
 Columns = list[tuple[str, np.ndarray, np.ndarray]]
-_FEW = 2000  # nodes; the columns of more are not kept
+_FEW = 2000  # nodes; the columns of larger meshes are not cached
 
 
 def coordinate_columns(mesh: BeamMesh) -> Columns:
-    """Return name, nodes and numbers in the model of each coordinate of a beam, of all nodes with like carriers.
+    """Return name, nodes and numbers in the model of each coordinate of a beam, for each kind of node.
 
-    A vector that is turned at a joint is that of the first of the joined nodes, and listed there only.
+    Joined nodes with gradients share r_y, rotated by the angle between them; it is listed at the first of them only.
     """
     return columns_of(mesh.carried.node_kind, mesh.carried.dof, mesh.vectors)
 
 
 def columns_of(node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]) -> Columns:
-    """Return the same of nodes of some kinds (N,) with coordinates dof (N, npn)."""
+    """Return `coordinate_columns` for nodes of the given kinds (N,) with coordinates dof (N, npn)."""
     if len(node_kinds) > _FEW:
         return _columns_of(node_kinds, dof, vectors)
     return _columns_of_few(node_kinds.tobytes(), dof.tobytes(), vectors)

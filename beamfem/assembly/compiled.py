@@ -1,4 +1,4 @@
-"""Which kernels are compiled already."""
+"""Report of the kernels that have been, or must be, compiled."""
 
 import sys
 from functools import cache
@@ -15,7 +15,7 @@ def compiled_here() -> list[Routine]:
 
 @cache
 def tell_of_compilation() -> None:
-    """Say on a terminal or in a notebook, once, that the first solve has to wait for the compiler."""
+    """Print once, on a terminal or in a notebook, that the first solve must wait for the compiler."""
     if not (sys.stderr.isatty() or in_notebook()) or kept():
         return
     if cache_folder() is None:

@@ -1,4 +1,4 @@
-"""A contribution and its coordinates: its force, and its tangent by complex steps."""
+"""A contribution with its coordinates in the model: force, energies, and tangent by complex steps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,17 +10,17 @@ from beamfem.errors import InputError
 from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.validation import called
 
-COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
+COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
 Motion = tuple[np.ndarray, np.ndarray, np.ndarray]  # p, p', p'' (n,)
 
 
 @dataclass(frozen=True, eq=False)
 class Connector:
-    """A contribution and the coordinates that it acts on.
+    """A contribution and the numbers of the coordinates that it acts on.
 
-    dofs (3 m,): x, y and rotation of each point; own (k,): its unknowns; memory (h,): what it remembers; reference
-    (m, 3): its q in the reference.
+    dofs (3 m,): x, y and rotation of each point; own (k,): its multipliers; memory (h,): its history variables;
+    reference (m, 3): q in the reference.
     """
 
     item: Contribution
@@ -31,7 +31,7 @@ class Connector:
 
     @property
     def all(self) -> np.ndarray:
-        """Numbers (3 m + k,) of all coordinates in its force."""
+        """Numbers (3 m + k,) of all coordinates that the force belongs to."""
         return np.concatenate([self.dofs, self.own])
 
     @property
@@ -39,14 +39,14 @@ class Connector:
         return type(self.item).__name__
 
     def at(self, motion: Motion, time: float, gravity: np.ndarray) -> At:
-        """Return where it is evaluated; the motion may be complex."""
+        """Return the state at which the contribution is evaluated; the motion may be complex."""
         q, rate, second = (values[self.dofs].reshape(-1, 3) for values in motion)
         memory = motion[0][self.memory].real
         return At(q, rate, second, motion[0][self.own], memory, self.reference, time, gravity)
 
     def force(self, at: At) -> np.ndarray:
-        """Return its force (3 m + k,). Raises InputError for what is no force."""
-        with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; then the iteration goes back
+        """Return the force (3 m + k,). Raises InputError for an invalid result."""
+        with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; the iteration recovers from it
             found = np.asarray(called(f"force of {self.name}", self.item.force, at))
         if found.shape != (len(self.dofs) + len(self.own),) or found.dtype.kind not in "fic":
             raise InputError(
@@ -56,7 +56,7 @@ class Connector:
         return found
 
     def remember(self, at: At) -> np.ndarray:
-        """Return its memory (h,) after an accepted step. Raises InputError for what is none."""
+        """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
         if not isinstance(self.item, Remembering):
             return np.empty(0)
         found = np.asarray(called(f"remember of {self.name}", self.item.remember, at))
@@ -65,7 +65,7 @@ class Connector:
         return found
 
     def energy(self, at: At) -> tuple[complex, complex]:
-        """Return its kinetic energy and its potential [J]. Raises InputError for what are no energies."""
+        """Return kinetic and potential energy [J]. Raises InputError for an invalid result."""
         found = np.asarray(called(f"energy of {self.name}", self.item.energy, at))
         if found.shape != (2,) or found.dtype.kind not in "fic":
             raise InputError(
@@ -81,7 +81,7 @@ class Connector:
         gravity: np.ndarray,
         weights: Sequence[float],
     ) -> np.ndarray:
-        """Return the derivative (3 m + k, 3 m + k) of its force, weighted for p, p' and p'', by complex steps.
+        """Return the tangent (3 m + k, 3 m + k) of the force for weights of p, p' and p'', by complex steps.
 
         Raises LinAlgError if it is not finite.
         """

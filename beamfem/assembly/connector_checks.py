@@ -1,4 +1,4 @@
-"""Whether connectors are what they say: analytic, even where they have a potential, with energies of their forces."""
+"""Checks of connectors: analytic, symmetric if they have a potential, and with energies that match their forces."""
 
 from collections.abc import Callable
 
@@ -9,10 +9,10 @@ from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.errors import InputError
 from beamfem.model.contribution import remembered
 
-_WIDTH = 1e-7  # of the central differences that complex steps are tested against
-_NEAR = 1e-3  # of its size: how far from the reference a force is looked at
+_WIDTH = 1e-7  # of the central differences to which complex steps are compared
+_NEAR = 1e-3  # distance from the reference at which a force is checked, relative to the length
 _AGREE = 1e-4
-_GRAVITY = np.array([0.3, -0.7])  # any
+_GRAVITY = np.array([0.3, -0.7])  # arbitrary
 _TIMES = (0.5, 0.0, 0.813)
 
 
@@ -58,7 +58,7 @@ def resists_rates(item: Connector) -> bool:
 
 
 def follows_time(item: Connector) -> tuple[bool, bool]:
-    """Return whether the force depends on time, and whether the conditions do."""
+    """Return whether the force and whether the constraint conditions depend on time."""
     motion = _somewhere(item)[0]
     first, *others = (item.force(item.at(motion, time, _GRAVITY)).real for time in _TIMES)
     changed = np.any([other != first for other in others], axis=0)
@@ -66,7 +66,7 @@ def follows_time(item: Connector) -> tuple[bool, bool]:
 
 
 def _somewhere(item: Connector) -> tuple[Motion, float]:
-    """Return a motion near the reference, and a length [m] of what is connected."""
+    """Return an arbitrary motion near the reference, and the length [m] of the longest connected beam."""
     rng, size = np.random.default_rng(3), max(point.beam.curve.length for point in item.item.points)
     last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
     p, v, a = (_NEAR * size * rng.standard_normal(last) for _ in range(3))
@@ -95,7 +95,7 @@ def _kinetic_rate(item: Connector, motion: Motion, dof: int) -> float:
 
 
 def _slopes(item: Connector, values: Callable[..., np.ndarray], motion: Motion, kind: int, width: float) -> np.ndarray:
-    """Return the derivative of values by p, p' or p'', by central differences."""
+    """Return the derivative of `values` with respect to p, p' or p'' (kind 0, 1 or 2), by central differences."""
     columns = []
     for dof in item.all.tolist():
         ends = []

@@ -1,4 +1,4 @@
-"""Contributions of a model in its equations: what they add to residual and tangent, energies and momenta."""
+"""Contributions of all connectors of a model to residual and tangent, energies and momenta."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from beamfem.model.contribution import remembered
 from beamfem.model.load import factor
 from beamfem.model.model import Model
 
-_ROUND_OFF = 1e-13  # of the largest stiffness of a contribution
+_ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
 _NO_NUMBERS, _NOTHING = np.empty(0, dtype=np.int64), np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
 class Connectors:
-    """All contributions of a model."""
+    """All connectors of a model."""
 
     model: Model
     static: bool
@@ -27,21 +27,21 @@ class Connectors:
 
     @cached_property
     def multipliers(self) -> np.ndarray:
-        """Numbers (k,) of the unknowns of their own."""
+        """Numbers (k,) of the multipliers."""
         return np.concatenate([_NO_NUMBERS, *(item.own for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def memory(self) -> np.ndarray:
-        """Numbers (h,) of what they remember."""
+        """Numbers (h,) of the history variables."""
         return np.concatenate([_NO_NUMBERS, *(item.memory for item in self.items)]) if self.items else _NO_NUMBERS
 
     @cached_property
     def start(self) -> np.ndarray:
-        """What they remember at the start (h,)."""
+        """Initial values (h,) of the history variables."""
         return np.concatenate([_NOTHING, *(remembered(item.item) for item in self.items)]) if self.items else _NOTHING
 
     def remember(self, motion: Motion, time: float) -> np.ndarray:
-        """Return what they remember (h,) once a step to this state is accepted."""
+        """Return the history variables (h,) after an accepted step to this state."""
         gravity = self.gravity(time)
         return np.concatenate([np.empty(0), *(item.remember(item.at(motion, time, gravity)) for item in self.items)])
 
@@ -51,36 +51,36 @@ class Connectors:
 
     @cached_property
     def keep_energy(self) -> bool:
-        """Whether none does work on a motion, or takes energy from it."""
+        """Whether no connector adds energy to a motion or dissipates it."""
         return self.conservative and not any(resists_rates(item) or any(follows_time(item)) for item in self.items)
 
     def gravity(self, time: float) -> np.ndarray:
-        """Acceleration (2,) [m/s^2] of all gravity at a time."""
+        """Return the acceleration (2,) [m/s^2] of all gravity loads at a time."""
         result = np.zeros(2)
         for load in self.model.gravity:
             result += np.array(load.vector) * factor(load, time, self.static)
         return result
 
     def add_forces(self, residual: np.ndarray, motion: Motion, time: float) -> None:
-        """Add their forces to a residual (n,)."""
+        """Add the forces of all connectors to a residual (n,)."""
         gravity = self.gravity(time) if self.items else np.zeros(2)
         for item in self.items:
             np.add.at(residual, item.all, item.force(item.at(motion, time, gravity)).real)
 
     def tangents(self, motion: Motion, time: float, weights: Sequence[float]) -> list[np.ndarray]:
-        """Return the weighted tangent (3 m + k, 3 m + k) of each."""
+        """Return the tangent (3 m + k, 3 m + k) of each connector for weights of p, p' and p''."""
         gravity = self.gravity(time) if self.items else np.zeros(2)
         return [item.tangent(motion, time, gravity, weights) for item in self.items]
 
     def energies(self, motion: Motion, time: float) -> tuple[float, float]:
-        """Return their kinetic energy and potential [J]."""
+        """Return the total kinetic and potential energy [J]."""
         gravity = self.gravity(time)
         found = [item.energy(item.at(motion, time, gravity)) for item in self.items]
         kinetic, potential = np.array(found).reshape(-1, 2).real.sum(axis=0).tolist()
         return kinetic, potential
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
-        """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (3,)."""
+        """Return the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] (3,)."""
         (p, v, a), gravity, result = motion, self.gravity(time), np.zeros(3)
         for item in self.items:
             own = np.empty(len(item.dofs))
@@ -93,7 +93,7 @@ class Connectors:
         return result
 
     def conditions(self, p: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what is left of all conditions (k,) in a state p (n,), and how it changes along p' (n,)."""
+        """Return the residuals (k,) of all constraint conditions in a state p (n,), and their rates for p' (n,)."""
         zeros, gravity = np.zeros(len(p)), np.zeros(2)
         moved = p + 1j * COMPLEX_STEP * rate
         found = [item.force(item.at((moved, zeros, zeros), 0.0, gravity))[len(item.dofs) :] for item in self.items]
@@ -102,7 +102,7 @@ class Connectors:
 
     @cached_property
     def errors(self) -> np.ndarray:
-        """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
+        """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         result = np.zeros((2, self.model.size))
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             turns = np.arange(len(item.all)) % 3 == 2
@@ -112,11 +112,11 @@ class Connectors:
         return result
 
     def stopped(self) -> list[tuple[Connector, np.ndarray]]:
-        """Return each with the motions (r, 3 m) of its points that it resists in the reference, of unit size."""
+        """Return each connector with the normalised motions (r, 3 m) of its points that it resists in the reference."""
         found = []
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             forces = stiffness[: len(item.dofs), : len(item.dofs)].copy()
-            # moments beside forces, and turns beside displacements, at the length of what is connected
+            # makes moments comparable with forces
             length = max(point.beam.curve.length for point in item.item.points)
             forces[2::3] /= length
             sizes = np.abs(forces).max(axis=1, initial=0.0)
@@ -129,7 +129,7 @@ class Connectors:
 
     @cached_property
     def _stiffness(self) -> list[np.ndarray]:
-        """The tangent of each in the reference."""
+        """Tangent of each connector in the reference."""
         p, zeros = np.zeros(self.model.size), np.zeros(self.model.size)
         for item in self.items:
             p[item.dofs] = item.reference.ravel()
@@ -138,7 +138,7 @@ class Connectors:
 
 
 def connectors_of(model: Model, static: bool) -> Connectors:
-    """Return the contributions of a model with their coordinates. Raises InputError for inconsistent ones."""
+    """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
     first, found = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:

@@ -1,4 +1,4 @@
-"""How functions of a state change with small steps, by differences that are exact where they are polynomials."""
+"""Changes of functions of a state with small steps, by differences that are exact for polynomials up to degree 4."""
 
 from collections.abc import Callable
 
@@ -7,15 +7,15 @@ import numpy as np
 from beamfem.assembly.system import System
 
 _STRAIN = 1e-3
-_DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # where, and weight
+_DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # offset and weight
 
 
 def differentiated(
     system: System, values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray
 ) -> np.ndarray:
-    """Return the change of a function of p (..., n) with a step (..., n) that may be below the last digit of p.
+    """Return the linear change of a function of p (..., n) for a step (..., n) that may be below the round-off of p.
 
-    A central difference of fourth order, so wide that the strains it gives are of size 1e-3.
+    It is a central difference of fourth order, wide enough to cause strains of about 1e-3.
     """
     size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
     width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)

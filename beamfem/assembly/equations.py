@@ -1,4 +1,4 @@
-"""Residual and tangent of a system in a state: the only place where solvers meet the kernels."""
+"""Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -12,16 +12,16 @@ from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
-ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is their sum
+ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a coordinate: each term of a strain is rounded, and so is the sum
 MIXED = "the tangent loses its digits unless stress resultants are unknowns of their own"
 _EMPTY = np.empty(0)
-_KEPT = 200_000  # numbers of a work space up to which making it takes a part of an evaluation that anybody would notice
+_KEPT = 200_000  # floats of the largest workspace whose allocation is a noticeable part of an evaluation
 
 
 def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: float, dt: float = 0.0) -> np.ndarray:
-    """Return inertia + elastic - external generalized forces (n,) [N, N m]: reactions at prescribed coordinates.
+    """Return inertia + elastic - external generalized forces (n,) [N, N m]; at prescribed coordinates, the reactions.
 
-    dt [s]: time step from the committed history, 0 in an accepted state.
+    dt [s]: time step since the committed history, 0 in an accepted state.
     """
     result, assembler = np.empty(len(p)), _borrowed(system)
     assembler.take(system.loads_at(time))
@@ -33,7 +33,7 @@ def residual(system: System, p: np.ndarray, v: np.ndarray, a: np.ndarray, time: 
 
 
 def _borrowed(system: System) -> Assembler:
-    """Return the equations with work space that no other evaluation uses: of one that has ended, or new."""
+    """Return an assembler whose workspace no other evaluation uses: a spare one, or a new one."""
     try:
         return system.spare_assemblers.pop()
     except IndexError:
@@ -41,7 +41,7 @@ def _borrowed(system: System) -> Assembler:
 
 
 def _give_back(system: System, assembler: Assembler) -> None:
-    """Leave work space for the next evaluation, if it is small."""
+    """Keep an assembler for the next evaluation if its workspace is small."""
     if assembler.numbers <= _KEPT:
         system.spare_assemblers.append(assembler)
 
@@ -61,10 +61,10 @@ def linearise(
     equations: Equations | None = None,
     dt: float = 0.0,
 ) -> tuple[np.ndarray, Tangent]:
-    """Return residual (n,) and tangent; `coefficients` weigh p, p' and p'' (`STATICS`, `INERTIA`).
+    """Return residual (n,) and tangent; `coefficients` are the weights of p, p' and p'' (`STATICS`, `INERTIA`).
 
-    stresses: resultants for the geometric part of the tangent, of each block (ne, nq, ns); equations: of other
-    blocks, to take instead of those of the system; dt [s]: see `residual`.
+    stresses: resultants (ne, nq, ns) of each block for the geometric part of the tangent; equations: those of other
+    blocks, used instead of those of the system; dt [s]: see `residual`.
     """
     matrix, result = _entries(system), np.empty(len(p))
     borrowed = stresses is None and equations is None
@@ -83,7 +83,7 @@ def linearise(
 
 
 def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float) -> Tangent:
-    """Return the static tangent in p (n,) with the stress resultants that a linear step (n,) from there leads to."""
+    """Return the static tangent in p (n,) with the stress resultants predicted by a linear step (n,) from p."""
     zeros = np.zeros(len(p))
     if MIXED in system.proven:
         return linearise(system, p, zeros, zeros, time, STATICS, predicted_stresses(system, p, step, time))[1]
@@ -112,7 +112,7 @@ def _add_connectors(
 
 
 def _entries(system: System) -> np.ndarray:
-    """Return room for the entries of a tangent."""
+    """Return an empty array for the entries of a tangent."""
     unknown, pattern = len(system.unknowns.dofs), system.unknowns.pattern
     return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
 
@@ -135,7 +135,7 @@ def with_stresses(
     stresses: tuple[np.ndarray, ...] | None,
     plain: Tangent,
 ) -> MixedTangent:
-    """Return the tangent `plain` of p, p', p'' with stress resultants as further unknowns."""
+    """Return the mixed form of the tangent `plain` in p, p', p'': with stress resultants as additional unknowns."""
     p = state[0]
     known = stresses or _sure_stresses(system, p, time)
     loads, zeros = linearise(system, *state, time, coefficients, known, system.without_stiffness)
@@ -143,9 +143,9 @@ def with_stresses(
 
 
 def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants of a state, of each block (ne, nq, ns), zero if they may be round-off only.
+    """Return the stress resultants (ne, nq, ns) of each block in a state, with those that may be round-off set to zero.
 
-    That of a stiff part would buckle, or hold, what is soft beside it.
+    Round-off in a stiff part could otherwise buckle, or stiffen, an adjacent soft part.
     """
     result = predicted_stresses(system, p, np.zeros(len(p)), time)
     reach, turn = sizes(system, p)
@@ -156,7 +156,7 @@ def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarr
 
 
 def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
-    """Return the largest position [m], or the size of the model, and the largest of all other coordinates, or 1."""
+    """Return the largest position [m], at least the size of the model, and the largest other coordinate, at least 1."""
     reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
     others = ~system.positions
     others[system.history.numbers] = False
@@ -172,11 +172,10 @@ def predicted_stresses(
     rates: tuple[np.ndarray, tuple[float, float, float]] | None = None,
     dt: float = 0.0,
 ) -> tuple[np.ndarray, ...]:
-    """Return the stress resultants after a linearised step (n,) from p, of each block (ne, nq, ns).
+    """Return the stress resultants (ne, nq, ns) of each block after a linearised step (n,) from p (n,).
 
-    time: at the end of the step, for strains that loads impose;
-    equations: of other blocks, to take instead of those of the system; rates: p' (n,) in motions, and the weights of p,
-    p' and p'' in their tangent; dt [s]: see `residual`.
+    time: at the end of the step, for imposed strains; equations: those of other blocks, used instead of those of the
+    system; rates: in dynamics, p' (n,) and the weights of p, p' and p'' in the tangent; dt [s]: see `residual`.
     """
     assembler = Assembler(equations or system.equations)
     assembler.impose(system.imposing(time))
@@ -187,10 +186,11 @@ def predicted_stresses(
 
 
 def load_slope(system: System, p: np.ndarray, load_factor: float, width: float = 1e-6) -> np.ndarray:
-    """Return the change of the residual (n,) [N, N m] with the load factor, prescribed motions included.
+    """Return the derivative of the residual (n,) [N, N m] with respect to the load factor, with prescribed motions.
 
-    A central difference of the given width for loads, exact to round-off where they are proportional to the load
-    factor; for prescribed motions one of fourth order at small strains, since slender parts stiffen within any width.
+    For loads it is a central difference of the given width, exact to round-off if they are proportional to the load
+    factor; for prescribed motions, one of fourth order at small strains, because slender parts stiffen within any
+    width.
     """
     zeros, prescribed = np.zeros(len(p)), system.prescribed_dofs
     ahead, behind = (residual(system, p, zeros, zeros, load_factor + at) for at in (width, -width))

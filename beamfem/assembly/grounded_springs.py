@@ -1,4 +1,4 @@
-"""Springs of single coordinates to the ground, as the kernels take them."""
+"""Springs from single coordinates to the ground, in the form that the kernels expect."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from beamfem.model.model import Model
 
 
 def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Springs:
-    """Return the springs of a model whose coordinates are `reference` (n,) where no spring pulls."""
+    """Return the springs of a model, which are unstressed at the coordinates `reference` (n,)."""
     dofs, stiffness = [], []
     for support in model.point_supports:
         if springs := support.springs():

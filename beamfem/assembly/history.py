@@ -1,4 +1,4 @@
-"""Committed history: what connectors and section laws remember of the last accepted step, as part of a state."""
+"""Committed history: history variables of connectors and section laws after an accepted step, as part of a state."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,14 +15,14 @@ from beamfem.section.law import ConstitutiveLaw
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """The history variables of a model, which stand behind its coordinates and change with accepted steps only."""
+    """History variables of a model; in a state they follow the coordinates, and only accepted steps change them."""
 
     connectors: Connectors
     blocks: tuple[Block, ...]
 
     @cached_property
     def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
-        """Section laws that remember, each with its block."""
+        """Section laws with history, each with its block."""
         known = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
         return tuple((law, self.blocks[number]) for number, law in known.items() if law is not None and law.remembers)
 
@@ -34,18 +34,18 @@ class History:
 
     @cached_property
     def start(self) -> np.ndarray:
-        """Their initial values (h,)."""
+        """Initial values (h,) of all history variables."""
         own = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
         return np.concatenate([self.connectors.start, *own]) if own else self.connectors.start
 
     @property
     def holders(self) -> tuple[tuple[str, str], ...]:
-        """What remembers, in words, and its name."""
+        """Kind, in words, and name of each connector or section law with history."""
         connectors = (("connectors", item.name) for item in self.connectors.items if len(item.memory))
         return (*connectors, *(("section laws", law.name) for law, _ in self.laws))
 
     def committed(self, motion: Motion, time: float, imposing: np.ndarray, dt: float = 0.0) -> np.ndarray:
-        """Return p (n,) with the history variables after an accepted step to a state.
+        """Return p (n,) with the history variables after an accepted step to this state.
 
         imposing (k,): factors of the loads that impose strains; dt [s]: time step, 0 in statics. Raises InputError.
         """
@@ -61,7 +61,7 @@ class History:
         return found
 
     def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
-        """Return the same of an accepted load step to an equilibrium p (n,)."""
+        """Return p (n,) with the history variables after an accepted load step to this equilibrium."""
         if not len(self.numbers):
             return p
         zeros = np.zeros(len(p))
@@ -69,7 +69,7 @@ class History:
 
     @cached_property
     def _strains(self) -> tuple[Sheet, ...]:
-        """Elements of each law whose resultants are their strains, from the state without stress."""
+        """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
         unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
         blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]
         return tuple(free_sheet(block, self.connectors.model.size) for block in blocks)

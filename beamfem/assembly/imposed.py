@@ -11,7 +11,7 @@ from beamfem.model.mesh import BeamMesh
 
 
 def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int, ImposedStrain]]) -> Imposed | None:
-    """Return what loads, each with the number of its beam, impose on a block of beams (number, mesh); None: nothing."""
+    """Return the strains that loads, each with its beam number, impose on a block of beams (number, mesh), or None."""
     by_beam: dict[int, list[int]] = {}
     for number, (beam, _) in enumerate(loads):
         by_beam.setdefault(beam, []).append(number)

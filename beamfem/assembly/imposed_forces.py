@@ -1,4 +1,4 @@
-"""How large strains are that loads impose: by the forces that would hinder them."""
+"""Magnitude of imposed strains, measured by the forces that would suppress them."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A law of a section as a pass over rows of points that compiled code calls, see `kernels.linear_law`."""
+"""A section law as a pass over rows of points that compiled code can call, see `kernels.linear_law`."""
 
 from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p, cast
 from math import prod
@@ -11,19 +11,19 @@ from beamfem.kernels.point import POINT_ROWS, RESULTANT, STIFFNESS, STRAIN
 from beamfem.kernels.record import ROW
 from beamfem.section.law import ConstitutiveLaw
 
-_MEASURES = 4  # stretch, shear, curvature and thickness stretch, which a law does not see
+_MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
 _Pass = CFUNCTYPE(None, *(c_int64,) * 6, *(c_void_p,) * 4)
-_Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step from there [s]
+_Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step since then [s]
 _NOTHING: _Past = (np.empty((0, 0)), 0.0)
 
 
 class LawPass:
-    """A law with an address.
+    """A section law that compiled code calls by its address.
 
-    An error in a user's function cannot pass through compiled code: it is kept, resultants become nan, which ends any
-    iteration, and `raise_error` raises it.
+    An error in a user's function cannot propagate through compiled code: it is stored, the resultants become nan, which
+    stops any iteration, and `raise_error` raises it.
     """
 
     def __init__(self, law: ConstitutiveLaw) -> None:
@@ -89,7 +89,7 @@ class LawPass:
 
 
 def _past(group: int, system: int, elements: slice, number: int) -> _Past:
-    """Return what a point of elements remembers of the state that the system stands in."""
+    """Return the committed history at a quadrature point of some elements, and the time step since then."""
     b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
     table = _wholes(b[record.HISTORY], b[record.ELEMENTS], b[record.POINTS], b[record.VARIABLES])
     state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
@@ -97,17 +97,17 @@ def _past(group: int, system: int, elements: slice, number: int) -> _Past:
 
 
 def _rows(address: int, count: int) -> np.ndarray:
-    """Return rows of numbers at an address (count, ROW)."""
+    """Return rows of floats at an address (count, ROW)."""
     return _reals(address, count * ROW).reshape(count, ROW)
 
 
 def _reals(address: int, count: int) -> np.ndarray:
-    """Return numbers at an address (count,)."""
+    """Return floats at an address (count,)."""
     memory: Any = (c_double * count).from_address(address)
     return np.frombuffer(memory)
 
 
 def _wholes(address: int, *shape: int) -> np.ndarray:
-    """Return whole numbers at an address (shape)."""
+    """Return integers at an address (shape)."""
     memory: Any = (c_int64 * prod(shape)).from_address(address)
     return np.frombuffer(memory, dtype=np.int64).reshape(shape)

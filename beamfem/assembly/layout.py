@@ -1,6 +1,6 @@
-"""The order of the unknown coordinates, and where element matrices go: into a band, or a sparse matrix.
+"""Equation numbers of the unknown coordinates, and positions of element matrices in a band or sparse matrix.
 
-A sparse matrix is ordered for little fill once, here, so that each factorisation can take it unchanged.
+A sparse matrix is ordered here, once, for low fill-in, so that no factorisation has to reorder it.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from scipy.sparse.linalg import spilu
 
 from beamfem.kernels.block import Block, Layout
 
-_FEW = 20_000  # coordinates; the order of more is not kept
+_FEW = 20_000  # coordinates; the order of larger models is not cached
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
 
 
@@ -28,7 +28,7 @@ class Mesh(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """Order of the unknown coordinates.
+    """Equation numbers of the unknown coordinates and positions of matrix entries.
 
     free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
@@ -44,7 +44,7 @@ class Unknowns:
     reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
 
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:
-        """Return where the diagonal entries of unknowns (k,) stand in the matrix."""
+        """Return the positions of the diagonal entries of unknowns (k,) in the matrix data."""
         if self.pattern is None:
             half = self.layouts[0].half_width
             return numbers * (2 * half + 1) + half
@@ -61,7 +61,7 @@ def order_unknowns(
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
 ) -> Unknowns:
-    """Return the order of the unknown coordinates: a single chain keeps its own, joined beams are renumbered.
+    """Return the order of the unknown coordinates: unchanged for a single chain, renumbered for joined beams.
 
     coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
     coordinates that come last, since they have no stiffness.
@@ -73,7 +73,7 @@ def order_unknowns(
     return _order(mesh, size, prescribed, joined, coupled, multipliers)
 
 
-@lru_cache(maxsize=64)  # studies make models of the same numbering time and again
+@lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
 def _order_few(
     node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes
 ) -> Unknowns:
@@ -100,7 +100,7 @@ def _order(
     free = _numbers(dofs, size)
     half_width = _half_width(blocks, free)
     if not joined:
-        # short beams have the band of long ones, for which there is compiled code
+        # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
@@ -124,13 +124,13 @@ def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:
 
 
 def _numbers_of(block: Mesh, free: np.ndarray) -> np.ndarray:
-    """Numbers among the unknown (ne, nn npn) of each element's coordinates, -1 if there is none."""
+    """Return the equation numbers (ne, nn npn) of each element's coordinates, -1 where there is none."""
     numbers = np.where(block.dof >= 0, free[block.dof], -1)
     return np.asarray(numbers[block.node].reshape(len(block.node), -1))
 
 
 def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
-    """Largest distance between two unknowns of an element."""
+    """Return the largest difference between two equation numbers of an element."""
     widest = 0
     for block in blocks:
         numbers, known = np.where(block.dof >= 0, free[block.dof], -1), len(free)
@@ -158,12 +158,12 @@ def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int) -> np.ndarra
 
 
 def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
-    """Order the coordinates (size,) by reverse Cuthill-McKee on pairs (x, y) and the rest of a node together."""
+    """Order the coordinates (size,) by reverse Cuthill-McKee on the nodes, whose coordinates stay together."""
     owner = _owners(blocks, size)
     rows, columns = [], []
     for block in blocks:
         first = owner[block.dof[block.node, 0]]
-        # neighbours along an element, and its ends, which join it to others
+        # adjacent nodes of an element, and its ends, which connect it to other elements
         rows += [first[:, :-1].ravel(), first[:, 0]]
         columns += [first[:, 1:].ravel(), first[:, -1]]
     row, column = np.concatenate(rows), np.concatenate(columns)
@@ -175,7 +175,7 @@ def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
 
 
 def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:
-    """Order the coordinates (size,) by multiple minimum degree on the nodes, for little fill."""
+    """Order the coordinates (size,) by multiple minimum degree on the nodes, for low fill-in."""
     owner = _owners(blocks, size)
     nodes, number = np.unique(owner, return_inverse=True)
     pairs = []
@@ -191,7 +191,7 @@ def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] 
     ends = np.concatenate(pairs, axis=1)
     shape = len(nodes), len(nodes)
     graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
-    # SuperLU orders before it factors: a factorisation that drops everything is all order
+    # SuperLU has no ordering without factorisation: one that drops all entries costs little more
     dominant = csc_array(laplacian(graph + graph.T) + eye_array(len(nodes)))
     options = {"SymmetricMode": True}
     order = spilu(dominant, drop_tol=1.0, fill_factor=1.0, permc_spec="MMD_AT_PLUS_A", options=options).perm_c
@@ -199,7 +199,7 @@ def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] 
 
 
 def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
-    """First coordinate (size,) of the node of each: x and y of a node and what turns with it stay neighbours."""
+    """Return the first coordinate (size,) of the node of each coordinate, by which those of a node stay together."""
     owner = np.arange(size)
     for block in blocks:
         for own in block.dof.T[1:]:
@@ -209,7 +209,10 @@ def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
 
 
 def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, list[np.ndarray]]:
-    """Return the sparse pattern of matrices of unknowns (ne, k) and of the diagonal, and the place of each entry."""
+    """Return the sparsity pattern of matrices with equation numbers (ne, k), and the positions of their entries.
+
+    It includes the diagonal.
+    """
     rows, columns, filled = [], [], []
     for number in (own.astype(np.int32) for own in numbers):
         i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
@@ -239,7 +242,7 @@ def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, li
 
 
 def _sorted_by(keys: np.ndarray, count: int) -> np.ndarray:
-    """Return the stable order of keys (n,) below a count, in linear time."""
+    """Return the stable sorting order of keys (n,) below a count, in linear time."""
     single = np.arange(len(keys) + 1, dtype=np.int32)
-    # a column for each key: transposing counts the rows
+    # with one column per key, the conversion from CSC to CSR is a counting sort
     return csc_array((np.ones(len(keys), dtype=np.int8), keys, single), shape=(count, len(keys))).tocsr().indices

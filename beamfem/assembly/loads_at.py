@@ -1,4 +1,4 @@
-"""What acts on a model at a time."""
+"""Loads of a model at a time."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +20,7 @@ class LoadsAt:
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
-        """All of them."""
+        """All arrays of loads."""
         return (self.body, *self.points, self.imposing)
 
     @cached_property
@@ -33,5 +33,5 @@ class LoadsAt:
 
     @property
     def any(self) -> bool:
-        """Whether anything acts."""
+        """Whether any load is not zero."""
         return any(bool(own.any()) for own in self.arrays)

@@ -1,10 +1,11 @@
-"""The tangent with the stress resultants as further unknowns, for models that lose the digits of the plain one.
+"""Tangent with stress resultants as additional unknowns, for models whose plain tangent loses its digits.
 
     [ G      B^T W ] [ x ]   [ f ]        K = G + B^T W C B,   G: geometric part, loads, springs, inertia
     [ W B  -W / C  ] [ s ] = [ 0 ]
 
-Elimination of K forgets eps C next to what is soft. Here a stiffness enters by its inverse, and none is too large: what
-is lost is eps^2 C. Zienkiewicz and Taylor, The Finite Element Method, mixed formulations.
+Round-off in K is of size eps C, which may exceed the stiffness of adjacent soft parts. Here the stiffness enters by its
+inverse and may be arbitrarily large: round-off is of size eps^2 C. Zienkiewicz and Taylor, The Finite Element Method,
+mixed formulations.
 """
 
 from dataclasses import dataclass
@@ -19,15 +20,15 @@ from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
 
-_REFINEMENTS = 2  # each equation then holds to the digits of its own terms, however large others are (Skeel 1980)
+_REFINEMENTS = 2  # make each equation accurate relative to its own terms, however large others are (Skeel 1980)
 
 
 @dataclass(frozen=True, eq=False)
 class MixedFactors:
-    """Factors of the tangent with stress resultants.
+    """Factors of the mixed tangent.
 
-    scale (n + m,): of coordinates, which come first, and resultants; kept (n,): coordinates without normals of rollers;
-    turn (n, n): takes these normals to x, None if there are none.
+    scale (n + m,): scaling of the coordinates, then of the resultants; kept (n,): mask of the coordinates without the
+    normals of inclined rollers; turn (n, n): rotation of these normals to x, None if there are none.
     """
 
     lu: SuperLU
@@ -40,18 +41,24 @@ class MixedFactors:
 
     @cached_property
     def negative_pivots(self) -> int:
-        """How many eigenvalues of a symmetric tangent are negative: a positive stiffness has one each (Sylvester)."""
+        """Number of negative eigenvalues of a symmetric tangent (Sylvester's law of inertia).
+
+        Each positive eigenvalue of a section stiffness gives the mixed matrix one more, which is subtracted.
+        """
         found = negative_eigenvalues(csr_array(self.matrix))
-        if found is None or found < self.tangent.positive:  # not even its own round-off lets it be counted
+        if found is None or found < self.tangent.positive:  # round-off prevents a count
             return self.tangent.plain.factorised(self.rotated).negative_pivots
         return found - self.tangent.positive
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Return x (n,) with A x = right and no change along the normals of inclined rollers. Raises LinAlgError."""
+        """Return x (n,) with A x = right, zero along the normals of inclined rollers. Raises LinAlgError."""
         return self._solve(right, np.zeros(len(self.scale) - int(self.kept.sum())))[0]
 
     def correction(self, unbalanced: np.ndarray) -> tuple[np.ndarray, Stresses | None]:
-        """Return Newton's step (n,) from the strains and what loads leave, and the stresses. Raises LinAlgError."""
+        """Return the Newton step (n,) for the strains and loads of the tangent, and the stress resultants after it.
+
+        Raises LinAlgError.
+        """
         tangent = self.tangent
         x, found = self._solve(-tangent.loads, -tangent.weight * tangent.strain)
         stresses, first = [], 0
@@ -80,12 +87,12 @@ class MixedFactors:
 
 @dataclass(frozen=True, eq=False)
 class MixedTangent:
-    """A tangent whose elastic part is in factors.
+    """A tangent in mixed form.
 
-    zeros (n, n): all but the elastic part; slopes (m, n): weights times strains by unknowns; flexibility (m, m):
-    weights times inverse stiffness; weight (m,); loads (n,): residual but for elastic forces; strain (m,); places:
-    shape (ne, nq, ns) of each block's stress resultants and which of them resist; positive: eigenvalues of the
-    stiffnesses that are; plain: K itself.
+    zeros (n, n): tangent without the elastic part; slopes (m, n): weights times derivatives of the strains by the
+    unknowns; flexibility (m, m): weights times inverse stiffness; weight (m,): quadrature weights; loads (n,): residual
+    without elastic forces; strain (m,): strains; places: shape (ne, nq, ns) of the stress resultants of each block, and
+    the measures that have a stiffness; positive: number of positive eigenvalues of the section stiffnesses; plain: K.
     """
 
     zeros: csr_array
@@ -99,7 +106,7 @@ class MixedTangent:
     plain: Tangent
 
     def factorised(self, rotated: Rotated) -> MixedFactors:
-        """Return the factors. Raises LinAlgError."""
+        """Factorise the mixed matrix. Raises LinAlgError."""
         n, zeros, couples = self.zeros.shape[0], self.zeros, self.slopes
         kept, turn = np.ones(n, dtype=bool), None
         if len(rotated[0]):
@@ -131,10 +138,9 @@ class MixedTangent:
         return self.factorised(rotated).solve(right)
 
     def lost(self, rotated: Rotated) -> float:
-        """Return the relative error of a solution by the plain tangent, measured by the elements one by one.
+        """Return the relative error of a solution with the plain tangent, for random forces on all coordinates.
 
-        Forces act on all coordinates; what they move strains the elements, whose stresses ought to balance them. This
-        depends neither on the order of elimination nor on that of the beams. Raises LinAlgError.
+        The reference is the solution with the mixed tangent. Raises LinAlgError.
         """
         force = np.random.default_rng(0).standard_normal(self.zeros.shape[0])
         plain, exact = self.plain.factorised(rotated), self.factorised(rotated).solve(force)
@@ -148,10 +154,10 @@ class MixedTangent:
 def mixed(
     system: System, p: np.ndarray, time: float, factor: float, loads: np.ndarray, zeros: Tangent, plain: Tangent
 ) -> MixedTangent:
-    """Return the tangent of a state p (n,) at a time.
+    """Return the mixed tangent of a state p (n,) at a time.
 
-    factor: of the elastic part; loads (n,): residual of all but the elastic forces, zeros: tangent of that; plain: of
-    everything.
+    factor: weight of the elastic part; loads (n,), zeros: residual and tangent without the elastic part; plain: the
+    complete tangent.
     """
     none = np.empty(0, dtype=np.int64), np.empty((0, 2))
     tables, imposing = system.strain_rates, system.imposing(time)

@@ -1,4 +1,4 @@
-"""The arrays that compiled time steps of a band work on, kept for the next motion of the same model."""
+"""Workspace of compiled time steps with a band matrix, reused by the next motion of the same model."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,16 +13,16 @@ from beamfem.kernels import record
 from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
-_KEPT = 100_000  # entries of a tangent up to which making arrays takes a part of a motion that anybody would notice
+_KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a motion
 _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 
 
 class MotionSpace:
-    """Space for one motion of a model whose tangent is a band, and the tables that tell compiled code of it.
+    """Workspace for one motion with a band matrix, and the tables that describe it to compiled code.
 
     arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
-    in_two: whether stages of a step are done for two halves; loads: those of each group of the assembler among the
-    loads of the model's block, None where groups are blocks.
+    in_two: whether the stages of a step are computed for two halves separately; loads: indices of the loads of each
+    group among those of the model's block, None if groups are blocks.
     """
 
     def __init__(self, system: System) -> None:
@@ -66,7 +66,7 @@ class MotionSpace:
 
 
 def _whole(system: System, assembler: Assembler) -> np.ndarray:
-    """Return the bounds (1, fields) of all there is."""
+    """Return the bounds (1, fields) of a single part, the whole model."""
     counts = len(assembler.works), system.model.size, len(system.free_dofs), len(system.turning)
     bounds = np.zeros((1, record.BOUND_FIELDS), dtype=np.int64)
     bounds[0, 1::2] = counts
@@ -75,7 +75,7 @@ def _whole(system: System, assembler: Assembler) -> np.ndarray:
 
 @contextmanager
 def motion_space(system: System) -> Iterator[MotionSpace]:
-    """Lend space that no other motion works in, with factors, differences and turns that are zero."""
+    """Lend a workspace that no other motion uses, with factors, differences and rotations set to zero."""
     try:
         space = system.spare_motions.pop()
         for field in _FROM_ZERO:

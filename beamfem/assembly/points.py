@@ -1,4 +1,4 @@
-"""Resultants at the quadrature points of a group of elements, apart from any solve."""
+"""Resultants at the quadrature points of a group of elements, outside of a solve."""
 
 from collections.abc import Iterable
 
@@ -12,19 +12,19 @@ _NO_SPRINGS = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.
 
 
 def free_sheet(block: Block, size: int) -> Sheet:
-    """Return the sheet of a block of a model with `size` coordinates: nothing acts on it, nothing is solved for."""
+    """Return the sheet of a block without loads or matrix, in a model with `size` coordinates."""
     none = np.empty((0, 0, 0), dtype=np.int32)
     return make_sheet(block, Layout(np.arange(size), 0, none), no_loads(block))
 
 
 def no_loads(block: Block) -> PointLoads:
-    """Return no loads at all on a block."""
+    """Return the empty point loads of a block."""
     table, pair = np.empty((0, block.scale.shape[1])), np.empty((0, 2))
     return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
 
 
 def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray], imposing: np.ndarray) -> list[np.ndarray]:
-    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,), less what is imposed.
+    """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,); imposed strains are subtracted.
 
     imposing (k,): factors of the loads that impose strains.
     """
@@ -39,7 +39,7 @@ def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray], imposin
 def elastic_forces(
     block: Block, p: np.ndarray, v: np.ndarray, a: np.ndarray, imposing: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return e, e'' and elastic forces (steps, N, per_node) of a block in states p, p', p'' (steps, n).
+    """Return e, e'' and elastic and damping forces (steps, N, per_node) of a block in states p, p', p'' (steps, n).
 
     imposing (steps, k): factors of the loads that impose strains.
     """

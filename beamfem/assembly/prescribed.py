@@ -1,4 +1,4 @@
-"""Coordinates that supports prescribe."""
+"""Coordinates that are prescribed by supports."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,15 @@ from beamfem.model.model import Model
 from beamfem.model.support import PointSupport, Value
 from beamfem.validation import function_value
 
-COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # of a node, by direction of a support
+COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinate by direction of a support
 
 
 @dataclass(frozen=True)
 class PrescribedCoordinate:
-    """A coordinate that a support prescribes: its change from the reference, a value or a function of time.
+    """A coordinate that a support prescribes.
 
-    rotation: whether it is one; point: where the support stands.
+    value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; point:
+    position of the support.
     """
 
     dof: int
@@ -33,7 +34,7 @@ class PrescribedCoordinate:
 
 
 def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
-    """Return them ordered by number. Raises InputError if two supports prescribe the same one."""
+    """Return the prescribed coordinates ordered by number. Raises InputError if two supports prescribe the same one."""
     found: dict[int, PrescribedCoordinate] = {}
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)
@@ -51,7 +52,7 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
 
 
 def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
-    """Return first coordinate of r and unit normal of each roller that neither x nor y describes. Raises InputError."""
+    """Return first coordinate of r and unit normal of each roller not along x or y. Raises InputError."""
     found = []
     for support in model.point_supports:
         normal = support.direction
@@ -68,7 +69,7 @@ def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.
 
 
 def coordinate_of(support: PointSupport, direction: str) -> str | None:
-    """Name the coordinate of a node that a direction of a support is; None for the normal of an inclined roller."""
+    """Return the name of the nodal coordinate for a direction of a support, None for an inclined normal."""
     if direction != "normal":
         return COORDINATES[direction]
     assert support.direction is not None
@@ -77,7 +78,7 @@ def coordinate_of(support: PointSupport, direction: str) -> str | None:
 
 
 def _axis_of(normal: np.ndarray) -> str | None:
-    """Name the axis that a unit normal (2,) is along, if any."""
+    """Return the name of the axis that a unit normal (2,) is parallel to, None if there is none."""
     nx, ny = np.abs(normal)
     if ny < 1e-12:
         return "x"

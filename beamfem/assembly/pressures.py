@@ -1,4 +1,4 @@
-"""Pressures that have a potential: those whose tangent is symmetric."""
+"""Pressures with a potential, whose tangent is symmetric."""
 
 from collections import defaultdict
 
@@ -9,13 +9,14 @@ from beamfem.model.returned import forces_of
 
 
 def pressures_have_potential(model: Model, prescribed: set[int]) -> bool:
-    """Return whether the work of all pressures depends on the configuration only; prescribed: coordinates.
+    """Return whether the work of all pressures depends on the configuration only.
 
-    A pressure p does the work p (x dy - y dx) / 2 besides p times the change of area at the end of its beam, and less
-    that at its start. It vanishes where x or y is prescribed, and cancels where a ring closes or another beam continues
-    under the same pressure. Where p varies along the beam, it remains at every point.
+    prescribed: numbers of the prescribed coordinates. Besides p times the change of area, a pressure p does the work
+    p (x dy - y dx) / 2 at the end of its beam, and minus that at its start. This part is zero where x or y is
+    prescribed, and cancels where a ring closes or another beam continues under the same pressure. If p varies along the
+    beam, it remains at every point.
     """
-    amplitudes = [load.amplitude for load in model.line_loads]  # kept, so that no two have one identity
+    amplitudes = [load.amplitude for load in model.line_loads]  # kept alive, so that their ids stay different
     ends: defaultdict[tuple[int, bool, int], float] = defaultdict(float)
     for load, amplitude in zip(model.line_loads, amplitudes, strict=True):
         if load.axes != "axis":

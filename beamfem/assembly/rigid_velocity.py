@@ -1,4 +1,4 @@
-"""The velocity of a rigid motion, and the rates that the coordinates of a model have in it."""
+"""The velocity of a rigid motion, and the resulting rates of the coordinates of a model."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from beamfem.validation import convert, finite, squared, vector
 
 @dataclass(frozen=True)
 class RigidVelocity:
-    """Velocity of a rigid motion, to start a motion with.
+    """Velocity of a rigid motion, as the initial velocity of a simulation.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What rounded coordinates leave of a balance, and what is known of a state beyond its last digit."""
+"""Effect of rounded coordinates on the balance of forces, and corrections of a state beyond its last digit."""
 
 from dataclasses import dataclass
 
@@ -13,33 +13,33 @@ from beamfem.assembly.rigid_velocity import RigidVelocity, rigid_rates
 from beamfem.assembly.system import System
 
 _CORRECTIONS = 12
-LAST_DIGITS = 1e-7  # of the model: a state that needs more to be balanced is not balanced but for its last digits
-ENOUGH = 6.0  # digits of the forces; of fewer it is asked what the tangent is worth
-_PLENTY = 12.0  # digits that no further correction improves on
-LOSES = 1e-3  # error of a solution by the plain tangent that costs iterations, and digits
+LAST_DIGITS = 1e-7  # of the model size: a state with a larger correction is wrong in more than its last digits
+ENOUGH = 6.0  # digits of the forces; with fewer, the accuracy of the tangent is checked
+_PLENTY = 12.0  # digits that no further correction improves
+LOSES = 1e-3  # relative error of a solution with the plain tangent that costs iterations, and digits
 _KEEPS = "the tangent keeps its digits"
 MOST_DIGITS = 15.0
-_NOTHING = 1e-10  # of the round-off of a state as it stands: forces below are none
-FEW_DIGITS = 4.0  # of the forces: users are told
+_NOTHING = 1e-10  # of the round-off of a state: smaller forces count as zero
+FEW_DIGITS = 4.0  # of the forces; with fewer, users are warned
 
 
 def row_floors(system: System, p: np.ndarray) -> np.ndarray:
-    """Return the residual (n,) [N, N m] that rounded coordinates leave in each row, see `row_errors`."""
+    """Return the residual (n,) [N, N m] that rounded coordinates cause in each row, see `row_errors`."""
     reach, turn = sizes(system, p)
     positions, directions = system.residual_errors
     return np.asarray(ROUND_OFF * (reach * positions + turn * directions))
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:
-    """Return the largest residual [N, N m] that is left by rounded coordinates, of all rows."""
+    """Return the largest residual [N, N m] that rounded coordinates cause in any row."""
     return float(row_floors(system, p).max(initial=0.0))
 
 
 @dataclass(frozen=True)
 class Remainder:
-    """What a state lacks to be balanced beyond its last digit.
+    """Correction that brings a state into equilibrium beyond its last digit.
 
-    step (n,): to be added to p; digits: of the forces, once it is. 0 if not even the first is sure.
+    step (n,): correction of p; digits: reliable digits of the forces after it, 0 if not even the first is reliable.
     """
 
     step: np.ndarray
@@ -47,24 +47,24 @@ class Remainder:
 
 
 def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) -> np.ndarray:
-    """Return the change of the residual (n,) with a step (n,) that may be below the last digit of p."""
+    """Return the change of the residual (n,) for a step (n,) that may be below the round-off of p."""
     zeros = np.zeros(len(p))
     return differentiated(system, lambda q: residual(system, q, zeros, zeros, load_factor), p, step)
 
 
 def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
-    """Return how many digits of the forces are sure in a state p (n,); all where nothing acts."""
+    """Return the number of reliable digits of the forces in a state p (n,); all if nothing acts."""
     zeros = np.zeros(len(p))
     found = residual(system, p, zeros, zeros, load_factor)
     return _digits(system, p, found, load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
-    """Return what balances a state p (n,) that is an equilibrium but for its last digits.
+    """Return the correction of a state p (n,) that is in equilibrium except for its last digits.
 
-    Newton's method goes on with p in two parts: steps below its last digit are added up apart, and what they change is
-    taken from wider differences. Elements balance themselves whatever their strains, so that the balance regains all
-    digits as long as the tangent has some.
+    Newton's method continues with p in two parts: steps below its last digit are summed separately, and their effect on
+    the residual is computed by wider differences. The forces of an element are in equilibrium at any strain, so that
+    the balance regains all digits as long as the tangent has some.
     """
     best = _refined(system, p, load_factor)
     if best.digits < ENOUGH and loses_digits(system, p, load_factor):
@@ -74,7 +74,7 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
-    """Return the best that further corrections by the present kind of tangent give."""
+    """Return the best result of corrections with the current kind of tangent, plain or mixed."""
     zeros, free = np.zeros(len(p)), system.free_dofs
     found = residual(system, p, zeros, zeros, load_factor)
     best = Remainder(np.zeros(len(p)), _digits(system, p, found, load_factor))
@@ -83,7 +83,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
         factors = linearise(system, p, zeros, zeros, load_factor, STATICS)[1].factorised(system.rotated)
         _, stresses = factors.correction(found[free])
         if stresses is not None:
-            # those of the state itself are as wrong as its last digits are
+            # the stresses of the state itself are as inaccurate as its last digits
             factors = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)[1].factorised(system.rotated)
         for _ in range(_CORRECTIONS):
             step[free] += factors.solve(-unbalanced[free])
@@ -102,7 +102,10 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 
 
 def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
-    """Return whether the tangent of this model loses digits, and remember: then stress resultants become unknowns."""
+    """Return whether the plain tangent of this model loses digits; it is checked once, and False afterwards.
+
+    If so, all further tangents have stress resultants as unknowns.
+    """
     if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
         return False
     try:
@@ -114,16 +117,16 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
 
 
 def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients: tuple[float, float, float]) -> float:
-    """Return the relative error of a solution by a plain tangent that weighs p, p' and p''. Raises LinAlgError."""
+    """Return the relative error of a solution with the plain tangent, for weights of p, p', p''. Raises LinAlgError."""
     state, zeros = (p, np.zeros(len(p)), np.zeros(len(p))), np.zeros(len(p))
     plain = linearise(system, p, zeros, zeros, load_factor, coefficients)[1]
     return with_stresses(system, state, load_factor, coefficients, None, plain).lost(system.rotated)
 
 
 def load_size(system: System, loads: LoadsAt) -> float:
-    """Return the largest of forces, times the size of the model, and moments at points [N m].
+    """Return the largest load at a point: a force times the size of the model, or a moment [N m].
 
-    Where nothing but imposed strains acts, that of the forces which would hinder them: they may cause none.
+    If only imposed strains act, which may cause no forces, the forces that would suppress them count instead.
     """
     force, moment = loads.largest
     largest = max(system.extent * force, moment)
@@ -133,7 +136,7 @@ def load_size(system: System, loads: LoadsAt) -> float:
 
 
 def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
-    """Return the largest force, times the size of the model, or moment [N m] of loads, supports and springs."""
+    """Return the largest force times the size of the model, or moment [N m], of loads, supports and connections."""
     prescribed, springs = system.prescribed_dofs, system.springs
     reactions = float(np.max(np.abs(unbalanced[prescribed] * system.scale[prescribed]), initial=0.0))
     for dof, normal in system.inclined:
@@ -147,9 +150,9 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
 
 
 def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
-    """Return how many digits of the largest force that acts are sure, by each row and by the balance of the whole.
+    """Return the number of reliable digits of the largest acting force, by the balance of each row and of the whole.
 
-    All, where nothing acts.
+    All digits if nothing acts.
     """
     free, acting = system.free_dofs, _acting(system, p, unbalanced, load_factor)
     left = np.zeros(len(p))
@@ -169,7 +172,7 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
 
 
 def _centre(system: System, p: np.ndarray) -> tuple[float, float]:
-    """Mean position of the nodes [m]."""
+    """Return the mean position of the nodes [m]."""
     nodes = np.concatenate([block.dof[:, :2] for block in system.blocks])
     x, y = p[nodes].mean(axis=0)
     return float(x), float(y)

@@ -1,4 +1,4 @@
-"""The compiled functions that a group of elements needs, by their numbers; compiled, or loaded, when first needed."""
+"""Compiled functions of a group of elements by their numbers, each compiled or loaded when it is first needed."""
 
 from collections.abc import Iterable
 from functools import cache
@@ -34,7 +34,7 @@ from beamfem.kernels.generated import (
 MEASURE_PASSES = green_lagrange, structural, elastic_line
 _KINDS = rotation_node, stretch_node, shear_rigid_node
 
-# what a task needs, whatever the strain measure
+# the routines of a task that do not depend on the strain measure
 _TASKS: dict[str, dict[int, Routine]] = {
     "forces": {
         record.COLLECT: gathering.collect,
@@ -76,24 +76,24 @@ _TASKS: dict[str, dict[int, Routine]] = {
         record.REDUCE_ROWS: reduction.reduce_rows,
     },
 }
-# and what depends on it
+# and those that do, by name
 _PASSES: dict[str, dict[int, str]] = {
     "forces": {record.STRAINS: "strains", record.FORCES: "forces"},
     "tangent": {record.HESSIAN: "hessian"},
     "prediction": {record.RATES: "rates"},
     "damping": {record.RATES: "rates"},
 }
-# what kinds of nodes add to a task: the number of their pass
+# the routine of a task for each kind of node with an angle: name, and offset among those of the kind
 _OF_KINDS = {"forces": ("place", 0), "mass": ("convect", 1), "tangent": ("curve", 2)}
 
 Sizes = tuple[tuple[str, int], ...]  # arguments of kernels by their names
 
 
 class Routines:
-    """A table of addresses for a strain measure; entries are filled when a task first needs them.
+    """Table of the addresses of routines for a strain measure; entries are filled when a task first needs them.
 
-    sizes: arguments that the compiler knows, since they are the same for all elements; law: address of what takes the
-    place of the linear law, if anything does.
+    sizes: arguments that are constants for the compiler, since they are the same for all elements; law: address of the
+    section law that replaces the linear one, 0 for none.
     """
 
     def __init__(self, measures: int, sizes: Sizes, law: int = 0) -> None:
@@ -102,7 +102,7 @@ class Routines:
         self._measures, self._law, self._ready = measures, law, set[tuple[str, int]]()
 
     def require(self, tasks: Iterable[str], kinds: Iterable[int]) -> None:
-        """Compile, or load, what tasks need, for kinds of nodes that turn (numbers of `physics.kinematics.KINDS`)."""
+        """Compile or load the routines of tasks; kinds: nodes with an angle, indices in `physics.kinematics.KINDS`."""
         for task in tasks:
             for kind in (-1, *kinds):
                 if (task, kind) not in self._ready:
@@ -126,5 +126,5 @@ class Routines:
 
 @cache
 def routines(measures: int, sizes: Sizes) -> Routines:
-    """Return the table for a strain measure, given by its number in `physics.measures.MEASURES`, and some sizes."""
+    """Return the table for a strain measure, an index in `physics.measures.MEASURES`, and some sizes."""
     return Routines(measures, sizes)

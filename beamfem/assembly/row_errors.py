@@ -1,7 +1,7 @@
-"""What rounded coordinates leave in each row of the residual: strains cancel digits, stiffness multiplies what is left.
+"""Residual that rounded coordinates cause in each row: digits cancel in strains, and stiffness amplifies the error.
 
-A position of size |r| carries an error eps |r|, a slope of the axis over an element of length l therefore eps |r| / l;
-a unit vector or an angle carries eps, whatever the size of the model.
+A position of size |r| has an error eps |r|, a slope of the axis over an element of length l therefore eps |r| / l; a
+unit vector or an angle has an error eps, whatever the size of the model.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ def residual_errors(
     points: Sequence[PointLoads],
     size: int,
 ) -> np.ndarray:
-    """Return the residual (2, n) that a relative error of one leaves: in positions of one metre [1/m], in directions.
+    """Return the residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions.
 
     vectors: names of the nodal vectors of each block.
     """
@@ -36,7 +36,7 @@ def residual_errors(
                 slots = [_slot(label, names)]
                 if label == "theta" and node_kind in (STRETCH, SHEAR_RIGID):
                     slots.append(1)
-                # nodes that share a coordinate add what they leave in it
+                # contributions of nodes that share a coordinate add up
                 for part, values in zip(result, nodes, strict=True):
                     part += np.bincount(block.dof[here, column], values[here][:, slots].sum(axis=1), size)
     np.add.at(result[0], springs.dof, springs.stiffness)
@@ -44,14 +44,14 @@ def residual_errors(
 
 
 def _slot(label: str, names: tuple[str, ...]) -> int:
-    """Number of the nodal vector that a coordinate moves."""
+    """Return the index of the nodal vector that a coordinate changes."""
     if label == "theta":
         return len(names) - 1
     return 1 if label == "s" else names.index(label.split("^")[0])
 
 
 def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the stress resultants (nc, nq, ns) that unit errors leave, of positions or of all other vectors."""
+    """Return the stress resultants (nc, nq, ns) for unit errors of positions, or of all other vectors."""
     per_node = len(names)
     slot = np.arange(block.scale.shape[1]) % per_node
     erring = slot == 0 if positions else (slot > 0) & (slot < per_node - 1)
@@ -68,7 +68,7 @@ def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.n
 
 
 def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the force (nc, nv) on nodal vectors that unit errors leave, of positions or of all other vectors."""
+    """Return the force (nc, nv) on nodal vectors for unit errors of positions, or of all other vectors."""
     per_node = len(names)
     slot = np.arange(block.scale.shape[1]) % per_node
     along, across = np.flatnonzero(slot < per_node - 1), np.flatnonzero(slot == per_node - 1)
@@ -85,7 +85,7 @@ def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarr
 
 
 def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Errors of the strain measures with those of r0', d and the third argument, where these are of size one."""
+    """Return the errors of the strain measures for errors of r0', d and the third argument, which are of size one."""
     if measures == STRUCTURAL:
         return of_r + of_d, of_r + of_d, of_e, of_d
     if measures == ELASTIC_LINE:
@@ -94,7 +94,7 @@ def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.n
 
 
 def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sizes of the forces on r0', d and the third argument of stress resultants (ns, nc, nq)."""
+    """Return the sizes of the forces on r0', d and the third argument for stress resultants (ns, nc, nq)."""
     if measures == STRUCTURAL:
         return s[0] + s[1], s[0] + s[1] + s[3], s[2]
     if measures == ELASTIC_LINE:
@@ -103,7 +103,7 @@ def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
-    """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv) of the classes of elements."""
+    """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv): forces by class of elements."""
     count, nodes = block.node.shape[1], len(block.node_kind)
     own = errors.reshape(len(errors), errors.shape[1], count, -1)
     result = np.zeros((len(errors), nodes, own.shape[3]))

@@ -1,6 +1,6 @@
-"""Memory that compiled code works in during one solve, kept for the next one, of whatever model.
+"""Scratch memory of compiled code during one solve, reused by the next one, of any model.
 
-Fresh memory costs more than a small solve: the system clears it, page by page.
+New memory costs more than a small solve, because the operating system clears it page by page.
 """
 
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ import numpy as np
 
 from beamfem.kernels.pointers import address_of
 
-_LARGEST = 1_000_000  # numbers of what is kept
+_LARGEST = 1_000_000  # floats of memory that is kept
 _MOST = 4
 
 
 @dataclass(eq=False)
 class Scratch:
-    """Memory to work in, its address, and who has worked in it last."""
+    """Scratch memory, its address, and its last user."""
 
     memory: np.ndarray
     address: int
@@ -26,7 +26,7 @@ _kept: list[Scratch] = []
 
 
 def lend(size: int) -> Scratch:
-    """Return memory of at least some numbers that nobody else has; it holds what its last user has left."""
+    """Return memory of at least `size` floats that is not in use; its contents are arbitrary."""
     try:
         found = _kept.pop()
     except IndexError:

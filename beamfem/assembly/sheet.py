@@ -1,4 +1,4 @@
-"""The table that describes a group of like elements to compiled code, and the space that one solve works in."""
+"""The table that describes a group of similar elements to compiled code, and the arrays that it points to."""
 
 from dataclasses import dataclass
 
@@ -27,10 +27,12 @@ _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for m
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """A group of like elements as compiled code takes it.
+    """A group of similar elements in the form that compiled code expects.
 
-    table: see `kernels.record`, without work space; kept: the arrays whose addresses it holds, law: one whose address
-    its routines hold; order (N,): nodes of the group as they are stored, None if as they are numbered.
+    table: see `kernels.record`, without workspace; kept: the arrays that it points to; chunks: shape of the node data;
+    space: floats of scratch memory; order (N,): node numbers in storage order, None if they are stored as numbered;
+    constant: node data with the entries that never change, None if there are none; needs: routines of each task; law:
+    section law that the routines call, None if it is linear.
     """
 
     table: np.ndarray
@@ -45,19 +47,19 @@ class Sheet:
     imposed: Imposed | None
 
     def require(self, *tasks: str) -> None:
-        """Have everything compiled that these tasks need: forces, tangent, mass, prediction."""
+        """Compile the routines of tasks: "forces", "tangent", "mass" or "prediction"."""
         for task in tasks:
             self.routines.require(*self.needs[task])
 
     @property
     def points(self) -> tuple[int, int, int]:
-        """Elements, quadrature points and measures."""
+        """Numbers of elements, quadrature points and strain measures."""
         t = self.table
         return int(t[record.ELEMENTS]), int(t[record.POINTS]), int(t[record.MEASURES])
 
 
 def stored(block: Block, order: np.ndarray | None) -> Block:
-    """Return a block with its nodes numbered as they are stored."""
+    """Return a block with its nodes numbered in storage order (N,)."""
     if order is None:
         return block
     number = np.empty_like(order)
@@ -89,7 +91,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     arrays = {
         record.TABLES: np.concatenate(parts, axis=1),
         record.DIRECTOR: block.director,
-        record.FRAME: np.append(frame.T, np.zeros(WIDTH)),  # read in vectors, beyond the last node too
+        record.FRAME: np.append(frame.T, np.zeros(WIDTH)),  # padded, since vectors of lanes read beyond the last node
         record.POSITION: loads.position.T,
         record.DIRECTION: loads.direction.T,
         record.FOLLOWS: loads.follows.T,
@@ -120,7 +122,7 @@ def _routines(block: Block) -> Routines:
 
 
 def _constant(block: Block, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
-    """Return chunks with what does not change in them: B of nodes whose coordinates are nodal vectors."""
+    """Return node data with the entries that never change: B of nodes whose coordinates are nodal vectors."""
     chunks = np.zeros(shape)
     whole = np.zeros((shape[0] * LANES, turned, turning))
     node_kind, linear = block.node_kind, size - turned

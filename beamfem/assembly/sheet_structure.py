@@ -1,4 +1,4 @@
-"""The sizes, places and equation numbers of a group of elements in its table, which like groups share."""
+"""Sizes, offsets and equation numbers in the table of a group of elements, which identical groups share."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,15 +23,15 @@ from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
-_CACHE = 400  # rows of work space times elements of a batch, in units of `LANES`, that stay in the cache near the core
+_CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
 _SMALLEST = 16
-_FEW = 2000  # elements; what belongs to larger groups is not kept
+_FEW = 2000  # elements; the structure of larger groups is not cached
 
 Needs = dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
 
 
 class Sizes(NamedTuple):
-    """Sizes of a group that its arrays of whole numbers do not tell."""
+    """Sizes of a group that do not follow from its arrays of integers."""
 
     vectors: int
     points: int
@@ -43,7 +43,7 @@ class Sizes(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """Whole numbers of a group, see `kernels.block`; free (n,): equation numbers of the model, element: of loads."""
+    """Arrays of integers of a group, see `kernels.block`; free (n,): equation numbers; element: those with loads."""
 
     node: np.ndarray
     kind: np.ndarray
@@ -57,10 +57,10 @@ class Numbers(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """The part of a sheet that like groups share: see `sheet.Sheet`.
+    """The part of a sheet that identical groups share: see `sheet.Sheet`.
 
-    table: see `kernels.record`; kept: the arrays whose addresses it holds; kinds: of its nodes; turned, turning:
-    components of nodal vectors that turn, and the coordinates they turn with; used: rows of work space.
+    table: see `kernels.record`; kept: the arrays that it points to; kinds: kinds of the nodes; turned, turning: numbers
+    of components of nodal vectors that rotate, and of the coordinates that rotate them; used: rows of workspace.
     """
 
     table: np.ndarray
@@ -75,7 +75,7 @@ class Structure:
 
 
 def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
-    """Return the structure of a block, the same one for small blocks that are alike."""
+    """Return the structure of a block; identical small blocks share one."""
     slots = block.scale.shape[1]
     _, points, measures = block.reference.shape
     sizes = Sizes(
@@ -102,9 +102,9 @@ def _shared(content: tuple[tuple[bytes, tuple[int, ...]], ...], sizes: Sizes) ->
 
 
 def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
-    """Return the nodes (N,) of elements (ne, nn) as they are stored: those at ends, then the inner ones by place.
+    """Return the nodes (N,) of elements (ne, nn) in storage order: end nodes, then inner nodes by local number.
 
-    So nodes of the same place in neighbouring elements are neighbours. None if there are no inner ones.
+    Nodes with the same local number in adjacent elements are then adjacent in memory. None if there are no inner nodes.
     """
     last = node.shape[1] - 1
     if last == 1:
@@ -179,7 +179,7 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
 
 
 def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:
-    """Fill where each quantity of a class begins in its row; return the length of the row."""
+    """Set the offset of each quantity in the row of a class; return the length of the row."""
     points, measures = sizes.points, sizes.measures
     lengths = {
         record.SLOPE: points * slots,
@@ -201,7 +201,7 @@ def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:
 
 
 def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
-    """Return what each task needs of `Routines`: parts, and kinds of nodes that turn."""
+    """Return the parts of `Routines` that each task needs, and the kinds of nodes with an angle."""
     angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
     rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
     turns = bool(angles or rotated)
@@ -216,6 +216,6 @@ def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
 
 
 def _runs(node_kind: np.ndarray) -> np.ndarray:
-    """Return kind, first node and number of nodes (runs, 3) of neighbours of one kind."""
+    """Return kind, first node and number of nodes (runs, 3) of each run of consecutive nodes of one kind."""
     first = np.flatnonzero(np.diff(node_kind, prepend=-1))
     return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])

@@ -1,4 +1,4 @@
-"""The table of unknowns, factors and loop settings that compiled drivers work on."""
+"""The table of unknowns, factors and loop settings for compiled drivers."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -15,9 +15,9 @@ from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
 
 
 class SolverTable:
-    """What does not change of a table for `kernels.newton` and `kernels.march`: the unknowns (unknown,) of a band.
+    """The constant part of a table for `kernels.newton` and `kernels.march`: the unknowns of a band matrix.
 
-    rotated: numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): of the coordinates.
+    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates.
     """
 
     def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
@@ -37,20 +37,20 @@ class SolverTable:
         self._table[record.FIRST_FREE] = free_dofs[0] if in_a_row else -1
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
-        """Return the table with more of its fields filled."""
+        """Return a copy of the table with further addresses."""
         table = self._table.copy()
         for field, address in addresses.items():
             table[field] = address
         return table
 
     def routines(self, moving: bool, in_two: bool = False) -> np.ndarray:
-        """Return the addresses of what the driver of statics, or of motions, calls; in_two: in parts of a chain."""
+        """Return the addresses of the routines of the static or dynamic driver; in_two: for a chain in two halves."""
         return _driver_routines(self.half_width, moving, int(self._table[record.UNKNOWN]) < SHORT, in_two)
 
 
 @cache
 def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -> np.ndarray:
-    """Return the addresses of what the driver of statics, or of motions, calls for a band of this half width."""
+    """Return the addresses of the routines that the static or dynamic driver calls for a band of this half width."""
     found = {
         record.BALANCE: model_passes.balance,
         record.PREDICT_RESULTANTS: model_passes.predict_resultants,

@@ -1,4 +1,4 @@
-"""Strains at the points of a block and how they change with the unknowns, and what does not change of that."""
+"""Strains at the quadrature points of a block and their derivatives by the unknowns."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from beamfem.kernels.block import Block, Law
 
 
 class StrainsAt(NamedTuple):
-    """Rates by unknowns, strains (m,), weights times inverse stiffness and how many of its eigenvalues are positive."""
+    """Derivatives by the unknowns, strains (m,), weights times inverse stiffness, number of positive eigenvalues."""
 
     rates: np.ndarray
     strain: np.ndarray
@@ -21,12 +21,13 @@ class StrainsAt(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class StrainRates:
-    """A block whose elements have coordinates of their own, so that a step moves one coordinate of every element.
+    """A block whose elements share no coordinates, so that one step changes the same coordinate of every element.
 
-    dof (coordinates,): of the model, -1 for none; coordinates: of an element; resists: the measures that are resisted
-    at some point; loose (ne, nq, nr): where a point resists less than others do; place, point: of the rates by
-    unknowns, among those by all coordinates (coordinates, m); column: their unknowns; weight (m,); flexibility: rows,
-    columns and values of weights times inverse stiffness, of a law those at zero strain; history: see `Block`.
+    dof: coordinate of the model for each coordinate of the block, -1 for none; coordinates: number per element;
+    resists: the measures that have a stiffness at some point; loose (ne, nq, nr): mask of points without a stiffness
+    for such a measure; place, point: positions of the derivatives by unknowns among those by all coordinates
+    (coordinates, m); column: their unknowns; weight (m,): quadrature weights; flexibility: rows, columns and values of
+    weights times inverse stiffness, at zero strain for a section law; history: see `kernels.block.Block`.
     """
 
     sheet: Sheet
@@ -43,9 +44,10 @@ class StrainRates:
     history: np.ndarray
 
     def at(self, p: np.ndarray, imposing: np.ndarray) -> "StrainsAt":
-        """Return what they are in a state p (n,), less what is imposed by loads with the factors `imposing` (k,).
+        """Return strains and derivatives in a state p (n,).
 
-        Raises LinAlgError if a law has a singular stiffness.
+        imposing (k,): factors of imposed strains, which are subtracted. Raises LinAlgError if a section law has a
+        singular stiffness.
         """
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
         places = np.arange(len(at)) % self.coordinates
@@ -59,19 +61,19 @@ class StrainRates:
         found, slope = self.law.linearised(zeros, p[self.history])
         own = slope[:, :, self.resists[:, None], self.resists]
         inverse = np.linalg.inv(own)
-        # strains to which the stiffness of this state, as that of a linear law, has these resultants
+        # strains for which a linear law with the stiffness of this state has the same resultants
         strain = (inverse @ found[:, :, self.resists, None]).ravel()
         flexible = (self.weight.reshape(*own.shape[:3], 1) * inverse).ravel()
         return StrainsAt(rates, strain, flexible, int(np.sum(np.linalg.eigvalsh(own) > 0.0)))
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Elements, points and strain measures of their stress resultants."""
+        """Numbers of elements, points and strain measures of the stress resultants."""
         return self.sheet.points
 
 
 def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
-    """Return those of a block; free (n,): unknowns of coordinates, negative for those that are prescribed."""
+    """Return the strain rates of a block; free (n,): equation numbers, negative for prescribed coordinates."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
     points, strains = block.reference.shape[1:]
     own = block.node.ravel()
@@ -91,7 +93,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     point = (element[:, None] * count + np.arange(count)).ravel()
     loose = (np.abs(block.stiffness).max(axis=3) == 0.0)[:, :, resists]
     weight = block.weight[:, :, None] * np.ones(len(resists))
-    # where a point resists a strain less than others do, its stress is zero
+    # where a point has no stiffness for a measure, its stress is zero
     inverse = np.linalg.inv(block.stiffness[:, :, resists[:, None], resists] + loose[..., None] * np.eye(len(resists)))
     number = np.arange(elements * count).reshape(elements, points, len(resists))
     shape = elements, points, len(resists), len(resists)
@@ -116,5 +118,5 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
 
 
 def resisting(block: Block) -> np.ndarray:
-    """Return which strain measures of a block are resisted at some point."""
+    """Return the strain measures of a block that have a stiffness at some point."""
     return np.flatnonzero(np.abs(block.stiffness).max(axis=(0, 1, 3)) > 0.0)

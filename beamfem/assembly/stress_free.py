@@ -11,7 +11,7 @@ from beamfem.model.model import Model
 
 
 def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
-    """Return the coordinates (n,) of the beams of a model in their reference; all that stands behind them is zero."""
+    """Return the coordinates (n,) of a model in its reference; multipliers and history variables are zero."""
     p = np.zeros(model.size)
     for number, (element, block) in enumerate(zip(model.groups, blocks, strict=True)):
         own = [mesh for mesh in model.meshes if mesh.block == number]

@@ -1,4 +1,4 @@
-"""A model in numbers: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
+"""The numerical data of a model: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -40,20 +40,20 @@ from beamfem.model.model import Model
 from beamfem.model.returned import forces_of
 from beamfem.validation import shown
 
-# which carriers have r, the derivatives of r and r_y themselves as coordinates
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
-_KEPT_LOADS = 2  # load factors whose loads are kept
+_KEPT_LOADS = 2  # load factors whose loads are cached
 _NOTHING = np.empty(0)
-_NO_MOVEMENT = 1e300  # what memories are measured by: whatever they change by, nothing moves
+_NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
+# kinds of nodes that have r, r_x and r_y themselves as coordinates
 _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Everything a solver needs of a model; `system_of` makes it once.
+    """All data of a model that solvers need; `system_of` creates it once.
 
-    proven: names of what has been checked of it, once and for all; spare, spare_motions, spare_assemblers: work space
-    of solves, motions and evaluations that have ended; known_loads: those at the last few load factors.
+    proven: names of properties that have been checked; spare, spare_motions, spare_assemblers: unused workspaces of
+    solves, motions and evaluations; known_loads: loads at recent load factors.
     """
 
     model: Model
@@ -65,7 +65,7 @@ class System:
     known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Travel to other processes as a model only."""
+        """Pickle the model only."""
         return system_of, (self.model, self.static)
 
     @cached_property
@@ -85,26 +85,26 @@ class System:
 
     @cached_property
     def equations(self) -> Equations:
-        """The equations as compiled code takes them."""
+        """The equations in the form that compiled code expects."""
         return self.equations_of(self.blocks)
 
     @cached_property
     def without_stiffness(self) -> Equations:
-        """The equations of beams that resist nothing."""
+        """The equations with zero section stiffness."""
         return self.equations_of([own.resisting(np.zeros_like(own.stiffness)) for own in self.blocks])
 
     @cached_property
     def strain_rates(self) -> tuple[StrainRates, ...]:
-        """How the strains of each block change with the unknowns."""
+        """Strains of each block and their derivatives by the unknowns."""
         return tuple(strain_rates(block, self.unknowns.free) for block in self.blocks)
 
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
-        """Return the equations of blocks that take the place of those of the system."""
+        """Return the equations with other blocks in place of those of the system."""
         sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(sheets, self.springs, self.model.size)
 
     def assembler(self, lent: bool = False) -> Assembler:
-        """Return the equations with new work space; lent: see `Assembler`."""
+        """Return the equations with a new workspace; lent: see `Assembler`."""
         return Assembler(self.equations, lent=lent)
 
     @cached_property
@@ -114,14 +114,14 @@ class System:
 
     @cached_property
     def residual_errors(self) -> np.ndarray:
-        """Residual (2, n) that a relative error of one leaves, in positions of one metre [1/m] and in directions."""
+        """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
         own = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
         return own + self.connectors.errors
 
     @cached_property
     def stress_errors(self) -> tuple[np.ndarray, ...]:
-        """Stress resultants (2, nc, nq, ns) of each block that a relative error of one leaves, likewise."""
+        """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
         return tuple(
             np.array([stress_errors(block, names, part) for part in (True, False)])
@@ -130,7 +130,7 @@ class System:
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Which coordinates are positions [m] (n,)."""
+        """Mask (n,) of the coordinates that are positions [m]."""
         result = np.zeros(self.model.size, dtype=bool)
         for block in self.blocks:
             result[block.dof[:, :2]] = True
@@ -138,7 +138,7 @@ class System:
 
     @cached_property
     def actions(self) -> tuple[Actions, ...]:
-        """What acts at points of each block."""
+        """Loads and springs at points of each block, with their values."""
         return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
     @cached_property
@@ -147,16 +147,16 @@ class System:
         return tuple(actions.points for actions in self.actions)
 
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
-        """Forces and moments (nl, 3) [N, N, N m] of each block at a time."""
+        """Return the forces and moments (nl, 3) [N, N, N m] of each block at a time."""
         return tuple(actions.values(time, self.static) for actions in self.actions)
 
     def imposing(self, time: float) -> np.ndarray:
-        """Factors (k,) of the loads that impose strains at a time."""
+        """Return the factors (k,) of the loads that impose strains at a time."""
         imposing = self.model.imposing
         return np.array([factor(load, time, self.static) for _, load in imposing]) if imposing else _NOTHING
 
     def loads_at(self, time: float) -> LoadsAt:
-        """Return what acts at a time, in statics at a load factor."""
+        """Return the loads at a time, in statics at a load factor."""
         if self.varying:
             return self._loads_at(time)
         asked = time if self.static else 0.0
@@ -181,7 +181,7 @@ class System:
         return grounded_springs(self.model, self.unknowns, self.reference)
 
     def body(self, time: float) -> np.ndarray:
-        """Acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
+        """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
         result = np.zeros((len(self.model.beams), 4))
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
@@ -209,12 +209,12 @@ class System:
         return np.array([item.dof for item in self.prescribed], dtype=np.int64)
 
     def prescribed_values(self, time: float) -> np.ndarray:
-        """Values of the prescribed coordinates at a time, in statics at a load factor."""
+        """Return the values of the prescribed coordinates at a time, in statics at a load factor."""
         start = self._prescribed_reference
         return start + self.prescribed_changes(time) if self._moved else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
-        """Changes of the prescribed coordinates from the reference (nh,) at a time, in statics at a load factor."""
+        """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
         return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
 
     @cached_property
@@ -223,20 +223,20 @@ class System:
 
     @cached_property
     def _moved(self) -> bool:
-        """Whether a support changes what it prescribes."""
+        """Whether a prescribed value may differ from the reference."""
         return any(callable(item.value) or item.value != 0.0 for item in self.prescribed)
 
     def largest_turn(self, before: float, after: float) -> float:
         """Return the largest change [rad] of a prescribed rotation between two times.
 
-        Gradients elsewhere on the beam cannot tell a full turn from none, so it must be followed in parts.
+        Gradients elsewhere on the beam cannot distinguish a full turn from none, so a large change needs several steps.
         """
         static = self.static
         return max((abs(own.change(after, static) - own.change(before, static)) for own in self._rotated), default=0.0)
 
     @cached_property
     def _rotated(self) -> tuple[PrescribedCoordinate, ...]:
-        """Rotations that supports change."""
+        """Prescribed rotations that may differ from the reference."""
         return tuple(item for item in self.prescribed if item.rotation and (callable(item.value) or item.value != 0.0))
 
     @cached_property
@@ -249,35 +249,36 @@ class System:
 
     @cached_property
     def connectors(self) -> Connectors:
-        """What adds forces by a rule of its own. Raises InputError for a force that is not analytic."""
+        """User-defined contributions of the model. Raises InputError for a force that is not analytic."""
         return connectors_of(self.model, self.static)
 
     @cached_property
     def history(self) -> History:
-        """What connectors and section laws remember."""
+        """History variables of connectors and section laws."""
         return History(self.connectors, self.blocks)
 
     @property
     def layouts(self) -> tuple[Layout, ...]:
-        """Where the element matrices of each block go."""
+        """Positions of the element matrices of each block in the matrix."""
         return self.unknowns.layouts
 
     @cached_property
     def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
-        """First coordinate of r and unit normal of each roller that neither x nor y describes."""
+        """First coordinate of r and unit normal of each roller whose normal is not along x or y."""
         return inclined_rollers(self.model, set(self.prescribed_dofs.tolist()))
 
     @cached_property
     def rotated(self) -> tuple[np.ndarray, np.ndarray]:
-        """Numbers among the unknown (nt,) and unit normals (nt, 2) of inclined rollers."""
+        """Equation number of x (nt,) and unit normal (nt, 2) of each inclined roller."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
 
     @cached_property
     def turning(self) -> np.ndarray:
-        """Numbers among the unknown of x and y of each vector that turns with its section, and its stored node (np, 3).
+        """Equation numbers of x and y of each nodal vector that is a coordinate, and its node in storage order (np, 3).
 
-        Nodes of all blocks are numbered one after the other; vectors of which a part is prescribed do not turn.
+        A tangent that is kept for several steps is rotated with the sections in these components. Nodes are numbered
+        consecutively over all blocks; vectors with a prescribed component or an inclined roller are left out.
         """
         free, found, first = self.unknowns.free, [], 0
         for numbered in self.blocks:
@@ -296,7 +297,7 @@ class System:
         return np.ascontiguousarray(pairs[once[~inclined]])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
-        """Return the residual of the unknown directions: reactions of inclined rollers are taken out."""
+        """Return the residual of the unknowns without the reactions of inclined rollers."""
         result = residual[self.free_dofs]
         for first, normal in zip(*self.rotated, strict=True):
             result[first : first + 2] -= normal * (normal @ result[first : first + 2])
@@ -304,7 +305,7 @@ class System:
 
     @property
     def free_dofs(self) -> np.ndarray:
-        """The unknown coordinates in the order of the solver (unknown,)."""
+        """The unknown coordinates (unknown,) in the order of the equations."""
         return self.unknowns.dofs
 
     @cached_property
@@ -317,9 +318,9 @@ class System:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        """What a coordinate's change is measured by (n,): the size of the model for positions [m], 1 for the rest.
+        """Scale (n,) of the change of each coordinate: the size of the model for positions [m], 1 for the rest.
 
-        Multipliers [N] by what would strain an element by one, so that the length of a path is that of its movement.
+        Multipliers [N] are scaled by a force that strains an element by one, so that path lengths measure movement.
         """
         result, multipliers = np.where(self.positions, self.extent, 1.0), self.connectors.multipliers
         if len(multipliers):
@@ -335,7 +336,7 @@ class System:
 
 
 def system_of(model: Model, static: bool) -> System:
-    """Return the system of a model, the same one every time: a model does not change. Raises InputError."""
+    """Return the system of a model, which is created once since models do not change. Raises InputError."""
     if not isinstance(model, Model):
         raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {shown(model)}")
     known: dict[bool, System] = model.__dict__.setdefault("_systems", {})

@@ -1,6 +1,6 @@
-"""A long chain in tiles: groups of so few elements that what is worked out of their nodes stays in the cache.
+"""A long chain in tiles: groups of elements that are small enough for their node data to stay in the cache.
 
-Two halves of the chain have no coordinate in common, so that two threads can work on them; one element lies between.
+The two halves of the chain share no coordinate, so that two threads can process them; one element lies between.
 """
 
 from dataclasses import dataclass
@@ -16,17 +16,17 @@ from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
 from beamfem.kernels.block import Block
 
-LONG = 20_000  # elements, from which on what a chain works on does not stay in the cache
-_NODES = 2048  # of a tile: some 400 kB, and half as much again of tables
+LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
+_NODES = 2048  # of a tile: about 400 kB, and half as much again for tables
 
 
 @dataclass(frozen=True, eq=False)
 class Tiles:
     """The groups of a long chain.
 
-    assembler: its equations, with work space for each half; loads: those of each group among the loads of the chain;
-    turning (np, 3): see `System.turning`, with nodes as they are stored in the groups; bounds (3, fields): see
-    `kernels.record`, of both halves and of what is between them.
+    assembler: its equations, with a workspace for each half; loads: indices of the loads of each group among those of
+    the chain; turning (np, 3): see `System.turning`, with nodes in the storage order of the groups; bounds (3, fields):
+    of both halves and of the element between them, see `kernels.record`.
     """
 
     assembler: Assembler
@@ -36,7 +36,7 @@ class Tiles:
 
 
 def tiles_of(system: System) -> Tiles | None:
-    """Return the tiles of a model, None if it is no long chain."""
+    """Return the tiles of a model, None unless it is a long chain with a compiled band width."""
     if not is_chain(system) or len(system.blocks[0].node) < LONG:
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
@@ -63,7 +63,10 @@ def tiles_of(system: System) -> Tiles | None:
 
 
 def _bounds(system: System, turning: np.ndarray, dof: np.ndarray, spaces: list[int]) -> np.ndarray:
-    """Return the bounds of both halves, the second of which begins with these coordinates, and of what is between."""
+    """Return the bounds (3, fields) of both halves and of the element between them.
+
+    dof: coordinates of the first node of the second half; spaces: workspace number of each group.
+    """
     size, unknown, groups = system.model.size, len(system.free_dofs), len(spaces)
     coordinate = int(dof[dof >= 0].min())
     number = int(np.searchsorted(system.free_dofs, coordinate))
@@ -81,13 +84,13 @@ def _cut(first: int, end: int, size: int) -> list[slice]:
 
 
 def _middle(block: Block) -> int | None:
-    """Return the element that begins the second half, None if halves have coordinates in common."""
+    """Return the first element of the second half, None if the halves share coordinates."""
     dof = np.where(block.dof < 0, block.dof.max(), block.dof)
     half = len(block.node) // 2
     for element in range(half, len(block.node)):
         node = block.node[element, 0]
         first = dof[node].min()
-        # at a corner of the curve two nodes stand at the same place
+        # at a corner of the curve, adjacent elements have separate nodes
         joined = node == block.node[element - 1, -1]
         if joined:
             return element if block.dof[:node].max() < first <= dof[node:].min() else None

@@ -1,4 +1,4 @@
-"""Stress-free shapes of a beam axis."""
+"""Curves: stress-free shapes of the beam axis."""
 
 from beamfem.curves.arc import Arc
 from beamfem.curves.bspline import BSpline

@@ -13,7 +13,7 @@ from beamfem.validation import convert, finite, positive, vector
 class Arc:
     """Circular axis about a center.
 
-    It is clockwise if end_angle < start_angle; more than a full turn is allowed.
+    It runs clockwise if end_angle < start_angle; more than a full turn is allowed.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Arc:
     radius : float, [m]
         Radius.
     start_angle, end_angle : float, [rad]
-        Angles against the x-axis at which the axis starts and ends.
+        Angles from the x-axis at which the axis starts and ends.
 
     Raises
     ------
@@ -32,7 +32,7 @@ class Arc:
     Warns
     -----
     SeveralTurnsWarning
-        Of more than one full turn, which angles in degrees make.
+        For more than one full turn, which angles in degrees often cause.
 
     Examples
     --------

@@ -15,10 +15,10 @@ _NODES, _WEIGHTS = gauss(16)
 # kept, are then more accurate by a factor of about 2^32.
 _CHANGE = 4e-15
 _HALVINGS = 48
-# a curve shorter than this fraction of its coordinates is a point and round-off
+# a curve shorter than this fraction of its largest coordinate is a point with round-off
 _POINT = 1e-13
 _NEWTON = 60
-# a speed below this fraction of the largest in its span counts as zero: the place of a minimum is known to 1e-8
+# a speed below this fraction of the largest in its span counts as zero: a minimum is located to 1e-8
 _ZERO = 1e-7
 
 
@@ -26,7 +26,7 @@ _ZERO = 1e-7
 class ArcLength:
     """Arc length s(u) = integral of speed(u) du, panel by panel.
 
-    speed: |dr/du| at u (n,), to the right of a break where it jumps; ends: parameters of the panels' ends (m + 1,);
+    speed: |dr/du| at u (n,), where it jumps the value after the break; ends: parameters of the panels' ends (m + 1,);
     sums: arc lengths there (m + 1,) [m].
     """
 
@@ -44,15 +44,15 @@ class ArcLength:
         return self.sums[panel] + _integral(self.speed, self.ends[panel], u)
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the parameters at arc lengths (n,) [m] to round-off; outside of the curve those of its ends.
+        """Return the parameters at arc lengths (n,) [m] to round-off; beyond the ends of the curve, those of the ends.
 
-        Newton from a linear guess, bisection where it would leave the panel.
+        Newton's method from a linear guess, with bisection where it would leave the bracket.
         """
         s = np.clip(np.asarray(arc_length, dtype=float), 0.0, self.length)
         panel = _panel(self.sums, s)
         low, high = self.ends[panel], self.ends[panel + 1]
         u = low + (high - low) * (s - self.sums[panel]) / (self.sums[panel + 1] - self.sums[panel])
-        # what is short of a break must be evaluated before it, whatever the round-off
+        # points before a break must be evaluated before it, whatever the round-off
         last = np.where(panel == len(self.sums) - 2, high, np.nextafter(high, low))
         u = np.minimum(u, last)
         left, right = low, last
@@ -70,7 +70,7 @@ class ArcLength:
 
 
 def measure(speed: Speed, breaks: np.ndarray, size: float, where: Callable[[float], str]) -> ArcLength:
-    """Return the arc length over spans between increasing breaks (m + 1,), inside of which the speed is smooth.
+    """Return the arc length over spans between increasing breaks (m + 1,); within a span the speed is smooth.
 
     size: largest coordinate [m]; where: name of a parameter for messages. Raises InputError if the speed vanishes.
     """
@@ -110,7 +110,7 @@ def _integral(speed: Speed, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, where: Callable[[float], str]) -> None:
-    """Raise InputError if the speed vanishes: there a curve may turn back, and its tangent is undefined."""
+    """Raise InputError if the speed vanishes, where a curve may reverse and its tangent is undefined."""
     from scipy.optimize import minimize_scalar  # slow to import, and seldom needed
 
     low, high = panels[:-1, None], panels[1:, None]
@@ -125,7 +125,7 @@ def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, whe
         begin, end = u[max(i - 1, 0)], u[min(i + 1, len(u) - 1)]
         least, at = values[i], u[i]
         if least > _ZERO * largest[span[i]]:
-            # from `begin`, so that the place is found to a fraction of the bracket
+            # relative to `begin`, so that the minimum is found to a fraction of the bracket
             found = minimize_scalar(
                 lambda step, begin=begin: float(speed(np.array([begin + step]))[0]) ** 2,
                 bounds=(0.0, end - begin),

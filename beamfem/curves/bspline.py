@@ -25,11 +25,11 @@ class BSpline:
     degree : int
         Degree of the pieces.
     knots : sequence of float, (n + degree + 1,)
-        Knots, not decreasing, clamped or not; u runs from knots[degree] to knots[n].
+        Non-decreasing knots, clamped or not; u runs from knots[degree] to knots[n].
     control_points : sequence, [m], (n, 2)
         Control points P.
     weights : sequence of float, [-], (n,), optional
-        Weights w > 0, by default ones.
+        Weights w > 0, by default 1.
 
     Raises
     ------
@@ -224,7 +224,7 @@ class BSpline:
         return Spline(np.array(self.knots), table, self.degree)
 
     def _homogeneous(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return r from the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
+        """Return r relative to the first control point, the derivatives of (w x, w y, w), and w at parameters (n,)."""
         start, end = self.breaks[0], self.breaks[-1]
         if self.multiplicity(end) > 1 and self.knots[len(self.control_points) - 1] == end:
             end = np.nextafter(end, start)  # the span that would be evaluated at the end is empty

@@ -1,4 +1,4 @@
-"""An axis of several curves, each beginning where the one before ends."""
+"""An axis of several curves, each of which starts at the end of the previous one."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ from beamfem.validation import fulfils, items, shown
 
 @dataclass(frozen=True)
 class Chain:
-    """Axis that runs through curves one after the other.
+    """Axis along consecutive curves.
 
-    There is a corner wherever the tangent jumps between two curves. A gap of up to 1e-5 of the whole length is taken as
-    rounding and closed by moving the curves behind it.
+    There is a corner wherever the tangent jumps between two curves. A gap of up to 1e-5 of the total length is treated
+    as rounding and closed by moving the curves after it.
 
     Parameters
     ----------
@@ -79,12 +79,12 @@ class Chain:
 
     @cached_property
     def _ends(self) -> np.ndarray:
-        """Arc lengths at which the curves begin, and the whole length (n + 1,)."""
+        """Arc lengths at which the curves begin, and the total length (n + 1,) [m]."""
         return np.append(0.0, np.cumsum([curve.length for curve in self.curves]))
 
     @cached_property
     def _moves(self) -> np.ndarray:
-        """What closes the gaps before each curve (n, 2) [m]."""
+        """Displacement (n, 2) [m] of each curve that closes the gaps before it."""
         ends = np.array([curve.position(np.array([0.0, curve.length])) for curve in self.curves])
         return np.concatenate([np.zeros((1, 2)), np.cumsum(ends[:-1, 1] - ends[1:, 0], axis=0)])
 

@@ -1,4 +1,4 @@
-"""A smooth function as Chebyshev polynomials on panels, which give its derivative without differences.
+"""Approximation of a smooth function by Chebyshev polynomials on panels, which also give its derivative.
 
 Source: L. N. Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3, 4 and 8.
 """
@@ -11,11 +11,11 @@ from numpy.polynomial import chebyshev
 
 from beamfem.errors import InputError
 
-# low enough for exact conversion to a spline, high enough for few panels
+# low enough for a conversion to a spline to round-off, high enough for few panels
 DEGREE = 12
 _FIRST_PANELS = 8
 _HALVINGS = 17
-_MOST_PANELS = 4096  # at once; a corner needs two, noise all that there are
+_MOST_PANELS = 4096  # at a time; a corner needs two, noise needs all
 # A panel is fine enough if its last coefficients and its error between the nodes are below this fraction of the extent;
 # nothing below the round-off of the values can be reached.
 _SMALL = 1e-14
@@ -25,13 +25,13 @@ _BETWEEN_NODES = np.array([-0.77, 0.31])
 
 @dataclass(frozen=True, eq=False)
 class Panels:
-    """Polynomials on panels between ends (m + 1,) in [0, 1]: Chebyshev coefficients (degree + 1, m, columns)."""
+    """Polynomials on panels: their ends (m + 1,) in [0, 1] and Chebyshev coefficients (degree + 1, m, columns)."""
 
     ends: np.ndarray
     coefficients: np.ndarray
 
     def __call__(self, v: np.ndarray) -> np.ndarray:
-        """Return the values at v (n,) (n, columns)."""
+        """Return the values (n, columns) at v (n,)."""
         panel = np.clip(np.searchsorted(self.ends, v, side="right") - 1, 0, len(self.ends) - 2)
         x = 2.0 * (v - self.ends[panel]) / (self.ends[panel + 1] - self.ends[panel]) - 1.0
         return chebyshev.chebval(x[:, None], self.coefficients[:, panel, :], tensor=False)
@@ -45,10 +45,9 @@ class Panels:
 
 
 def approximate(function: Callable[[np.ndarray], np.ndarray], where: Callable[[float], str]) -> Panels:
-    """Return the panels on which a function of v (n,) in [0, 1] with values (n, columns) is resolved to round-off.
+    """Return panels that approximate a function of v (n,) in [0, 1] with values (n, columns) to round-off.
 
-    where: name of a v for messages. Raises InputError for noise, and where halving a panel 17 times does not
-    resolve it.
+    where: name of a v for messages. Raises InputError for noise, and if halving a panel 17 times is not enough.
     """
     nodes = chebyshev.chebpts1(DEGREE + 1)
     to_coefficients = np.linalg.inv(chebyshev.chebvander(nodes, DEGREE))
@@ -89,7 +88,7 @@ def approximate(function: Callable[[np.ndarray], np.ndarray], where: Callable[[f
 
 
 def bernstein(coefficients: np.ndarray) -> np.ndarray:
-    """Return Bezier points (degree + 1, ...) of the polynomials with Chebyshev coefficients (degree + 1, ...)."""
+    """Return the Bezier points (degree + 1, ...) of polynomials with Chebyshev coefficients (degree + 1, ...)."""
     degree = len(coefficients) - 1
     nodes = chebyshev.chebpts1(degree + 1)
     fraction = (nodes[:, None] + 1.0) / 2.0
@@ -97,6 +96,6 @@ def bernstein(coefficients: np.ndarray) -> np.ndarray:
     power = np.arange(degree + 1)
     collocation = binomials * fraction**power * (1.0 - fraction) ** (degree - power)
     matrix = np.linalg.solve(collocation, chebyshev.chebvander(nodes, degree))
-    # the constant is put in afterwards: it needs no conversion, and no round-off of its size
+    # the constant is added afterwards: it needs no conversion, which would cause round-off of its size
     points = np.tensordot(matrix[:, 1:], coefficients[1:], axes=1)
     return points + coefficients[0]

@@ -1,4 +1,4 @@
-"""Arcs of ellipses as rational splines."""
+"""Elliptic arcs as rational splines."""
 
 from collections.abc import Sequence
 
@@ -27,7 +27,7 @@ def elliptic_arc(
     center : (float, float), [m]
         Center (x, y).
     first, second : (float, float), [m]
-        Conjugate half diameters (x, y): the half axes if they are normal to each other.
+        Conjugate semi-diameters (x, y), which are the semi-axes if they are perpendicular.
     start, end : float, [rad]
         Angles a at which the arc starts and ends.
 
@@ -39,12 +39,12 @@ def elliptic_arc(
     Raises
     ------
     InputError
-        If start equals end or the half diameters are parallel.
+        If start equals end or the semi-diameters are parallel.
 
     Warns
     -----
     SeveralTurnsWarning
-        Of more than one full turn, which angles in degrees make.
+        For more than one full turn, which angles in degrees often cause.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def elliptic_arc(
     angles = begin + turn * np.arange(2 * pieces + 1) / (2 * pieces)
     weights = np.ones(len(angles))
     weights[1::2] = np.cos(turn / (2 * pieces))
-    # every other point lies off the ellipse, where the tangents at its neighbours meet
+    # every other control point lies off the ellipse, at the intersection of the tangents at its neighbours
     table = middle + (np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two)) / weights[:, None]
     inner = np.repeat(np.arange(pieces + 1.0), 2)
     return BSpline(2, (0.0, *inner, float(pieces)), points("control_points", table), tuple(weights))

@@ -1,4 +1,4 @@
-"""What every curve can be asked, and what the kinds of curve have in common."""
+"""The protocol of curves, and functions that the kinds of curve share."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
@@ -8,20 +8,20 @@ import numpy as np
 from beamfem.errors import SeveralTurnsWarning, warn
 from beamfem.validation import finite, items, vector
 
-# A smaller turn of the tangent [rad] is round-off of the data: its square vanishes beside 1.
+# A smaller rotation of the tangent [rad] is round-off of the data: its square is negligible compared with 1.
 CORNER = 1e-8
 
-# Ends that meet may be apart by this fraction of the length, as drawings rounded to 6 decimals leave them.
+# Gap between connected ends, as a fraction of the length, that is allowed for drawings rounded to 6 decimals.
 GAP = 1e-5
 
-_FULL_TURN = 2.0 * np.pi * (1.0 + 1e-9)  # beyond round-off
+_FULL_TURN = 2.0 * np.pi * (1.0 + 1e-9)  # allows for round-off
 
 
 @runtime_checkable
 class Curve(Protocol):
     """A planar curve, as a function of its arc length s from 0 to `length` [m].
 
-    At a corner the tangent is the one after it; just before a corner, the one before.
+    At a corner the tangent is that after it; at an arc length just before the corner, that before it.
 
     Attributes
     ----------
@@ -84,18 +84,18 @@ class Curve(Protocol):
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 2) at length one."""
+    """Return vectors (n, 2) scaled to unit length."""
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 
 
 def turned(before: np.ndarray, after: np.ndarray, limit: float = CORNER) -> np.ndarray:
-    """Return where unit tangents before and after a point (n, 2) differ by more than `limit` [rad] (n,)."""
+    """Return the mask (n,) of points where unit tangents before and after (n, 2) differ by more than a limit [rad]."""
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.abs(np.arctan2(cross, np.sum(before * after, axis=1))) > limit
 
 
 def warn_of_turns(what: str, turn: float) -> None:
-    """Warn of an arc that turns by more than one full turn [rad], as angles in degrees do."""
+    """Warn of an arc with an angle [rad] of more than one full turn, which may have been given in degrees."""
     if abs(turn) > _FULL_TURN:
         warn(
             f"{what} turns by {abs(turn):g} rad, more than one full turn; angles are in radians: for {abs(turn):g} "
@@ -105,10 +105,10 @@ def warn_of_turns(what: str, turn: float) -> None:
 
 
 def points(name: str, values: Sequence[Any] | np.ndarray) -> tuple[tuple[float, float], ...]:
-    """Return `values` as a tuple of finite points, or raise InputError naming the one that is none."""
+    """Return `values` as a tuple of finite points, or raise InputError naming the invalid one."""
     return tuple(vector(f"{name}[{i}]", value) for i, value in enumerate(items(name, values)))
 
 
 def numbers(name: str, values: Sequence[Any] | np.ndarray) -> tuple[float, ...]:
-    """Return `values` as a tuple of finite floats, or raise InputError naming the one that is none."""
+    """Return `values` as a tuple of finite floats, or raise InputError naming the invalid one."""
     return tuple(finite(f"{name}[{i}]", value) for i, value in enumerate(items(name, values)))

@@ -1,4 +1,4 @@
-"""Cubics through values and derivatives as splines: the shape of a beam of cubic elements for a CAD program."""
+"""Cubic Hermite interpolation as splines, which export the shape of a beam of cubic elements to CAD programs."""
 
 from collections.abc import Sequence
 
@@ -101,16 +101,16 @@ def without_removable_knots(spline: BSpline) -> BSpline:
 
 
 def _bezier(u: np.ndarray, r: np.ndarray, r_u: np.ndarray) -> np.ndarray:
-    """Bezier points of each span (m, 4, 2)."""
+    """Return the Bezier points (m, 4, 2) of each span."""
     third = np.diff(u)[:, None] / 3.0
     return np.stack([r[:-1], r[:-1] + third * r_u[:-1], r[1:] - third * r_u[1:], r[1:]], axis=1)
 
 
 def _spline(u: np.ndarray, bezier: np.ndarray, multiplicities: np.ndarray) -> BSpline:
-    """Return the cubic spline over spans with Bezier points, with interior knots as often as said.
+    """Return the cubic spline over spans with Bezier points (m, 4, 2) and given multiplicities of interior knots.
 
-    A control point is the polar form of a span's cubic at three knots in a row. Every span between these has the same;
-    the longest needs the least extrapolation.
+    A control point is the polar form (blossom) of a span's cubic at three consecutive knots. Every span between these
+    gives the same value; the longest needs the least extrapolation.
     """
     times = np.concatenate([[4], multiplicities, [4]])
     place = np.repeat(np.arange(len(u)), times)
@@ -123,7 +123,7 @@ def _spline(u: np.ndarray, bezier: np.ndarray, multiplicities: np.ndarray) -> BS
 
 
 def _polar(bezier: np.ndarray, arguments: np.ndarray) -> np.ndarray:
-    """Polar form of a cubic with Bezier points (4, 2) at three arguments in units of the span (2,)."""
+    """Return the polar form (2,) of a cubic with Bezier points (4, 2) at three arguments in units of the span."""
     table = bezier
     for t in arguments:
         table = (1.0 - t) * table[:-1] + t * table[1:]

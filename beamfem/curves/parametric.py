@@ -1,4 +1,4 @@
-"""An axis along a function of the user's."""
+"""An axis given by a user's function."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from beamfem.validation import called, convert, finite, shown, vector
 
 PlaneFunction = Callable[[Any], Any]
 
-# the derivative of the panels is this good at the least, in units of the largest speed and as an angle
+# accuracy of the derivative of the panels, relative to the largest speed and as an angle [rad]
 _AGREES = 1e-6
 
 
@@ -33,8 +33,7 @@ class Parametric:
     start, end : float
         Values of u at the ends.
     derivative : callable, optional
-        dr/du in the same form; by default it is taken from polynomials of degree 12 that follow the function to
-        round-off.
+        dr/du in the same form; by default that of polynomials of degree 12 that approximate the function to round-off.
 
     Raises
     ------
@@ -104,7 +103,7 @@ class Parametric:
 
     @cached_property
     def _panels(self) -> Panels:
-        """Position and, where it is given, derivative over v = (u - start) / (end - start)."""
+        """Position and, if given, derivative as functions of v = (u - start) / (end - start)."""
         functions = [_plane("function", self.function, self._parameter)]
         if self.derivative is not None:
             functions.append(_plane("derivative", self.derivative, self._parameter))
@@ -160,7 +159,7 @@ class Parametric:
 def _plane(
     name: str, function: PlaneFunction, parameter: Callable[[np.ndarray], np.ndarray]
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the user's function as one of v (n,) with finite values (n, 2)."""
+    """Return the user's function as a function of v (n,) with finite values (n, 2)."""
     at_once = _takes_arrays(function, parameter(np.array([0.1, 0.5, 0.8])))
 
     def values(v: np.ndarray) -> np.ndarray:
@@ -180,10 +179,10 @@ def _plane(
 
 
 def _takes_arrays(function: PlaneFunction, u: np.ndarray) -> bool:
-    """Return whether a function gives for three numbers at once what it gives for each."""
+    """Return whether a function gives the same values for an array of three numbers as for each of them."""
     try:
         return np.allclose(_table(function, u), [function(float(each)) for each in u], rtol=1e-12, atol=0.0)
-    except Exception:  # functions of one number raise what they like for an array; for numbers they are asked later
+    except Exception:  # a function of one number may raise anything for an array
         return False
 
 

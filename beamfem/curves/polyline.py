@@ -1,4 +1,4 @@
-"""An axis of straight pieces."""
+"""An axis of straight segments."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +22,7 @@ class Polyline:
     Raises
     ------
     InputError
-        For fewer than two points, or if two in a row coincide.
+        For fewer than two points, or if two consecutive ones coincide.
 
     Examples
     --------
@@ -65,13 +65,13 @@ class Polyline:
 
     @cached_property
     def _ends(self) -> np.ndarray:
-        """Arc lengths of the points (n,)."""
+        """Arc lengths (n,) [m] of the points."""
         steps = np.diff(np.array(self.points), axis=0)
         return np.append(0.0, np.cumsum(np.hypot(steps[:, 0], steps[:, 1])))
 
     @cached_property
     def _directions(self) -> np.ndarray:
-        """Unit tangent of each piece (n - 1, 2)."""
+        """Unit tangents (n - 1, 2) of the segments."""
         return unit(np.diff(np.array(self.points), axis=0))
 
     def _piece(self, arc_length: np.ndarray) -> np.ndarray:

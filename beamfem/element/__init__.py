@@ -1,1 +1,1 @@
-"""A beam element is three independent choices: a field, the nodal coordinates that carry it, the elastic forces."""
+"""Beam elements: independent choices of a field, its nodal coordinates and the elastic forces."""

@@ -1,4 +1,4 @@
-"""The beam axis at points: what strain measures are formed of."""
+"""The beam axis at points: the vectors that strain measures depend on."""
 
 from dataclasses import dataclass
 
@@ -17,10 +17,10 @@ class Axis:
 
 
 def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Inner product over the last axis."""
+    """Return the inner product over the last axis."""
     return np.asarray((u * v).sum(axis=-1))
 
 
 def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Planar cross product over the last axis."""
+    """Return the planar cross product over the last axis."""
     return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

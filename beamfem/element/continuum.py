@@ -1,4 +1,4 @@
-"""Elastic forces of the whole body."""
+"""Elastic forces of the beam as a continuum."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from beamfem.physics.measures import evaluate, green_lagrange
 from beamfem.section.protocol import CrossSection
 from beamfem.validation import flag
 
-_STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
+_STEP = 2.0**-300  # complex step, so small that its square is negligible
 # a law maps a material to the stiffness (3, 3) of (exx, eyy, 2 exy) in the volume
 Law = Callable[[Material], np.ndarray]
 
@@ -26,7 +26,7 @@ class _Body:
 
     @property
     def code(self) -> int:
-        """Number of the law in compiled code."""
+        """Number of the strain measures in compiled code."""
         return GREEN_LAGRANGE
 
     @property
@@ -36,7 +36,7 @@ class _Body:
 
     @property
     def fills_body(self) -> bool:
-        """Whether the strain is that of every point of the body."""
+        """Whether strains are defined at every point of the body."""
         return True
 
     @property
@@ -88,13 +88,13 @@ class _Body:
 class ContinuumMechanics(_Body):
     """Green-Lagrange strain and St. Venant-Kirchhoff stress of the whole body.
 
-    The element bends with E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy cannot
-    vary over y.
+    The bending stiffness is E I times (1 - nu) / ((1 + nu)(1 - 2 nu)), in plane stress 1 / (1 - nu^2), because eyy
+    cannot vary over y.
 
     Parameters
     ----------
     plane_stress : bool, default False
-        Take E nu / (1 - nu^2) for lambda instead of the 3D value.
+        Use lambda = E nu / (1 - nu^2) instead of the 3D value.
 
     References
     ----------
@@ -132,9 +132,9 @@ class ContinuumMechanics(_Body):
 class SplitContinuum(_Body):
     """Green-Lagrange strain, with Poisson coupling on the centreline only.
 
-    Over the section the stress is E exx, E eyy, 2 k_s mu exy; the centreline adds what is missing to plane stress. The
-    element bends with E I. If rotations keep the thickness constant, the centreline has nothing to couple with and
-    stretches with E A.
+    Over the section the stress is E exx, E eyy, 2 k_s mu exy; on the centreline, the Poisson coupling of plane stress
+    is added. The bending stiffness is E I. If rotations keep the thickness constant, there is no coupling, and the
+    axial stiffness is E A.
 
     References
     ----------
@@ -175,8 +175,8 @@ class SplitContinuum(_Body):
 def _over_section(section: CrossSection, material: Material | None, reference: Axis, law: Law) -> np.ndarray:
     """Integrate a law over the section: stiffness (..., 6, 6) of (a, b, c, eyy, g0, g1).
 
-    A reference that is straight takes the section's moments; a curved one the equivalent rectangle, on which the body
-    has the metric of its own reference, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
+    For a straight reference, the moments of the section are used; for a curved one, strips of the section and the
+    metric of the curved body, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
     """
     low, high = section.bounds
     if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:
@@ -212,7 +212,7 @@ _POWERS = {0: _table([(0, 0), (1, 3), (2, 4)]), 1: _table([(0, 1), (2, 5)]), 2: 
 
 
 def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Map convected strain (exx, eyy, 2 exy) to the reference's own frame (..., 3, 3); and det J (...)."""
+    """Return the map (..., 3, 3) from convected strain (exx, eyy, 2 exy) to the section frame, and det J (...)."""
     along, across = section_frame(reference.d)
     first = reference.r_s + y * reference.d_s
     j11, j21, j22 = dot(first, along), dot(first, across), np.linalg.norm(reference.d, axis=-1)
@@ -229,6 +229,6 @@ def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _slope(at: Sequence[np.ndarray], change: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the derivative (n, 6) of the measures of r0', d and d' (n, 2) along a change of them."""
+    """Return the derivative (n, 6) of the measures at r0', d and d' (n, 2) along a change of these."""
     moved = [one + 1j * _STEP * own for one, own in zip(at, change, strict=True)]
     return evaluate(green_lagrange, *moved).imag / _STEP

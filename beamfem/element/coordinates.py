@@ -1,4 +1,4 @@
-"""Nodal coordinates: which numbers p carry the nodal vectors e of a field."""
+"""Nodal coordinates: the numbers p that determine the nodal vectors e of a field."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -41,7 +41,7 @@ class Rotation:
 class ShearFree:
     """Coordinates without shear at the nodes: r_x = s (cos t, sin t), r_y = (-sin t, cos t).
 
-    They need a field that has r_x.
+    The field must have r_x.
 
     Parameters
     ----------
@@ -73,19 +73,19 @@ Coordinates = Gradients | Rotation | ShearFree
 
 
 KINEMATICS = {ROTATION: kinematics.ROTATION, STRETCH: kinematics.STRETCH, SHEAR_RIGID: kinematics.SHEAR_RIGID}
-_STEP = 2.0**-300  # of a complex step, whose square vanishes beside one
+_STEP = 2.0**-300  # complex step, so small that its square is negligible
 
 
 @lru_cache(maxsize=64)
 def labels(node_kind: int, vectors: tuple[str, ...]) -> tuple[str, ...]:
-    """Names of a node's coordinates: components of nodal vectors, then what turns the others, the angle last."""
+    """Return the names of a node's coordinates: components of nodal vectors, then stretch and angle, if any."""
     kind = KINEMATICS.get(node_kind)
     components = tuple(f"{vector}^{axis}" for vector in vectors for axis in "xy")
     return components if kind is None else (*components[: -kind.size], *kind.coordinates)
 
 
 def nodal_vectors(node_kind: int, vectors: tuple[str, ...], p: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return e (steps, nodes, vectors, 2) of coordinates p (steps, nodes, npn); frame (nodes, 3), see `node_map`."""
+    """Return e (steps, nodes, vectors, 2) for coordinates p (steps, nodes, npn); frame (nodes, 3): as in `Block`."""
     kind = KINEMATICS.get(node_kind)
     p = p[..., : len(labels(node_kind, vectors))]
     if kind is not None:
@@ -100,7 +100,7 @@ def nodal_vectors(node_kind: int, vectors: tuple[str, ...], p: np.ndarray, frame
 def nodal_rates(
     node_kind: int, vectors: tuple[str, ...], p: np.ndarray, v: np.ndarray, frame: np.ndarray
 ) -> np.ndarray:
-    """Return e' = B p' (steps, nodes, vectors, 2) of p and p' (steps, nodes, npn): the part of e(p + i h p') in i h."""
+    """Return e' = B p' (steps, nodes, vectors, 2) for p and p' (steps, nodes, npn), by a complex step along p'."""
     kind, count = KINEMATICS.get(node_kind), len(labels(node_kind, vectors))
     if kind is None:
         return nodal_vectors(node_kind, vectors, v, frame)
@@ -111,20 +111,20 @@ def nodal_rates(
 
 
 def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return the nodal vectors (steps, nodes, vectors, 2) of nodes whose section points along (c, s)."""
+    """Return the nodal vectors (steps, nodes, vectors, 2) of nodes with the section normal (c, s)."""
     own = len(kind.coordinates)
     turned = kind.vectors(tuple(np.moveaxis(p[..., -own:], -1, 0)), c, s, frame[:, 2])
     components = np.concatenate([p[..., :-own], np.stack(turned, axis=-1)], axis=-1)
-    return components.reshape(*p.shape[:2], components.shape[-1] // 2, 2)  # of no steps too
+    return components.reshape(*p.shape[:2], components.shape[-1] // 2, 2)  # no -1, which fails for zero steps
 
 
 def across(vector: np.ndarray) -> np.ndarray:
-    """Return vectors (..., 2) turned by a right angle, counter-clockwise."""
+    """Return vectors (..., 2) rotated counter-clockwise by a right angle."""
     result = np.empty_like(vector)
     result[..., 0], result[..., 1] = -vector[..., 1], vector[..., 0]
     return result
 
 
 def _turned(x: np.ndarray, y: np.ndarray, frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the components of vectors (x, y) turned by the reference angle of each node."""
+    """Return the components of vectors (x, y) rotated by the reference angle of each node."""
     return frame[:, 0] * x - frame[:, 1] * y, frame[:, 1] * x + frame[:, 0] * y

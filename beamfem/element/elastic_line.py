@@ -17,8 +17,8 @@ from beamfem.section.protocol import CrossSection
 class ElasticLine:
     """Elastic line with stretch |r_x| - 1, curvature (r_x x r_xx) / |r_x|^2, r_x.r_y and (r_y.r_y - 1) / 2.
 
-    It resists them with E A, E I, G A and, with gradients, E A. The curvature is the change of the angle of r_x along
-    the reference, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
+    The stiffnesses are E A, E I, G A and, with gradients, E A. The curvature is the derivative of the angle of r_x by
+    the reference arc length, so that M = E I dtheta/ds; the section is normal to r_x, and r_y only follows it.
 
     References
     ----------

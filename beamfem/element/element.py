@@ -1,4 +1,4 @@
-"""An element as a user chooses it: a field, nodal coordinates and elastic forces."""
+"""The definition of an element: a field, nodal coordinates and elastic forces."""
 
 from collections.abc import Hashable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Integration = Literal["full", "reduced", "lobatto"]
 
 @dataclass(frozen=True)
 class Element:
-    """A field, the nodal coordinates that carry it and the elastic forces that resist it.
+    """A beam element: a field, its nodal coordinates and the elastic forces.
 
     Parameters
     ----------
@@ -32,18 +32,17 @@ class Element:
     forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural
         Elastic forces.
     integration : {"full", "reduced", "lobatto"}, optional
-        "full" integrates the energy of a straight element exactly. "reduced" takes as many Gauss points as the order of
+        "full" integrates the energy of a straight element exactly. "reduced" uses as many Gauss points as the order of
         the field, and 2 if its nodes have no shear (3 for all strains but shear, with a stretch coordinate). "lobatto"
-        takes strains of the cubic field at its nodes and its middle, where it does not lock however slender the beam
-        is. The default is "lobatto" for the cubic field with structural forces or the elastic line, and "full"
-        otherwise.
+        evaluates strains of the cubic field at its nodes and midpoint, which avoids locking at any slenderness. The
+        default is "lobatto" for the cubic field with structural forces or the elastic line, and "full" otherwise.
     label : str, optional
         Name for legends and files.
 
     Raises
     ------
     InputError
-        For a combination that makes no sense.
+        For an invalid combination.
 
     Examples
     --------
@@ -94,7 +93,7 @@ class Element:
 
     @property
     def _compared(self) -> tuple[Hashable, ...]:
-        # what a user derives from a field or from forces may be more than these are compared by
+        # classes derived by users may have data that the base classes do not compare
         return whole(self.field), whole(self.coordinates), whole(self.forces), self.integration, self.label
 
     @property
@@ -146,9 +145,9 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
-@lru_cache(maxsize=64)  # asked for by every beam of a model
+@lru_cache(maxsize=64)  # every beam of a model needs them
 def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points and weights (nq,) of the strain energy, which cannot be written to."""
+    """Return the points and weights (nq,) of the strain energy, read-only."""
     if element.integration == "lobatto":
         found = lobatto.energy_points(element.forces)
     else:
@@ -161,6 +160,6 @@ def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=64)
 def _counted(element: Element) -> np.ndarray | None:
-    """Return which parts of the stiffness count at the points of the energy (nq, ns, ns); None if all of them do."""
+    """Return the mask (nq, ns, ns) of the stiffness entries that enter the energy at its points, None if all do."""
     counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in element.energy_rules()])
     return None if counted.all() else counted[:, :, None] & counted[:, None, :]

@@ -17,7 +17,7 @@ HIGHEST_ORDER = 8
 
 @runtime_checkable
 class Field(Protocol):
-    """What an element needs of a field basis; all tables are those of the unit element, xi in [0, 1]."""
+    """A field basis, with the members that an element needs; all tables refer to the unit element, xi in [0, 1]."""
 
     @property
     def name(self) -> str: ...
@@ -35,18 +35,18 @@ class Field(Protocol):
 
 
 def r_slots(field: Field) -> np.ndarray:
-    """Nodal vectors of an element (nr,) that carry r0, in the order of `Field.centreline`."""
+    """Return the indices (nr,) of the nodal vectors of an element that interpolate r0, as in `Field.centreline`."""
     return slots(field.vectors, len(field.nodes), ("r", "r_x"))
 
 
 def d_slots(field: Field) -> np.ndarray:
-    """Nodal vectors of an element (nd,) that carry d, in the order of `Field.director`."""
+    """Return the indices (nd,) of the nodal vectors of an element that interpolate d, as in `Field.director`."""
     return slots(field.vectors, len(field.nodes), ("r_y",))
 
 
 @lru_cache(maxsize=64)
 def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.ndarray:
-    """Return the numbers (k,) of the wanted nodal vectors among those of an element, which cannot be written to."""
+    """Return the indices (k,) of the wanted nodal vectors among those of an element, read-only."""
     found = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
     found = found.astype(np.int64)
     found.setflags(write=False)
@@ -94,22 +94,22 @@ class Cubic:
 
 @lru_cache
 def _lobatto(order: int) -> np.ndarray:
-    """Gauss-Lobatto nodes (order + 1,) on [0, 1]."""
-    # with these the interpolated slope is exact to one order more at the Gauss points, which curved beams need
+    """Return the Gauss-Lobatto nodes (order + 1,) on [0, 1]."""
+    # their interpolated slope is accurate to one order more at the Gauss points, which curved beams need
     inner = np.polynomial.legendre.Legendre.basis(order).deriv().roots()
     return np.concatenate([[0.0], 0.5 + 0.5 * np.sort(inner.real), [1.0]])
 
 
-# frames of many members ask for the same points again and again
+# frames of many members need the same points repeatedly
 @lru_cache(maxsize=128)
 def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -> np.ndarray:
-    """Derivatives (*shape, order + 1) of the polynomials at points in [0, 1], given by their bytes."""
+    """Return the derivatives (*shape, order + 1) of the polynomials at points in [0, 1], given as bytes."""
     nodes = _lobatto(order)
     factors = np.subtract.outer(np.frombuffer(points).reshape(shape), nodes)
     columns = []
     for i, own in enumerate(nodes):
         others = np.delete(np.arange(len(nodes)), i)
-        # a derivative of a product is the sum over the factors that are left out, in every order
+        # the k-th derivative of a product is the sum over all ordered choices of k factors that are left out
         parts = [
             factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
             for left_out in combinations(others, derivative)
@@ -162,7 +162,7 @@ class Lagrange:
     def centreline(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return the shape functions (nq, nr) of the centreline r0 at xi (nq,), or a derivative of them by xi."""
         points = np.asarray(xi, dtype=float)
-        # a copy: kernels are compiled anew for arrays that cannot be written to
+        # a copy, so that callers cannot change the cached table
         return _table(self.order, points.tobytes(), points.shape, derivative).copy()
 
     def director(self, xi: np.ndarray, derivative: int = 0) -> np.ndarray:

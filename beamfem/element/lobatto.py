@@ -1,8 +1,9 @@
-"""Strains of the cubic field at its nodes and its middle, where it can make them zero however strongly it bends.
+"""Strains of the cubic field at its nodes and midpoint, where stretch and shear can vanish however strongly it bends.
 
-At a node r_x is a coordinate of its own, and in the middle it follows from the distance of the nodes: 3 Gauss-Lobatto
-points ask for no stretch and no shear without asking anything of the curvature. Together with that there are as many
-strains as coordinates less three rigid motions, so that no motion is left without energy either.
+At a node, zero stretch and shear determine r_x, which is a coordinate; at the midpoint, they determine the distance of
+the nodes. At the 3 Gauss-Lobatto points they therefore impose no condition on the curvature, and no locking occurs.
+With the curvature there are as many strains as coordinates minus three rigid-body motions, so that no zero-energy modes
+remain.
 """
 
 import numpy as np
@@ -14,17 +15,19 @@ POINTS = np.array([0.0, 0.5, 1.0])
 WEIGHTS = np.array([1.0, 4.0, 1.0]) / 6.0
 STATIONS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 _TRAPEZOID = np.array([0.5, 0.0, 0.5])
-_OUTER = 0.5 + np.sqrt(0.15) * np.array([-1.0, 1.0])  # of the 3 Gauss points, whose other one is the middle
+_OUTER = 0.5 + np.sqrt(0.15) * np.array([-1.0, 1.0])  # of the 3 Gauss points; the other one is the midpoint
 _GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
-# A bubble that is zero at the nodes is 3/2 of its mean in the middle: 2/3 of the weight gives the mean its energy.
+# A bubble that is zero at the nodes is 3/2 of its mean at the midpoint: 2/3 of the weight there gives the energy of the
+# mean, (2/3)^2 (3/2)^2 = 1.
 _BUBBLE = 2.0 / 3.0
 _STRETCH, _CURVATURE, _THICKNESS = 0, 2, 3
 
 
 def energy_points(forces: Forces) -> tuple[np.ndarray, np.ndarray]:
-    """Return points (nq,) and weights (nq,) on [0, 1]; behind the Lobatto points those that a turning d needs besides.
+    """Return points (nq,) and weights (nq,) on [0, 1]: the Lobatto points, then two more for structural curvature.
 
-    The turning rate of an interpolated d is no polynomial: 3 Gauss points find its energy five times better.
+    The rotation rate of an interpolated d is not a polynomial: 3 Gauss points give its energy five times more
+    accurately.
     """
     if isinstance(forces, Structural):
         return np.append(POINTS, _OUTER), np.append(WEIGHTS, _GAUSS[[0, 2]])
@@ -34,9 +37,9 @@ def energy_points(forces: Forces) -> tuple[np.ndarray, np.ndarray]:
 def energy_stiffness(
     forces: Forces, coordinates: Coordinates, stiffness: np.ndarray, jacobian: np.ndarray
 ) -> np.ndarray:
-    """Return what of the section stiffness (ne, nq, ns, ns) counts at the points of the energy.
+    """Return the section stiffness (ne, nq, ns, ns) that enters the energy at its points.
 
-    jacobian: ds/dxi (ne, nq) [m] there.
+    stiffness: that of the sections there; jacobian (ne, nq): ds/dxi [m].
     """
     table = assumed(forces, coordinates, jacobian[:, : len(POINTS)])
     result = stiffness.copy()
@@ -55,11 +58,11 @@ def energy_stiffness(
 
 
 def assumed(forces: Forces, coordinates: Coordinates, jacobian: np.ndarray) -> np.ndarray:
-    """Return the tables (ne, points, ns, ns) from strains at the Lobatto points to those that are assumed there.
+    """Return the tables (ne, points, ns, ns) from strains at the Lobatto points to the strains assumed there.
 
-    Thickness strain of the body varies linearly between the nodes, which know the length of d: an interpolated d is
-    shorter between them, e_lin = e + xi (1 - xi) J^2 c with c = d'.d' / 2, and g1 = d.d' its derivative.
-    Where nodes keep that length there is none.
+    For continuum forces, the thickness strain is made linear between its nodal values, because an interpolated d is
+    shorter between the nodes: e_lin = e + xi (1 - xi) J^2 c with c = d'.d' / 2; g1 = d.d' is replaced by the derivative
+    of e_lin. There is no thickness strain if the nodes keep the length of d constant.
     """
     count = len(forces.shear_measures)
     table = np.tile(np.eye(count), (*jacobian.shape, 1, 1))
@@ -74,10 +77,10 @@ def assumed(forces: Forces, coordinates: Coordinates, jacobian: np.ndarray) -> n
 
 
 def _at_nodes(forces: Forces) -> np.ndarray:
-    """Tell which measures (ns,) only nodes know: the length of d, and of the elastic line its angle to r_x.
+    """Return the mask (ns,) of the measures evaluated at nodes only: thickness, and shear of the elastic line.
 
-    Between the nodes a d that is interpolated linearly would hold the angle of r_x to a straight line, and so pin its
-    curvature.
+    Between the nodes, a linear d would make the angle of r_x linear as well, and so the curvature of the elastic line
+    constant.
     """
     if isinstance(forces, Structural):
         return np.array(forces.thickness_measures)
@@ -87,7 +90,10 @@ def _at_nodes(forces: Forces) -> np.ndarray:
 
 
 def _spread_curvature(stiffness: np.ndarray) -> None:
-    """Move bending stiffness (ne, 5) from the Lobatto to the Gauss points; coupled with stretch it stays."""
+    """Move the bending stiffness from the Lobatto to the Gauss points, unless it is coupled with stretch.
+
+    stiffness (ne, 5, ns, ns) is changed in place.
+    """
     coupled = np.any(stiffness[..., _STRETCH, _CURVATURE] != 0.0, axis=1)[:, None]
     bending = stiffness[..., _CURVATURE, _CURVATURE].copy()
     stiffness[:, len(POINTS) :] = 0.0

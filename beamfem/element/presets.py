@@ -1,4 +1,4 @@
-"""The named elements: combinations of the paper, and fields of any order carried by rotations."""
+"""The named elements: combinations of the paper, and fields of any order with rotations."""
 
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.element import Element, Integration
@@ -145,7 +145,7 @@ def CRBF(order: int, forces: Forces | None = None, integration: Integration = "r
     Raises
     ------
     InputError
-        For an order outside 1 to 8, or a combination that makes no sense.
+        For an order outside 1 to 8, or an invalid combination.
 
     References
     ----------
@@ -166,8 +166,8 @@ def ShearRigid(
 ) -> Element:
     """Return the shear-rigid element: cubic field without shear at its nodes, 4 or 3 coordinates per node.
 
-    Full integration makes it 1.2 times too stiff in shear, and in stretch if the length of r_x is no coordinate;
-    without that coordinate, as any cubic field with full integration.
+    Full integration makes it 1.2 times too stiff in shear, and also in stretch if the length of r_x is not a
+    coordinate.
 
     Parameters
     ----------

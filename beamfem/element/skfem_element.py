@@ -1,4 +1,4 @@
-"""A field basis as a scikit-fem element on a line mesh: what the readable forms of `beamfem.forms` are written on."""
+"""A field basis as a scikit-fem element on a line mesh, for the forms of `beamfem.forms`."""
 
 import numpy as np
 from skfem import Element, MappingAffine
@@ -51,7 +51,7 @@ class FieldElement(Element):
     def gbasis(
         self, mapping: BeamMapping, X: np.ndarray, i: int, tind: np.ndarray | None = None
     ) -> tuple[DiscreteField, ...]:
-        """Return value (2, ne, nq) and grad (2, 2, ne, nq) of a basis function, columns d/ds and d/dy."""
+        """Return value (2, ne, nq) and grad (2, 2, ne, nq) of a basis function, with columns d/ds and d/dy."""
         node, vector, axis = self.place(i)
         h = mapping.detDF(X, tind)
         xi = np.broadcast_to(X[0], h.shape)

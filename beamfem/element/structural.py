@@ -17,7 +17,7 @@ from beamfem.section.protocol import CrossSection
 class Structural:
     """Geometrically exact beam with the section along d.
 
-    It resists stretch with E A, shear with k_s G A and curvature with E I; with gradients, thickness stretch with E A.
+    The stiffnesses are E A for stretch, k_s G A for shear, E I for curvature and, with gradients, E A for thickness.
 
     References
     ----------
@@ -69,6 +69,6 @@ class Structural:
 
 
 def section_frame(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors along the section's normal and along d (..., 2)."""
+    """Return the unit vectors along the section's normal and along d (..., 2)."""
     across = d / np.linalg.norm(d, axis=-1, keepdims=True)
     return np.stack([across[..., 1], -across[..., 0]], axis=-1), across

@@ -1,1 +1,1 @@
-"""Geometry, loads and supports of beams, and the numbering of their coordinates; a model knows no solver."""
+"""Geometry, loads and supports of beams, and the numbering of their coordinates; independent of solvers."""

@@ -1,4 +1,4 @@
-"""Common parts of loads along beams: values that may be functions of the arc length."""
+"""Common part of loads along beams: values that may be functions of the arc length."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
 
 
 def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
-    """Return the arc lengths (nj,) [m] at which such a function jumps, or has kinks that it declares."""
+    """Return the arc lengths (nj,) [m] at which a function of a load jumps, or declares kinks."""
     beam = load.beam
 
     def numbers(arc_length: float) -> np.ndarray:
@@ -44,7 +44,7 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
 
 
 def jumps_along(load: AlongBeam) -> tuple[float, ...]:
-    """Return the arc lengths [m] at which the effect of a load on a beam jumps, by itself or with the section."""
+    """Return the arc lengths [m] at which a load, or the section of its beam, jumps or has a declared kink."""
     kinks = [kinks_along(load, name) for name in functions_along(load)]
     return (*load.beam.jumps, *(kink for found in kinks for kink in found))
 

@@ -29,7 +29,7 @@ _SAMPLES = 32
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A beam along a curve, stress-free in this configuration.
+    """A beam along a curve, which is its stress-free configuration.
 
     Parameters
     ----------
@@ -37,15 +37,15 @@ class Beam:
         Axis of the beam in the reference.
     elements : int, sequence of float or "knots"
         Number of equal elements; or the fractions of the arc length from 0 to 1 at which elements end; or "knots" for
-        one cubic element per knot span of a cubic BSpline, which is then represented exactly.
+        one cubic element per knot span of a cubic BSpline, which it represents exactly.
     element : Element
         Kind of the elements, such as `CRBF(order=3)`.
     section : Section or callable
         A section, or a function of the arc length [m] from the start that returns one.
     material : Material, optional
-        Material of the section; not needed if the section has its own.
+        Material of the section; not needed if the section includes its materials.
     name : str, optional
-        What messages, tables and files call the beam, by default its number in the model.
+        Name of the beam in messages, tables and files, by default its number in the model.
 
     Raises
     ------
@@ -192,7 +192,7 @@ class Beam:
         return max(self.element_count, _SAMPLES)
 
     def _measured(self, arc_length: float) -> np.ndarray:
-        """Return the numbers of the section at an arc length that elastic forces, inertia, heat and drawings use."""
+        """Return the values of the section at an arc length that elastic forces, inertia, heat and drawings use."""
         section = self.section_at(arc_length)
         parts = (section.rigidity(self.material), section.inertia(self.material))
         numbers = [value for part in parts for value in vars(part).values()]
@@ -266,12 +266,12 @@ def require_beam(kind: str, beam: object) -> None:
 
 
 def reference_positions(points: Sequence[Point]) -> np.ndarray:
-    """Return the reference positions (n, 2) [m] of points, those on straight beams all at once."""
+    """Return the reference positions (n, 2) [m] of points; those on straight beams are computed together."""
     result = np.empty((len(points), 2))
     curves = [point.beam.curve for point in points]
     straight = [(i, curve) for i, curve in enumerate(curves) if type(curve) is Line]
     for i, curve in enumerate(curves):
-        if type(curve) is not Line:  # what derives from it may bend
+        if type(curve) is not Line:  # a subclass may be curved
             result[i] = points[i].reference
     if straight:
         own, lines = zip(*straight, strict=True)
@@ -286,7 +286,7 @@ def _without_dimensions(value: object) -> bool:
 
 
 def _fractions(values: Sequence[float]) -> tuple[float, ...]:
-    """Check element ends given by a user."""
+    """Return element ends given by a user as fractions. Raises InputError."""
     try:
         ends = numbers("elements", values)
     except InputError as error:
@@ -299,7 +299,7 @@ def _fractions(values: Sequence[float]) -> tuple[float, ...]:
 
 
 def _check_knots(elements: str, curve: Curve, element: Element) -> None:
-    """Refuse a mesh of knot spans for elements other than the cubics of the spline."""
+    """Raise InputError if elements, curve and element do not fit a mesh of knot spans."""
     if elements != "knots":
         raise InputError(f'elements must be a number, a list of fractions or "knots", got {elements!r}')
     if not isinstance(curve, BSpline):

@@ -1,4 +1,4 @@
-"""Check that the body of a beam is possible: sections must not overlap, on the curve and on its interpolation."""
+"""Check that the body of a beam is possible: sections must not overlap, neither on the curve nor when interpolated."""
 
 from collections.abc import Callable
 
@@ -16,8 +16,8 @@ _SAMPLES = 33  # along an element
 def require_body(grid: Grid, unit: Callable[[str], str]) -> None:
     """Raise InputError if a face of a section of known shape lies at or beyond the centre of curvature.
 
-    The axis and its sections are interpolated between nodes: elements that turn too far are refused as well. unit: see
-    `Model.unit`.
+    The axis and its sections are interpolated between nodes, so elements that turn by too large an angle are refused as
+    well. unit: see `Model.unit`.
     """
     if grid.straight:
         return
@@ -46,7 +46,7 @@ def _require_short(
 ) -> None:
     """Raise InputError if the interpolated body has det J = (r0' + y d') x d <= 0.
 
-    At its axis, and at its faces (2,) or (n, 2) where forces are integrated over the body.
+    This is checked on the axis and, for forces integrated over the body, at its faces (2,) or (n, 2).
     """
     axis = reference_axis(grid, element, xi)
     heights = np.zeros((len(xi), 3))  # of both faces and of the axis
@@ -67,7 +67,7 @@ def _require_short(
 
 
 def _faces(section: CrossSection, grid: Grid) -> tuple[float, float]:
-    """Return lower and upper y [m] of a section, zero if its height is neither known nor integrated over."""
+    """Return lower and upper y [m] of a section, zero if its height is unknown and forces do not integrate over it."""
     if grid.beam.element.forces.fills_body:
         return section.bounds
     parts = section.parts(grid.beam.material) if isinstance(section, HasParts) else ()

@@ -25,13 +25,13 @@ from beamfem.model.reference import (
     scales,
 )
 
-_FEW = 2000  # elements; the classes of more are not kept
-_ALIKE = 1e-9  # of the longest element: lengths that differ by less are those of one class
+_FEW = 2000  # elements; the classes of larger grids are not cached
+_ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
 
 
 @dataclass(frozen=True)
 class Classes:
-    """nc classes; kind (ne,) is the class of an element, the rest as in `kernels.block.Block`."""
+    """Data of nc classes; kind (ne,) is the class of each element, the rest as in `kernels.block.Block`."""
 
     kind: np.ndarray
     slope: np.ndarray
@@ -50,7 +50,7 @@ class Classes:
 def element_classes(grid: Grid) -> Classes:
     """Return the classes of a grid: by length on a straight prismatic beam, otherwise one per element."""
     beam, few = grid.beam, grid.elements <= _FEW
-    # studies make like beams time and again
+    # studies repeatedly make identical beams
     if few and grid.straight and lasting(beam.element, beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
         like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
@@ -60,7 +60,7 @@ def element_classes(grid: Grid) -> Classes:
 
 @dataclass(frozen=True)
 class _Like:
-    """What tells the classes of a straight prismatic beam; grid: one of those that are alike."""
+    """Key that determines the classes of a straight prismatic beam; grid: any grid with this key."""
 
     element: Element
     section: Hashable
@@ -102,9 +102,10 @@ def _classes(grid: Grid) -> Classes:
 def _derivatives(
     element: Element, scale: np.ndarray, jacobian: np.ndarray, jacobian_xi: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty but for the elastic line.
+    """Return dN/ds (nc, nq, nv) at the points of the energy, and d2N/ds2, empty except for the elastic line.
 
-    Of nodal vectors times their scale (nc, nv); jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its derivative.
+    scale (nc, nv): scale of the nodal vectors, included in N; jacobian, jacobian_xi (nc, nq): ds/dxi [m] and its
+    derivative.
     """
     table, curved = _slopes(element)
     scaled, inverse = scale[:, None, :], 1.0 / jacobian[:, :, None]
@@ -116,7 +117,7 @@ def _derivatives(
 
 @lru_cache(maxsize=64)
 def _slopes(element: Element) -> tuple[np.ndarray, np.ndarray]:
-    """Return derivatives by xi (nq, nv) of what carries r0 and d at the points of the energy, and second of r0."""
+    """Return dN/dxi (nq, nv) for r0 and d, and d2N/dxi2 for r0, at the points of the energy."""
     basis, (xi, _) = element.field, element.energy_points()
     table, curved = np.zeros((2, len(xi), len(basis.nodes) * len(basis.vectors)))
     table[:, r_slots(basis)], table[:, d_slots(basis)] = basis.centreline(xi, 1), basis.director(xi, 1)
@@ -138,9 +139,9 @@ def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
-    """Return a key that straight prismatic beams of one element share if their classes are equal.
+    """Return for each grid a key that straight prismatic beams of one element share if their classes are equal.
 
-    Lengths are equal within a relative 1e-12. A beam unlike any other has its number as key.
+    Lengths are compared to a relative 1e-12. Any other beam has its number as key.
     """
     found: list[Hashable] = list(range(len(grids)))
     if len(grids) == 1:
@@ -161,7 +162,7 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass (nc, nv, nv), its sum against a uniform acceleration (nc, nv) and the loaded length (nc, nv)."""
+    """Return mass (nc, nv, nv), load of a uniform acceleration (nc, nv) and load of a uniform force (nc, nv)."""
     tables = _tables(grid.beam.element)
     _, _, inertia = inertia_points(grid, chosen)
     _, _, weight = length_points(grid, chosen)
@@ -178,7 +179,7 @@ def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndar
 class _Tables(NamedTuple):
     """Shape functions of r0 and d at the points that integrate mass (points, nv), and their products (points, nv nv).
 
-    rd: of one with the other, and the transpose.
+    rd: product of those of r0 and d plus its transpose.
     """
 
     r: np.ndarray

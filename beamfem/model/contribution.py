@@ -25,11 +25,11 @@ class At:
     a : array, (m, 3)
         Accelerations [m/s^2] and angular accelerations [rad/s^2] of its points, zero in statics.
     own : array, (k,)
-        Its own unknowns.
+        Multipliers.
     memory : array, (h,)
-        Its history variables of the last step.
+        History variables after the last accepted step.
     reference : array, (m, 3)
-        q in the stress-free model.
+        q in the stress-free reference.
     time : float, [s]
         Time, in statics the load factor.
     gravity : array, [m/s^2], (2,)
@@ -60,11 +60,11 @@ class Contribution(Protocol):
     Attributes
     ----------
     points : tuple of Point, (m,)
-        Points of beams that it acts on.
+        Points of beams that the forces act on.
     unknowns : int
-        Number k of its multipliers.
+        Number k of multipliers.
     conservative : bool
-        Whether its force at rest has a potential, so that its stiffness is symmetric.
+        Whether the force at rest has a potential, so that the stiffness is symmetric.
     """
 
     @property
@@ -85,14 +85,14 @@ class Contribution(Protocol):
     def force(self, at: At) -> np.ndarray:
         """Return the resisting forces at the points, then the conditions.
 
-        In equilibrium these and all other forces add up to zero: a spring that pulls a point back to the left has a
-        positive fx. A condition is a function of q that is zero when it is satisfied; its multiplier times its
-        derivative is part of the forces.
+        They have the sign of internal forces: a spring that pulls a point back to the left has a positive fx. A
+        condition is a function of q that is zero when it is satisfied; its multiplier times its derivative by q is part
+        of the forces.
 
         Parameters
         ----------
         at : At
-            State to evaluate it at.
+            State of evaluation.
 
         Returns
         -------
@@ -107,7 +107,7 @@ class Contribution(Protocol):
         Parameters
         ----------
         at : At
-            State to evaluate it at.
+            State of evaluation.
 
         Returns
         -------
@@ -121,7 +121,7 @@ class Contribution(Protocol):
 class Remembering(Contribution, Protocol):
     """A contribution with history, such as friction.
 
-    Its history variables are part of the state: a rejected step restores them, and a result has them row by row.
+    History variables are part of the state: a rejected step restores them, and a result has them row by row.
 
     Attributes
     ----------

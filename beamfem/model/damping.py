@@ -9,7 +9,7 @@ from beamfem.section.protocol import CrossSection
 
 
 def retardation_time(section: CrossSection, material: Material | None) -> float:
-    """Return the retardation time [s] of a section and the material of its beam, which layered sections do not need.
+    """Return the retardation time [s] of a section; material: that of its beam, which layered sections do not need.
 
     Raises InputError if layers have different ones.
     """

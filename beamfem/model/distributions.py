@@ -1,4 +1,4 @@
-"""Stress over the sections at points of a beam, for each section and its layers at the point."""
+"""Stress over the sections, and their layers, at points of a beam."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,32 +10,33 @@ from beamfem.model.reference import curvature, sections_at
 from beamfem.section.distribution import Distribution, distribution, layers_of
 from beamfem.section.protocol import CrossSection
 
-# points (n,), those of the groups follow each other, and how the section distributes forces at them
+# indices of points (n,), consecutive over all groups, and the distribution of forces at them
 _Group = tuple[np.ndarray, Distribution]
 
 
 @dataclass(frozen=True, eq=False)
 class Distributions:
-    """How the sections at points (n,) of a beam distribute forces over their height.
+    """Distribution of section forces over the height, at points (n,) of a beam.
 
-    layers: lower and upper y (n, layers, 2) [m], from the bottom up; where a section has fewer layers than others, the
-    missing ones have no thickness and lie on its upper face. One for all points of a prismatic beam.
+    groups: one for all points of a prismatic beam, otherwise one per point; layers: lower and upper y (n, layers, 2)
+    [m], from the bottom up. If a section has fewer layers than others, the missing ones have no thickness and lie on
+    its upper face.
     """
 
     groups: tuple[_Group, ...]
     layers: np.ndarray
 
     def normal_stress(self, layer: int | None, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
-        """Return the stress along the beam [Pa] (steps, n, heights) under N [N] and M [N m] (steps, n).
+        """Return the stress along the beam [Pa] (steps, n, heights) due to N [N] and M [N m] (steps, n).
 
-        y (n, heights) [m]; layer: where there are several, the one that y belongs to; None: the one around the axis.
+        y (n, heights) [m]; layer: the layer that y belongs to, None for the one at the axis.
         """
         return self._stress(
             layer, y, lambda own, at, y, here: own.normal_stress(at, y, normal[:, here, None], moment[:, here, None])
         )
 
     def shear_stress(self, layer: int | None, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """Return the shear stress [Pa] (steps, n, heights) under V (steps, n) [N]; y and layer as before."""
+        """Return the shear stress [Pa] (steps, n, heights) due to V (steps, n) [N]; y, layer: see `normal_stress`."""
         return self._stress(layer, y, lambda own, at, y, here: own.shear_stress(at, y, shear[:, here, None]))
 
     def _stress(self, layer: int | None, y: np.ndarray, of: Callable[..., np.ndarray]) -> np.ndarray:
@@ -55,7 +56,7 @@ class Distributions:
 
 
 def distributions(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Distributions:
-    """Return how the sections at points (element, xi) of a beam distribute forces over their height."""
+    """Return the distribution of section forces over the height at points (element, xi) of a beam."""
     bend = curvature(grid, element, xi)[:, None]
     material = grid.beam.material
     groups: list[_Group]

@@ -15,10 +15,10 @@ _THICKNESS = 3  # column of the thickness stretch
 
 
 def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray, np.ndarray]:
-    """Return parts (m, ne, nq, ns) and (m, m, ne, nq, ns) of the measures that m loads on a beam impose on elements.
+    """Return first (m, ne, nq, ns) and second (m, m, ne, nq, ns) order parts of the measures imposed by m loads.
 
-    The measures for factors f are the sum of f_i of the first and f_i f_j of the second, exactly: strain measures are
-    linear in the free strains or, of the continuum, quadratic.
+    For factors f the measures are exactly the sum of f_i times the first and f_i f_j times the second part, because
+    strain measures are at most quadratic in the free strains.
     """
     own = grid.beam.element
     element, xi, _ = energy_points(grid)

@@ -1,4 +1,4 @@
-"""Joined nodes: gaps left by rounding are closed in the reference without stress."""
+"""Joined nodes: gaps due to rounding are closed in the stress-free reference."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,9 +12,9 @@ _ROUND_OFF = 16 * np.finfo(float).eps
 
 
 def close_gaps(grids: Sequence[Grid], moving: np.ndarray) -> list[Grid]:
-    """Return the grids with nodes that share a position moved to the place of the first of them.
+    """Return the grids with joined nodes moved to the position of the first of them.
 
-    moving (n, 4): pairs (grid, node, grid, node). Otherwise the solve would stretch the element at a gap.
+    moving (n, 4): pairs (grid, node, grid, node). Otherwise a solve would strain the element at a gap.
     """
     if not len(moving):
         return list(grids)

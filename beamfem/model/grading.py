@@ -7,7 +7,7 @@ from beamfem.keywords import keywords_checked
 from beamfem.memory import SHARE, in_gib, installed_memory
 from beamfem.validation import count, positive
 
-_ELEMENT = 64  # bytes of an element: its fraction as a float in a tuple, and in arrays on the way
+_ELEMENT = 64  # bytes per element: its fraction as a float in a tuple, and in intermediate arrays
 
 
 @keywords_checked

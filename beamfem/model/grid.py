@@ -11,13 +11,13 @@ from skfem import MeshLine
 from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
 
-_INSIDE = 1e-8  # of the length: how far inside an element its section is taken where it ends at a jump
-_MOVED = 0.005  # of the elements on both sides of their common end: how far that is moved
+_INSIDE = 1e-8  # of the length: distance from an element end at a jump at which the section is evaluated
+_MOVED = 0.005  # of the two elements at an end: largest distance by which the end is moved
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Elements and nodes of a beam; a corner of the curve has two nodes at the same place.
+    """Elements and nodes of a beam; a corner of the curve has two coincident nodes.
 
     vertices: arc lengths of element ends (ne + 1,) [m]; parameter: mesh coordinates there (ne + 1,), arc lengths or
     knots of a spline; rate: mesh length [m] per unit of the parameter; node: nodes of each element (ne, nn); arc
@@ -108,7 +108,7 @@ class Grid:
         return np.clip(arc, (self.vertices + inside)[element], (self.vertices - inside)[element + 1])
 
     def _along(self, arc_length: float) -> float:
-        """Mesh coordinate at an arc length [m]."""
+        """Return the mesh coordinate at an arc length [m]."""
         if self.beam.elements == "knots":
             assert isinstance(self.beam.curve, BSpline)
             return float(self.beam.curve.parameter(np.array([arc_length]))[0])
@@ -126,7 +126,7 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     last = len(inner) - 1
     elements = len(vertices) - 1
     at_corner = np.abs(vertices[1:-1, None] - corners).min(axis=1, initial=np.inf) < 1e-9 * length
-    # a corner parts the nodes of the elements on its sides
+    # at a corner, the adjacent elements have separate nodes
     first = np.arange(elements) * last + np.concatenate([[0], np.cumsum(at_corner)])
     node = first[:, None] + np.arange(last + 1)
     arc = np.empty(node[-1, -1] + 1)
@@ -137,13 +137,13 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     nudge = 1e-10 * length
     seen_from[node[parted, -1]] -= nudge
     seen_from[node[parted + 1, 0]] += nudge
-    # a user's curve may work in what it is given
+    # a user's curve may modify its argument
     position, tangent = beam.curve.position(arc.copy()), beam.curve.tangent(seen_from)
     return Grid(beam, vertices, vertices, 1.0, node, arc, position, tangent, np.ones(len(arc)))
 
 
 def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
-    """Return the grid whose cubic elements are the spans of a cubic spline, and parts of them at the fractions."""
+    """Return the grid whose cubic elements are the spans of a cubic spline, divided at the fractions."""
     spline = beam.curve
     assert isinstance(spline, BSpline)
     u = spline.breaks
@@ -162,10 +162,10 @@ def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
 
 
 def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
-    """Return the fractions at which elements end: those requested, and one more for each of `fractions` in between.
+    """Return the fractions at which elements end: those of the beam, and additional ends at `fractions`.
 
-    A requested end very close to one of them is moved there instead: the element between the two would be too short for
-    accurate strains.
+    An end of the beam's elements that is very close to one of `fractions` is moved there instead, because the element
+    in between would be too short for accurate strains.
     """
     asked = beam.elements
     assert not isinstance(asked, str)

@@ -1,4 +1,4 @@
-"""The grids of all beams of a model; straight beams with equal divisions are meshed at once."""
+"""The grids of all beams of a model; straight beams with equal divisions are meshed together."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from beamfem.element.fields import Field
 from beamfem.model.beam import Beam
 from beamfem.model.grid import Grid, make_grid
 
-_FEW = 2000  # elements; the divisions of longer lines are not kept
+_FEW = 2000  # elements; the divisions of longer lines are not cached
 
 
 def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> list[Grid]:
@@ -37,7 +37,7 @@ def _at_ends(fractions: Sequence[float], elements: int) -> bool:
 def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[Grid]:
     """Return the grids of straight beams with the same number of equal elements of one field."""
     lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
-    nodes = np.asarray(field.nodes, dtype=float)  # those of a user's field may be of any kind
+    nodes = np.asarray(field.nodes, dtype=float)  # a user's field may return any sequence
     if len(lines) > 1 or elements > _FEW:
         found = _divided(lines, elements, nodes)
     else:
@@ -61,7 +61,7 @@ class _Divided(NamedTuple):
 
 
 def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divided:
-    """Return straight lines divided into equal elements with nodes (nn,) at these places of [0, 1]."""
+    """Return straight lines divided into equal elements with nodes (nn,) at these xi in [0, 1]."""
     length = np.array([line.length for line in lines])[:, None]
     start, end = (np.array([getattr(line, name) for line in lines])[:, None] for name in ("start", "end"))
     last = len(nodes) - 1
@@ -77,7 +77,7 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     return _Divided(vertices, node, arc, position, tangent, np.ones(arc.shape[1]))
 
 
-@lru_cache(maxsize=64)  # studies divide a line in the same way time and again
+@lru_cache(maxsize=64)  # studies repeatedly divide a line in the same way
 def _divided_few(line: Line, elements: int, nodes: bytes) -> _Divided:
     found = _divided([line], elements, np.frombuffer(nodes))
     for values in found:

@@ -1,4 +1,4 @@
-"""Imposed strains of a beam: actuation and heat, as strains of its stress-free state."""
+"""Imposed strains of a beam: actuation and temperature, as strains of its stress-free state."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,22 +17,22 @@ Along = float | Callable[[float], float]
 
 @dataclass(frozen=True)
 class Actuation(ImposedStrain):
-    """Imposed curvature, stretch and shear of the stress-free state, as by muscles, growth or swelling.
+    """Imposed curvature, stretch and shear of the stress-free state, such as by muscles, growth or swelling.
 
     Section forces follow from the difference, s = C (eps - eps0 - amplitude * actuation).
 
     Parameters
     ----------
     beam : Beam
-        The beam that is actuated.
+        The actuated beam.
     curvature : float or callable, [1/m], default 0
-        Imposed curvature; a positive one turns the beam to the left from start to end.
+        Imposed curvature; if positive, the beam turns to the left from start to end.
     stretch : float or callable, [-], default 0
         Imposed stretch.
     shear : float or callable, [-], default 0
         Imposed shear.
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the actuation grows with the load factor in statics, if it has no amplitude.
 
@@ -77,9 +77,9 @@ class Actuation(ImposedStrain):
 class Temperature(ImposedStrain):
     """Change of temperature of a beam, and its gradient over the section.
 
-    An unconstrained section of one material stretches by alpha * change and bends by -alpha * gradient, with the
-    `thermal_expansion` alpha of its material; layers balance each other. The thickness does not expand at nodes that
-    keep it constant.
+    An unconstrained section of one material has the stretch alpha * change and the curvature -alpha * gradient, with
+    the `thermal_expansion` alpha of the material; different layers are in equilibrium with each other. The thickness
+    does not expand at nodes that keep it constant.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Temperature(ImposedStrain):
     gradient : float or callable, [K/m], default 0
         Gradient over the section, towards +y.
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the change grows with the load factor in statics, if it has no amplitude.
 
@@ -154,12 +154,12 @@ class Temperature(ImposedStrain):
 
 
 def _places(beam: Beam) -> np.ndarray:
-    """Arc lengths (3,) [m] at which values that depend on the place are checked."""
+    """Return the arc lengths (3,) [m] at which values that vary along the beam are checked."""
     return np.array([0.0, 0.5, 1.0]) * beam.curve.length
 
 
 def require_followed(load: ImposedStrain) -> None:
-    """Raise InputError if the nodes cannot take the imposed strains."""
+    """Raise InputError if the nodal coordinates cannot represent the imposed strains."""
     coordinates, name = load.beam.element.coordinates, load.beam.element.name
     if not isinstance(coordinates, ShearFree):
         return

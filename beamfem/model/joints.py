@@ -36,7 +36,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Rigid(Joint):
-    """Join two points rigidly: displacement and rotation are the same, at whatever angle the beams meet.
+    """Join two points rigidly: displacement and rotation are the same, at any angle between the beams.
 
     Parameters
     ----------

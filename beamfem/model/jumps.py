@@ -1,4 +1,4 @@
-"""Where a function of the arc length jumps: declared by it, or found by bisection."""
+"""Jumps of a function of the arc length: declared by the function, or found by bisection."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,17 +7,18 @@ import numpy as np
 
 from beamfem.model.time_functions import kinks_of
 
-_STANDS_OUT = 1.25  # change of a sample against the smaller one beside it, beyond which it is looked into
-_SMALLEST = 1e-9  # change that counts as a jump, of the largest value
-_CLOSE = 1e-12  # of the length, to which a jump is found
+_STANDS_OUT = 1.25  # ratio of the change in an interval to the smaller one beside it, above which it is bisected
+_SMALLEST = 1e-9  # smallest change that counts as a jump, relative to the largest value
+_CLOSE = 1e-12  # of the length: accuracy of a jump
 
 
 def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: float, samples: int) -> tuple[float, ...]:
     """Return the arc lengths (nj,) [m] within (0, length) that a function declares as `kinks`, or at which it jumps.
 
-    values: the relevant numbers (k,) of the function's result at an arc length. Declared kinks are taken as they are.
-    Otherwise each of `samples` equal parts whose ends differ more than those of its neighbours is bisected: a change
-    that does not decrease with the part is a jump. A change that reverses within a part is not seen.
+    values: the relevant numbers (k,) of the function's result at an arc length. Declared kinks are not checked.
+    Otherwise each of `samples` equal intervals whose end values differ by more than those of its neighbours is
+    bisected: a change that does not decrease with the interval is a jump. A change that reverses within an interval is
+    not detected.
     """
     if hasattr(function, "kinks"):
         near = _CLOSE * length
@@ -39,13 +40,13 @@ def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: flo
 
 
 class _Part:
-    """Bisects a function between two arc lengths [m] down to a distance `close` [m]."""
+    """Bisection of a function between two arc lengths [m] down to a distance `close` [m]."""
 
     def __init__(self, values: Callable[[float], np.ndarray], close: float) -> None:
         self.values, self.close = values, close
 
     def jumps(self, low: float, at_low: np.ndarray, high: float, at_high: np.ndarray) -> list[float]:
-        """Return every jump between two arc lengths whose values are known, in order."""
+        """Return all jumps between two arc lengths with known values, in ascending order."""
         begin, end = (low, at_low), (high, at_high)
         kept = change = _size(at_low, at_high)
         halvings = 0
@@ -60,7 +61,7 @@ class _Part:
             if change <= _SMALLEST:
                 return []
             if halvings % 4 == 0:
-                # a smooth function has lost 15 of 16 parts by now
+                # the change of a smooth function has decreased to about 1/16 since the last check
                 if change < kept / 8.0:
                     return []
                 kept = change

@@ -1,4 +1,4 @@
-"""Conditions for sections with a nonlinear law."""
+"""Check that a beam can have a section law."""
 
 from typing import TYPE_CHECKING
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def require_law_fits(beam: "Beam") -> None:
     """Raise InputError if the section has a law but the element assumes a linear one, or if the law is inconsistent.
 
-    A law is a function of all strains at one point. Elements that evaluate some strains at other points, or assume them
-    there, are defined for quadratic energies only.
+    A law is a function of all strains at one point. Elements that evaluate some strains at other points, or replace
+    them by assumed strains, are defined for quadratic energies only.
     """
     name = type(beam.section).__name__
     if not beam.prismatic:
@@ -36,7 +36,7 @@ def require_law_fits(beam: "Beam") -> None:
             f"CRBF(order=2), but the element {beam.element.name} has {type(beam.element.forces).__name__}"
         )
     whole = np.ones((1, len(beam.element.energy_points()[0]), 4, 4))
-    whole[..., 3, :] = whole[..., :, 3] = 0.0  # thickness, which no law knows
+    whole[..., 3, :] = whole[..., :, 3] = 0.0  # laws have no thickness stretch
     counted = beam.element.energy_stiffness(whole, np.ones(whole.shape[:2]))
     if not np.array_equal(counted, whole):
         raise InputError(

@@ -1,4 +1,4 @@
-"""The kinds of loads, which enter the equations in different ways; every load derives from one of them."""
+"""The base classes of loads, which enter the equations in different ways."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -20,7 +20,7 @@ _ARROWS = 11  # along a beam
 
 
 class Load(ABC):
-    """A load times a factor: amplitude(time), or the load factor if `scale` is True, or 1.
+    """A load with a factor: amplitude(time), or else, in statics, the load factor if `scale` is True, or else 1.
 
     Loads are frozen dataclasses that derive from `PointLoad`, `LineLoad`, `BodyLoad` or `ImposedStrain`.
     """
@@ -121,8 +121,8 @@ class PointLoad(Load):
 class LineLoad(AlongBeam, Load):
     """Forces per length along a beam.
 
-    The axes of the forces are "plane": x and y, per reference length; "section": x and y of the reference, rotated with
-    the section, per reference length; or "axis": along r0' and across it, to the left, per deformed length.
+    The axes of the forces are "plane": x and y, per reference length; "section": x and y, rotated with the section from
+    the reference, per reference length; or "axis": along r0' and normal to it, to the left, per deformed length.
 
     Attributes
     ----------
@@ -304,9 +304,9 @@ class ImposedStrain(AlongBeam, Load):
 
 
 def factor(load: Load, time: float, static: bool) -> float:
-    """Return the multiplier of a load at a time, in statics at a load factor.
+    """Return the factor of a load at a time, in statics at a load factor.
 
-    amplitude(time) if there is one; else the load factor in statics for loads with `scale`, else 1.
+    It is amplitude(time) if there is one, or else, in statics, the load factor for loads with `scale`, or else 1.
     """
     if load.amplitude is not None:
         return function_value(f"amplitude of {type(load).__name__}", load.amplitude, time)

@@ -1,4 +1,4 @@
-"""Loads."""
+"""The loads of the package: gravity, loads along beams, and loads at points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Gravity(BodyLoad):
     vector : (float, float), [m/s^2]
         Acceleration (gx, gy).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether gravity grows with the load factor in statics, if it has no amplitude.
 
@@ -44,7 +44,7 @@ class Gravity(BodyLoad):
 
 @dataclass(frozen=True)
 class DistributedLoad(LineLoad):
-    """Force per reference length along the axis of a beam.
+    """Distributed force on a beam, per reference length.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class DistributedLoad(LineLoad):
         Force per length (qx, qy) in the global axes x and y; or a function of the arc length [m] from the start that
         returns it. Elements end at the `kinks` of a function (declared, or jumps that are found).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the load grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False
@@ -132,7 +132,7 @@ class Pressure(LineLoad):
         or a function of the reference arc length [m] that returns it. Elements end at the `kinks` of a function
         (declared, or jumps that are found).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the pressure grows with the load factor in statics, if it has no amplitude.
 
@@ -195,7 +195,7 @@ class PointForce(PointLoad):
     vector : (float, float), [N]
         Force (fx, fy).
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the force grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False
@@ -234,7 +234,7 @@ class PointMoment(PointLoad):
     moment : float, [N m]
         Moment.
     amplitude : callable, optional
-        Factor as a function of time [s], in statics of the load factor.
+        Factor as a function of time [s], or of the load factor in statics.
     scale : bool, default True
         Whether the moment grows with the load factor in statics, if it has no amplitude.
     follower : bool, default False

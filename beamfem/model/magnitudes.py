@@ -1,4 +1,4 @@
-"""Check that double precision covers the quantities that solvers form of a beam."""
+"""Check that the quantities that solvers compute from a beam are in the range of double precision."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -15,14 +15,15 @@ from beamfem.validation import LARGEST, SMALLEST
 if TYPE_CHECKING:
     from beamfem.model.beam import Beam
 
-_SAMPLES = 5  # points of a curve at which its coordinates are looked at
+_SAMPLES = 5  # points of a curve at which its coordinates are checked
 
 
 def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
-    """Raise InputError if the square of a quantity that solvers form of a beam exceeds double precision.
+    """Raise InputError if the square of a quantity that solvers compute from a beam exceeds double precision.
 
-    The quantities are coordinates and the length h of the shortest element [m], E A, k_s G A, E A / h, k_s G A h, E I /
-    h and E I / h^3, the mass of an element and its rotary inertia over h^2, and for bodies the section moments times E.
+    The quantities are coordinates and the length h of the shortest element [m]; E A and k_s G A, also times and over h;
+    E I / h and E I / h^3; the mass of an element and its rotary inertia over h^2; and for bodies, the section moments
+    times E over powers of h.
     """
     found = _formed(beam, section)
     if all(SMALLEST <= value <= LARGEST for value in found):
@@ -36,7 +37,7 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
 
 
 def _formed(beam: "Beam", section: CrossSection) -> list[float]:
-    """Return the quantities as plain numbers, whose products and quotients overflow without an error."""
+    """Return the quantities as Python floats, whose products and quotients overflow without a warning."""
     curve = beam.curve
     length = float(curve.length)
     if type(curve) is Line:

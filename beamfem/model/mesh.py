@@ -16,8 +16,8 @@ class BeamMesh(Grid):
     """Grid of a beam with its numbers in the model.
 
     carried: kinematics and coordinates of the nodes; first_element: first element of the beam in its block; block:
-    number of its block; history (ne, nq, k): numbers of the history variables at its integration points, empty
-    without.
+    number of this block; history (ne, nq, k): numbers of the history variables at the quadrature points, empty without
+    history.
     """
 
     carried: Nodes

@@ -59,12 +59,12 @@ class Model(ModelOutputs):
     loads : sequence, optional
         Loads, such as `PointForce`, `Gravity` or `Temperature`.
     joints : sequence of Joint, optional
-        Joints between beams. Joined points may be apart by 1e-5 of the longer beam: the second is moved to the first
-        without stress.
+        Joints between beams. The distance of joined points may be up to 1e-5 of the longer beam: the second is moved to
+        the first without stress.
     connectors : sequence of Contribution, optional
-        User-defined forces, see `Contribution`.
+        User-defined forces between points, see `Contribution`.
     units : str, default "N, m, s"
-        Units of the numbers, such as "N, mm", any consistent set, for labels of pictures and tables.
+        Consistent units of the numbers, such as "N, mm", for labels of pictures and tables.
 
     Raises
     ------
@@ -205,7 +205,7 @@ class Model(ModelOutputs):
         return tuple(meshes), size, behind
 
     def _joined(self, grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs (grid, node, grid, node) of nodes (n, 4) that turn together, and of those that move together."""
+        """Return pairs (grid, node, grid, node) (n, 4) of nodes with a common rotation, and with a common position."""
         corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
         if not corners and not self.joints:
             return _NO_PAIRS, _NO_PAIRS
@@ -214,13 +214,13 @@ class Model(ModelOutputs):
         return turning, np.concatenate([turning, hinged])
 
     def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
-        """Return grid and node of both points (n, 4) of the joints that keep the angle, or of the others."""
+        """Return grid and node of both points (n, 4) of the joints that keep the angle, or of those that do not."""
         joints = [joint for joint in self.joints if joint.keeps_angle == keeps_angle]
         a, b = [joint.a for joint in joints], [joint.b for joint in joints]
         return np.hstack([self._places(grids, a), self._places(grids, b)])
 
     def _places(self, grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
-        """Return grid and node (n, 2) of points at which there is a node."""
+        """Return grid and node (n, 2) of points at nodes."""
         if not points:
             return np.empty((0, 2), dtype=np.int64)
         numbers = [self._numbers[id(point.beam)] for point in points]
@@ -308,7 +308,7 @@ class Model(ModelOutputs):
 
 
 def _named(kinds: Sequence[type]) -> str:
-    """Return the names of the classes offered of some kinds, as a list in words."""
+    """Return the names of the package's classes of some kinds, as a list in words."""
     derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
         kinds
     ]
@@ -323,7 +323,7 @@ def block_key(beam: Beam) -> tuple[Element, Hashable]:
 
 
 def _history(grid: Grid, first: int) -> np.ndarray:
-    """Return the numbers (ne, nq, k) of the history variables at the integration points of a beam."""
+    """Return the numbers (ne, nq, k) of the history variables at the quadrature points of a beam."""
     law = grid.beam.law
     if law is None or not law.remembers:
         return NO_HISTORY

@@ -1,4 +1,4 @@
-"""What upper rooms offer on a model: its picture and the model with an imperfection."""
+"""Methods of a model that upper rooms implement: its picture and the model with an imperfection."""
 
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -10,15 +10,15 @@ if TYPE_CHECKING:
 
 
 class ModelOutputs:
-    """Methods of a `Model`, which derives from this class, that upper rooms offer."""
+    """Base class of `Model` with the methods that upper rooms implement."""
 
     def with_imperfection(self, modes: Any, size: float, mode: int = 0) -> "Model":
-        """Return the model with its axes displaced by a mode, stress-free in that shape.
+        """Return the model with its axes displaced by a mode and stress-free in the new shape.
 
         Parameters
         ----------
         modes : Buckling, Modes or array
-            Result of `solve_buckling` or `solve_modes`, or a change (n,) of all coordinates.
+            Result of `solve_buckling` or `solve_modes`, or an increment (n,) of all coordinates.
         size : float, [m]
             Largest displacement.
         mode : int, default 0

@@ -1,4 +1,4 @@
-"""Beams as messages and tables call them: by their name, else by their number in the model."""
+"""Names of beams in messages and tables: the given name, or else the number in the model."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def require_different_names(beams: Sequence["Beam"]) -> None:
-    """Raise InputError for a name that two beams have, or that is the number of one without."""
+    """Raise InputError for a name of two beams, or for the number of a beam without a name as the name of another."""
     counted = Counter(beam.name for beam in beams if beam.name is not None)
     for name, number in counted.items():
         if number > 1:
@@ -22,7 +22,7 @@ def require_different_names(beams: Sequence["Beam"]) -> None:
 
 
 def names(beams: Sequence["Beam"]) -> list[str]:
-    """Return the name of every beam, the number of those without one."""
+    """Return the name of every beam, or its number if it has none."""
     return [str(number) if beam.name is None else beam.name for number, beam in enumerate(beams)]
 
 

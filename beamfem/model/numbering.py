@@ -15,12 +15,15 @@ from beamfem.model.grid import Grid
 from beamfem.model.reference import reference_angle
 
 Pairs = Sequence[tuple[int, ...]]
-_FEW = 2000  # nodes; the numbering of larger models is not kept
+_FEW = 2000  # nodes; the numbering of larger models is not cached
 
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of a beam: kinematics (nodes,), coordinates (nodes, npn), -1 for columns without one, frame (nodes, 3)."""
+    """Nodes of a beam: kind (nodes,), coordinates (nodes, npn), -1 where there is none, and frame (nodes, 3).
+
+    frame: cosine and sine of the reference angle, and |r_x|; see `kernels.block.Block`.
+    """
 
     node_kind: np.ndarray
     dof: np.ndarray
@@ -52,9 +55,10 @@ def number_nodes(
 
 @dataclass(frozen=True)
 class NodeKinds:
-    """What the numbering needs of a grid.
+    """Data of a grid that determine its numbering.
 
-    code: of its nodal coordinates; follows_slope: whether its sections turn with r_x; vectors: of a node.
+    code: kind of the nodal coordinates; follows_slope: whether sections rotate with r_x; vectors: names of the nodal
+    vectors; nodes: number of nodes.
     """
 
     code: int
@@ -65,9 +69,9 @@ class NodeKinds:
 
 @dataclass(frozen=True)
 class Numbered:
-    """Nodes of all grids: kinematics (total,), coordinates (total, npn), the node (total,) that each turns with.
+    """Nodes of all grids: kind (total,), coordinates (total, npn), and the node (total,) that each rotates with.
 
-    parts: first and last node of each grid and its number of columns; size: number of coordinates.
+    parts: begin and end of the nodes of each grid, and its number of columns; size: number of coordinates.
     """
 
     node_kind: np.ndarray
@@ -97,7 +101,7 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     grid_of, node_of = np.array(angled, dtype=np.int64).reshape(-1, 2).T
     as_angle[first[grid_of] + node_of] = True
     joined = np.bincount(turns, minlength=total)[turns] > 1
-    # gradients that are joined with gradients only share r_y as a vector; all others share an angle
+    # if all joined nodes have gradients, they share the vector r_y; otherwise they share an angle
     plain = (node_kind == GRADIENTS) & ~follows_slope[owner] & ~as_angle
     all_plain = np.bincount(turns, weights=~plain, minlength=total)[turns] == 0
     angle = as_angle | (joined & ~all_plain)
@@ -126,15 +130,15 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     widest = (np.maximum.reduceat(last, first[:-1]) + 1).tolist()
     parts = tuple((*ends, columns) for ends, columns in zip(pairwise(first.tolist()), widest, strict=True))
     for values in (node_kind, dof, leader_turns):
-        values.setflags(write=False)  # models of the same numbering share them
+        values.setflags(write=False)  # models with the same numbering share them
     return Numbered(node_kind, dof, leader_turns, parts, int(own.sum()))
 
 
-_number_few = lru_cache(maxsize=64)(_number)  # studies make models of the same numbering time and again
+_number_few = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
 
 
 def groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Number of the group (total,) that each node belongs to."""
+    """Return the number of the group (total,) that each node belongs to."""
     if not len(pairs):
         return np.arange(total)
     a, b = first[pairs[:, 0]] + pairs[:, 1], first[pairs[:, 2]] + pairs[:, 3]
@@ -142,7 +146,7 @@ def groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 
 def first_of_group(group: np.ndarray) -> np.ndarray:
-    """First node (total,) of the group of each node."""
+    """Return the first node (total,) of the group of each node."""
     leader = np.full(group.max() + 1, len(group))
     np.minimum.at(leader, group, np.arange(len(group)))
     return leader[group]
@@ -151,7 +155,7 @@ def first_of_group(group: np.ndarray) -> np.ndarray:
 def _ownership(
     kinds: Sequence[NodeKinds], owner: np.ndarray, node_kind: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return which columns a node has (total, width), its last column and how many columns its rotation takes."""
+    """Return the mask of the columns of each node (total, width), its last column, and the number for its rotation."""
     own = np.zeros((len(owner), max(2 * len(kind.vectors) for kind in kinds)), dtype=bool)
     last, turn_size = np.empty(len(owner), dtype=np.int64), np.empty(len(owner), dtype=np.int64)
     has_slope = np.array([len(kind.vectors) == 3 for kind in kinds])[owner]
@@ -168,7 +172,10 @@ def _ownership(
 
 
 def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
-    """Cosine and sine of each node's reference angle, for turned gradients relative to their leader's; and |r_x|."""
+    """Return cosine and sine of the reference angle, and |r_x|, of each node (total, 3).
+
+    For rotated gradients, the angle is relative to that of the node whose r_y they share.
+    """
     frame = np.empty((len(node_kind), 3))
     frame[:, :2] = np.concatenate([grid.tangent for grid in grids])
     frame[:, 2] = np.concatenate([grid.speed for grid in grids])

@@ -1,4 +1,4 @@
-"""Checks of the members of user-defined loads, supports and joints, once, when a model is made of them."""
+"""Checks of user-defined loads, supports and joints when a model is made."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -27,7 +27,7 @@ from beamfem.validation import (
     vector,
 )
 
-_UNIT = 1e-9  # how far from 1 the length of a unit vector may be
+_UNIT = 1e-9  # largest deviation of the length of a unit vector from 1
 
 
 def require_part(part: Load | Support | Joint) -> None:

@@ -1,4 +1,4 @@
-"""The stress-free reference of a beam: its axis, its sections' stiffness and inertia at points of elements."""
+"""The stress-free reference of a beam: axis, section stiffness and inertia at points of elements."""
 
 from functools import lru_cache
 
@@ -14,11 +14,11 @@ from beamfem.model.grid import Grid
 from beamfem.quadrature import gauss
 from beamfem.section.protocol import CrossSection
 
-_SHORT, _INSIDE = 1e-4, 1e-6  # of an element: over which its curve turns, and how far from its ends
+_SHORT, _INSIDE = 1e-4, 1e-6  # of an element: half the interval of a curvature, and its distance from the ends
 
 
 def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
-    """Return the factor (n, nv) of each nodal vector for mesh lengths (n,): the length for r_x."""
+    """Return the scale (n, nv) of each nodal vector for mesh lengths (n,): the length for r_x, else 1."""
     vectors, nodes = element.field.vectors, len(element.field.nodes)
     result = np.ones((len(lengths), nodes * len(vectors)))
     if "r_x" in vectors:
@@ -27,11 +27,11 @@ def scales(element: Element, lengths: np.ndarray) -> np.ndarray:
 
 
 def reference_vectors(grid: Grid, element: np.ndarray) -> np.ndarray:
-    """Return the nodal vectors e (n, nv, 2) of elements (n,), positions from the element's first node."""
+    """Return the nodal vectors e (n, nv, 2) of elements (n,), with positions relative to the element's first node."""
     node = grid.node[element]
     tangent = grid.tangent[node]
     if grid.straight:
-        # exact: differences of positions far away would leave strain behind
+        # exact: differences of positions far from the origin would cause strains
         along = grid.lengths[element][:, None] * grid.beam.element.field.nodes
         position = along[:, :, None] * tangent
     else:
@@ -56,7 +56,7 @@ def jacobians(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarr
 
 
 def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Return the axis (steps, n, 2) that nodal vectors of elements (steps, n, nv, 2) give at points (element, xi)."""
+    """Return the axis (steps, n, 2) at points (element, xi) for nodal vectors of elements (steps, n, nv, 2)."""
     own = grid.beam.element
     field = own.field
     local = vectors * scales(own, grid.lengths[element])[:, :, None]
@@ -83,7 +83,7 @@ def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.nda
 
 
 def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Return the axis (n, 2) of the reference at points (element, xi), positions from the element's first node."""
+    """Return the reference axis (n, 2) at points (element, xi), with positions relative to the element's first node."""
     if grid.straight:
         along = grid.tangent[grid.node[element, 0]]
         none = np.zeros_like(along)
@@ -112,7 +112,7 @@ def energy_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nda
 
 
 def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the stiffness (n, ns, ns) that counts in the energy and the reference's strains (n, ns) at its points."""
+    """Return the stiffness (n, ns, ns) that enters the energy and the reference strains (n, ns), at its points."""
     own = grid.beam.element
     stiffness, reference = stiffness_at(grid, element, xi)
     jacobian = grid.lengths[element] if grid.straight else jacobians(grid, element, xi)[0]
@@ -166,7 +166,7 @@ def sections_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> list[CrossSe
 def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Return the curvature of the curve (n,) [1/m] at points (element, xi), > 0 towards +y.
 
-    It is the turn of the tangent over a short way, which stays inside the element: there may be a corner at its end.
+    It is the rotation of the tangent over a short interval inside the element, since there may be a corner at its end.
     """
     if grid.straight:
         return np.zeros(len(element))
@@ -202,7 +202,7 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
 
 
 def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-    """Return the first, second and third mass moment over y (n, 3) [kg, kg m, kg m^2] of a body's sections."""
+    """Return first, second and third mass moment per length over y (n, 3) [kg, kg m, kg m^2] of a body's sections."""
     beam = grid.beam
 
     def moments(section: CrossSection) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""User-defined parts are recreated from their fields: on other beams, and when a file is loaded."""
+"""Check that user-defined parts can be recreated from their fields: on other beams, or from a file."""
 
 from dataclasses import fields, replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Values of loads along a beam, package or user-defined, as arrays of the shape that the equations need."""
+"""Values of loads along a beam, of the package or user-defined, as arrays with the required shape."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -23,7 +23,7 @@ def free_strain_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
 
 
 def heat_of(load: "ImposedStrain", arc_length: np.ndarray) -> np.ndarray:
-    """Return temperature [K] and gradient [K/m] (n, 2) at arc lengths (n,) [m]. Raises InputError for others."""
+    """Return temperature [K] and gradient [K/m] (n, 2) of a load. Raises InputError for any other result."""
     return _table(load, "heat", load.heat, arc_length, 2)
 
 

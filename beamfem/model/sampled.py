@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.section.protocol import CrossSection
 
-_SAME = 1e-9  # fraction of the length within which an arc length is one that was saved
+_SAME = 1e-9  # fraction of the length within which an arc length counts as a saved one
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Sampled:
 class SampledAlong:
     """A load along a beam, saved as values (n,) or (n, 2) at increasing arc lengths at (n,) [m], linear between them.
 
-    kinks (nj,): arc lengths [m] at which elements end because of it.
+    kinks (nj,): arc lengths [m] of kinks, at which elements end.
     """
 
     at: tuple[float, ...]
@@ -50,7 +50,7 @@ class SampledAlong:
     kinks: tuple[float, ...] = ()
 
     def __call__(self, arc_length: float) -> Any:
-        """Return the value at an arc length [m], that of the nearer end beyond them."""
+        """Return the value at an arc length [m]; beyond the saved range, that of the nearer end."""
         columns = np.array(self.values).reshape(len(self.at), -1).T
         found = tuple(float(np.interp(arc_length, self.at, column)) for column in columns)
         return found if len(found) > 1 else found[0]
@@ -60,7 +60,7 @@ class SampledAlong:
 class SampledSection:
     """A section that varies, saved as its values (n,) at increasing arc lengths at (n,) [m], linear between them.
 
-    kinks (nj,): arc lengths [m] at which it jumps.
+    kinks (nj,): arc lengths [m] of its jumps and kinks.
     """
 
     at: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Shapes of loads, supports and joints, drawn by pictures and files in their own way."""
+"""Shapes of loads, supports and joints, which pictures and files draw in different ways."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -70,7 +70,7 @@ class Strains:
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Directions prescribed at a point, zero or not, named as in `supports.Prescribed`; normal (2,): of a roller."""
+    """Prescribed directions at a point, named as in `supports.Prescribed`; normal (2,): that of a roller."""
 
     point: Point
     prescribed: Mapping[str, float | Callable[[float], float]]

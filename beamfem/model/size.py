@@ -7,7 +7,7 @@ from beamfem.errors import InputError
 from beamfem.memory import SHARE, in_gib, installed_memory
 from beamfem.model.beam import Beam
 
-_COORDINATE = 300  # bytes of a coordinate; 310 to 370 were measured in statics
+_COORDINATE = 300  # bytes per coordinate; 310 to 370 were measured in statics
 
 
 def require_room(beams: Sequence[Beam]) -> None:

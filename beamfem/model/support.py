@@ -1,4 +1,4 @@
-"""The kinds of supports: at a point or along a beam; every support derives from one of them."""
+"""The base classes of supports: at a point or along a beam."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -18,7 +18,7 @@ class Support(ABC):
     @property
     @abstractmethod
     def place(self) -> Beam | Point:
-        """The beam or point that is supported."""
+        """The supported beam or point."""
 
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:

@@ -1,4 +1,4 @@
-"""Supports."""
+"""The supports of the package."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class Clamp(PointSupport):
     Parameters
     ----------
     point : Point
-        The point that is clamped.
+        The clamped point.
 
     Examples
     --------
@@ -42,7 +42,7 @@ class Pin(PointSupport):
     Parameters
     ----------
     point : Point
-        The point that is pinned.
+        The pinned point.
 
     Examples
     --------
@@ -104,13 +104,13 @@ class Roller(PointSupport):
 class Prescribed(PointSupport):
     """Prescribe displacement and rotation at a point, from the reference.
 
-    A number grows with the load factor in statics and is constant in dynamics; a function depends on time [s], in
-    statics on the load factor. None leaves a direction free.
+    A number is multiplied by the load factor in statics and constant in dynamics; a function depends on time [s], or on
+    the load factor in statics. None leaves a direction free.
 
     Parameters
     ----------
     point : Point
-        The point that is moved.
+        The moved point.
     ux, uy : float or callable, [m], optional
         Displacement.
     rotation : float or callable, [rad], optional

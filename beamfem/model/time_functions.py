@@ -16,7 +16,7 @@ from beamfem.validation import function_of_one
 
 @dataclass(frozen=True)
 class Interpolated:
-    """Values that are linear between given times or arc lengths, and constant outside.
+    """Linear interpolation between given times or arc lengths, constant outside.
 
     Parameters
     ----------
@@ -61,10 +61,10 @@ class Interpolated:
 
 @dataclass(frozen=True)
 class Piecewise:
-    """A function that is smooth between kinks, at which it may bend or jump.
+    """A function that is smooth between kinks, at which its slope or value may jump.
 
-    It may also depend on the arc length, for a section or a load along a beam: elements end at the kinks. Any function
-    with an attribute `kinks` works in the same way.
+    For a section or a load along a beam it depends on the arc length, and elements end at the kinks. Any function with
+    an attribute `kinks` works in the same way.
 
     Parameters
     ----------

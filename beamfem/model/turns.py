@@ -1,4 +1,4 @@
-"""Beams without a coordinate that counts full turns: gradients determine a rotation up to full turns only."""
+"""Beams without an angle as a coordinate: gradients determine a rotation only up to full turns."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from beamfem.model.model import Model
 
 
 def uncounted(model: Model) -> list[BeamMesh]:
-    """Return the meshes of the beams (m,) without any node that has its rotation as a coordinate."""
+    """Return the meshes (m,) of the beams without a node whose rotation is a coordinate."""
     known: dict[str, list[BeamMesh]] = model.__dict__
     if "_uncounted" not in known:
         known["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
@@ -22,7 +22,7 @@ def _has_gradients_only(mesh: BeamMesh) -> bool:
 
 
 def turning_pairs(model: Model) -> np.ndarray:
-    """Return the coordinates x and y (m, 2) of the vector that gives the rotation of each at its start."""
+    """Return the coordinates x and y (m, 2) of the vector that determines the rotation at the start of each of them."""
     pairs = []
     for mesh in uncounted(model):
         vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"

@@ -1,1 +1,1 @@
-"""The physics of a beam, each equation written once."""
+"""The physics of a beam, with each equation written once."""

@@ -1,7 +1,7 @@
-"""Write the compiled passes of strain measures and node kinematics from their definitions.
+"""Generate the compiled passes of strain measures and node kinematics from their definitions.
 
-Run as python -m beamfem.physics.generate: sympy differentiates, and what it finds goes to `beamfem/kernels/generated`,
-is committed, and compared by a test.
+Run as python -m beamfem.physics.generate: sympy derives the expressions, and the modules are written to
+`beamfem/kernels/generated`. They are committed, and a test compares them with the definitions.
 """
 
 import subprocess
@@ -21,12 +21,12 @@ from beamfem.physics.measures import MEASURES, Measure
 
 FOLDER = Path(__file__).parents[1] / "kernels" / "generated"
 _AXIS = ("rx", "ry", "dx", "dy", "ex", "ey")
-# blocks rr, rd, re, dd, de, ee of the second derivative by q, the symmetric ones by their upper triangle
+# blocks rr, rd, re, dd, de, ee of the second derivative by q; of symmetric blocks, only the upper triangle
 _ORDER = [(i, j) for a in (0, 2, 4) for b in range(a, 6, 2) for i in (a, a + 1) for j in (b, b + 1) if i <= j or a != b]
 
 
 class _Printer(PythonCodePrinter):
-    """Powers as products and square roots, so that the compiler makes vectors of them."""
+    """Print powers as products and square roots, which the compiler can vectorise."""
 
     def _print_Pow(self, power: Any, **unused: Any) -> str:
         base, exponent = power.as_base_exp()
@@ -50,7 +50,7 @@ class _Printer(PythonCodePrinter):
 
 
 def measure_source(measure: Measure) -> str:
-    """Return the module of a strain measure: strains, forces, rates and the second derivative of the energy."""
+    """Return the module of a strain measure as source: strains, forces, rates, second derivative of the energy."""
     q = sympy.symbols(_AXIS, real=True)
     eps = [sympy.sympify(value) for value in measure(*q, sympy.sqrt)]
     count = len(eps)
@@ -82,7 +82,7 @@ def measure_source(measure: Measure) -> str:
 
 
 def _second(q: Sequence[Any], eps: Sequence[Any], s: Sequence[Any], slopes: Any, rows: dict[str, int]) -> str:
-    """Write grad^T C grad + sum s d2 eps by way of the slopes and C grad, so that sparse products stay sparse."""
+    """Return the pass for grad^T C grad + sum s d2 eps; with grad and C grad as steps, sparse products stay sparse."""
     count = len(eps)
     pairs = list(combinations_with_replacement(range(count), 2))
     stiffness = {pair: sympy.Symbol(f"c{pair[0]}{pair[1]}") for pair in pairs}
@@ -110,10 +110,10 @@ def _second(q: Sequence[Any], eps: Sequence[Any], s: Sequence[Any], slopes: Any,
 
 
 def kinematics_source(kind: Kinematics) -> str:
-    """Return the module of a kind of node.
+    """Return the source of the module of a kind of node.
 
-    place: w, w'' and B from u, u', u''; convect: what changes w'' with u and u' beyond B, times ck and cv; curve: the
-    derivative of B^T f by u.
+    place: w, w'' and B from u, u', u''; convect: ck times the derivative of w'' by u plus cv times that by u'; curve:
+    the derivative of B^T f by u.
     """
     size = len(kind.coordinates)
     u, v, a = (sympy.symbols([f"{letter}_{name}" for name in kind.coordinates], real=True) for letter in "uva")
@@ -198,7 +198,7 @@ def _module(title: str, functions: Sequence[str]) -> str:
 
 
 def sources() -> dict[str, str]:
-    """Return all generated modules, in the format of the project, by their file name."""
+    """Return the formatted source of all generated modules by file name."""
     measures = {f"{measure.__name__}.py": measure_source(measure) for measure in MEASURES}
     found = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
     return {name: _formatted(source) for name, source in found.items()}

@@ -1,10 +1,10 @@
-"""Node kinematics, each kind written once: the vectors of a node that its coordinates turn.
+"""Node kinematics, with each kind written once: the nodal vectors that rotate with an angle of the node.
 
-A kind of node carries its last nodal vectors w (r_x and r_y, or r_y alone) by coordinates u: w = w(u). Velocities are
-w' = B u' with B = dw/du, accelerations w'' = B u'' + B' u'; all of them are derived from w by `generate`. What a node
-carries besides are components of nodal vectors themselves.
+The last nodal vectors w of a node (r_x and r_y, or r_y alone) are functions of coordinates u: w = w(u). Velocities are
+w' = B u' with B = dw/du, accelerations w'' = B u'' + B' u'; `generate` derives them from w. The other coordinates of a
+node are components of nodal vectors.
 
-Angles are measured from the reference: (c, s) = (cos, sin) of the angle of the section, whose normal points along them.
+Angles are coordinates relative to the reference; (c, s) is the unit normal of the section in the current state.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ Number = Any  # a float, an array or a symbol
 
 
 class Kinematics(NamedTuple):
-    """The vectors of a node: names of the coordinates u, the angle last, and `size` components w(u, c, s, |r_x|)."""
+    """A kind of node: names of the coordinates u, with the angle last, and `size` components w(u, c, s, |r_x|)."""
 
     name: str
     coordinates: tuple[str, ...]
@@ -23,17 +23,17 @@ class Kinematics(NamedTuple):
 
 
 def _rotation(u: tuple[Number, ...], c: Number, s: Number, length: Number) -> tuple[Number, ...]:
-    """r_y = (-sin t, cos t); paper, eqs. (5) to (7)."""
+    """Return r_y = (-sin t, cos t); paper, eqs. (5) to (7)."""
     return -s, c
 
 
 def _stretch(u: tuple[Number, ...], c: Number, s: Number, length: Number) -> tuple[Number, ...]:
-    """r_x = l (cos t, sin t), r_y = (-sin t, cos t), l a coordinate; paper, section 1.5."""
+    """Return r_x = l (cos t, sin t) and r_y = (-sin t, cos t) with the coordinate l; paper, section 1.5."""
     return u[0] * c, u[0] * s, -s, c
 
 
 def _shear_rigid(u: tuple[Number, ...], c: Number, s: Number, length: Number) -> tuple[Number, ...]:
-    """The same with the length of r_x as in the reference; paper, section 3.5."""
+    """Return r_x = l (cos t, sin t) and r_y = (-sin t, cos t) with l as in the reference; paper, section 3.5."""
     return length * c, length * s, -s, c
 
 

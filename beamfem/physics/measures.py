@@ -1,8 +1,8 @@
-"""Strain measures of a beam, each written once: whatever else the package needs of one is derived from here.
+"""Strain measures of a beam, with each written once: everything else about a measure is derived from its definition.
 
 A measure is a function of r = r0' (derivative of the axis by the reference arc length), d (director) and a third
-vector: e = d', or b = r0'' where the curvature comes from the axis. It takes components and a square root, so that it
-serves symbols (`generate`), arrays of real or complex numbers, and readable forms alike.
+vector: e = d', or b = r0'' if the curvature comes from the axis. Its arguments are components and a square root
+function, so that it works for symbols (`generate`), for arrays of real or complex numbers, and in scikit-fem forms.
 """
 
 from collections.abc import Callable
@@ -40,7 +40,7 @@ def structural(rx: Number, ry: Number, dx: Number, dy: Number, ex: Number, ey: N
 
 
 def elastic_line(rx: Number, ry: Number, dx: Number, dy: Number, bx: Number, by: Number, sqrt: Any) -> tuple:
-    """Return (|r'| - 1, (r' x r'') / |r'|^2, r'.d, (d.d - 1) / 2), the curvature by r''; paper, section 3.4."""
+    """Return (|r'| - 1, (r' x r'') / |r'|^2, r'.d, (d.d - 1) / 2), with the curvature from r''; paper, section 3.4."""
     square = rx * rx + ry * ry
     return sqrt(square) - 1, (rx * by - ry * bx) / square, rx * dx + ry * dy, (dx * dx + dy * dy - 1) / 2
 
@@ -49,5 +49,5 @@ MEASURES: tuple[Measure, ...] = (green_lagrange, structural, elastic_line)
 
 
 def evaluate(measure: Measure, r: np.ndarray, d: np.ndarray, third: np.ndarray) -> np.ndarray:
-    """Return a measure (..., m) of r', d and the third vector (..., 2), real or complex."""
+    """Return a measure (..., m) for r', d and the third vector (..., 2), real or complex."""
     return np.stack(measure(*(vector[..., axis] for vector in (r, d, third) for axis in (0, 1)), np.sqrt), axis=-1)

@@ -1,4 +1,4 @@
-"""Cross-sections: by area moments, by shape, by layers, by stiffness."""
+"""Cross-sections, given by area moments, shape, layers or stiffness."""
 
 from beamfem.section.law import RememberingLaw, SectionLaw
 from beamfem.section.layered import Layer, Layered

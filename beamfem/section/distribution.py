@@ -1,4 +1,4 @@
-"""How a section distributes normal force, shear force and moment over its height."""
+"""Distribution of normal force, shear force and moment over the height of a section."""
 
 from dataclasses import dataclass
 
@@ -9,20 +9,21 @@ from beamfem.section.law import SectionLaw
 from beamfem.section.outline import MomentsOutline, Part
 from beamfem.section.protocol import CrossSection, HasParts
 
-_SAME = 1e-12  # fraction of the height within which a height is that of a face
+_SAME = 1e-12  # fraction of the height within which a point counts as on a face
 
 
 @dataclass(frozen=True, eq=False)
 class Distribution:
-    """Stress over a section whose fibres at y have the length 1 - curvature y of the axis' in the reference.
+    """Stress over a section, whose fibres at y have 1 - curvature y times the length of the axis in the reference.
 
-    layers: lower and upper y [m] of each part, from the bottom up; curvature [1/m] of the reference, > 0 towards +y, a
-    number or an array that goes with those of the methods; flexibility: stretch of the axis and change of curvature
-    [1/m] by N and M, [[a, c], [c, b]] as a [1/N], b [1/(N m^2)], c [1/(N m)].
+    layers: lower and upper y [m] of each part, from the bottom up; curvature [1/m]: that of the reference, > 0 towards
+    +y, broadcast with the arguments of the methods; flexibility: stretch of the axis and change of curvature [1/m] due
+    to N and M, [[a, c], [c, b]] as a [1/N], c [1/(N m)], b [1/(N m^2)].
 
     Plane sections: sigma = E (e - k y) / (1 - curvature y), Winkler's hyperbola, which is linear on a straight beam.
-    The shear stress balances its change along the beam, N' = curvature V and M' = -V (Jourawski): on a straight beam
-    V Q / (I b). Resultants are exactly N, V and M. Source: Timoshenko, Strength of Materials II, chapter 2.
+    The shear stress balances the change of sigma along the beam, N' = curvature V and M' = -V (Jourawski): on a
+    straight beam V Q / (I b). Resultants are exactly N, V and M. Source: Timoshenko, Strength of Materials II, chapter
+    2.
     """
 
     layers: tuple[tuple[float, float], ...]
@@ -32,17 +33,17 @@ class Distribution:
 
     @property
     def has_stress(self) -> bool:
-        """Whether the section has a material and ends at known heights, so that its faces have a stress."""
+        """Whether the materials and faces of the section are known, so that its faces have a stress."""
         return bool(self.parts) and all(part.outline.known for part in self.parts)
 
     def layer_at(self, y: float) -> int:
-        """Return the layer at a height [m], on a face between two layers the upper one, beyond all the nearest."""
+        """Return the layer at a height [m]: between two layers the upper one, beyond the faces the nearest."""
         return int(np.clip(np.searchsorted([low for low, _ in self.layers], y, side="right") - 1, 0, None))
 
     def normal_stress(self, layer: int, y: np.ndarray, normal: np.ndarray, moment: np.ndarray) -> np.ndarray:
-        """Return the stress along the beam [Pa] at heights y [m] of a layer under N [N] and M [N m] about the axis.
+        """Return the stress along the beam [Pa] at heights y [m] of a layer due to N [N] and M [N m] about the axis.
 
-        nan if the section is known by its stiffness only, off the axis where its height is not known, and where it
+        It is nan if only the stiffness of the section is known, off the axis if its height is unknown, and where it
         reaches the centre of curvature.
         """
         y = np.asarray(y, dtype=float)
@@ -55,9 +56,9 @@ class Distribution:
         return np.asarray(result if part.outline.known else np.where(y == 0.0, result, np.nan))
 
     def shear_stress(self, layer: int, y: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """Return the shear stress [Pa] at heights y [m] of a layer under V [N], its mean over the width there.
+        """Return the shear stress [Pa] at heights y [m] of a layer due to V [N], averaged over the width there.
 
-        0 at the faces; nan if the width of the section is not known.
+        It is 0 at the faces, and nan if the width of the section is unknown.
         """
         y = np.asarray(y, dtype=float)
         if not self.parts:
@@ -86,10 +87,10 @@ class Distribution:
 
 
 def distribution(section: CrossSection, material: Material | None, curvature: float | np.ndarray) -> Distribution:
-    """Return how a section distributes N, V and M where the reference has a curvature [1/m], > 0 towards +y.
+    """Return how a section distributes N, V and M for a curvature [1/m] of the reference, > 0 towards +y.
 
-    A section that tells its `parts` is taken as it is, any other by the moments of its materials; one that is known by
-    its stiffness, or has a law of its own, has no stress. Raises InputError without a material where one is needed.
+    It is computed from the `parts` of a section, or else from the moments of its material; a section that is known by
+    its stiffness only, or has a section law, has no stress. Raises InputError if a material is needed and missing.
     """
     bend = np.asarray(curvature, dtype=float)
     parts, layers = _parts(section, material), layers_of(section, material)
@@ -97,7 +98,7 @@ def distribution(section: CrossSection, material: Material | None, curvature: fl
         nothing = np.full(bend.shape, np.nan)
         return Distribution(layers, (), bend, (nothing, nothing, nothing))
     reach = np.maximum(bend * layers[0][0], bend * layers[-1][1])
-    # a section that reaches the centre of curvature has fibres without a length
+    # a section that reaches the centre of curvature has fibres of length zero
     flexibility = _flexibility(
         parts, np.where(reach < 1.0, bend, np.nan), np.max(reach, where=reach < 1.0, initial=0.0)
     )
@@ -114,13 +115,13 @@ def layers_of(section: CrossSection, material: Material | None) -> tuple[tuple[f
 
 def _parts(section: CrossSection, material: Material | None) -> tuple[Part, ...]:
     if isinstance(section, SectionLaw):
-        return ()  # how it spreads its resultants over the height is not known
+        return ()  # the distribution of its resultants over the height is unknown
     if isinstance(section, HasParts):
         return section.parts(material)
     low, high = section.bounds
     known = section.materials_at(np.array([low, high]), material)
     if len(known) != 1:
-        return ()  # of several materials only the section itself knows where each is
+        return ()  # moments alone do not determine where each of several materials is
     own_material, moments = section.moments(material)[0]
     return (Part(own_material.youngs_modulus, MomentsOutline(tuple(moments.tolist()), float(low), float(high))),)
 
@@ -139,7 +140,7 @@ def _flexibility(
 
 
 def _points(reach: float) -> int:
-    """Return the points that integrate 1 / (1 - curvature y) to round-off; reach: the largest |curvature y|."""
+    """Return the number of points that integrate 1 / (1 - curvature y) to round-off; reach: largest |curvature y|."""
     if reach < 1e-3:
         return 12
     inverse = 1.0 / min(reach, 0.999)

@@ -1,4 +1,4 @@
-"""Sections whose resultants are no linear functions of their strains: laws of their own, with history or without."""
+"""Section laws: resultants that are nonlinear functions of the strains, with or without history."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from beamfem.errors import InputError
 from beamfem.material import Material
 from beamfem.validation import called, finite, fulfils, items
 
-COMPLEX_STEP = 1e-30  # nothing is subtracted, so it may be as small as this
+COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 
 
 @runtime_checkable
@@ -184,7 +184,7 @@ class ConstitutiveLaw:
         history (n, k): of the same points; dt [s]: time since. Raises InputError if the law returns anything else.
         """
         past = (history, dt) if self.remembers else ()
-        with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; then the iteration goes back
+        with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; the iteration recovers from it
             found = self._called("resultants", strain, *past)
         return self._checked("resultants", found, strain.shape)
 
@@ -237,5 +237,5 @@ class ConstitutiveLaw:
 
 
 def law_of(section: object, material: Material | None) -> ConstitutiveLaw | None:
-    """Return the law of a section that has one, or None."""
+    """Return the law of a section, None if it has none."""
     return ConstitutiveLaw(cast(SectionLaw, section), material) if fulfils(section, SectionLaw) else None

@@ -1,4 +1,4 @@
-"""Whether the law of a section is what it says: analytic, with an energy, and determined by its committed history."""
+"""Checks of section laws: analytic, with an energy, and determined by the committed history."""
 
 from collections.abc import Callable
 from typing import Any, cast
@@ -10,16 +10,16 @@ from beamfem.section.law import COMPLEX_STEP, ConstitutiveLaw
 from beamfem.section.protocol import CrossSection, Rigidity
 from beamfem.validation import fulfils
 
-_STEP = 1e-4  # of a sample: differences of fourth order then agree to about 1e-11
-_AGREE = 1e-6  # of the largest part of a stiffness
-# uneven, so that no limit of a law is likely to lie within a difference
+_STEP = 1e-4  # of a sample: differences of fourth order are then accurate to about 1e-11
+_AGREE = 1e-6  # of the largest entry of a stiffness
+# irregular, so that a limit of a law, such as a yield limit, is unlikely to lie within a difference
 _SAMPLES = np.array([[1.0, 0.7137, -0.4079], [-0.6173, 0.3119, 0.9161], [0.2143, -0.8171, 0.5087]])
-_SIZES = (1e-5, 1e-3, 3e-2)  # strains of the outer fibre at which a law is looked at
-_TIMES = (0.0, 1e-3, 1.0)  # [s]: time steps likewise, where there is history
+_SIZES = (1e-5, 1e-3, 3e-2)  # strains of the outer fibre at which a law is checked
+_TIMES = (0.0, 1e-3, 1.0)  # time steps [s] at which a law with history is checked
 
 
 def require_law(law: ConstitutiveLaw) -> None:
-    """Raise InputError if a law is not what `SectionLaw` or `RememberingLaw` asks for."""
+    """Raise InputError if a law does not meet the requirements of `SectionLaw` or `RememberingLaw`."""
     zero, start = np.zeros((1, 3)), law.at_start(1)
     section = cast(Any, law.section)
     if not fulfils(section, CrossSection):
@@ -37,7 +37,7 @@ def require_law(law: ConstitutiveLaw) -> None:
 
 
 def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray, dt: float) -> None:
-    """Raise InputError if derivatives by complex steps, differences and the energy of a law disagree."""
+    """Raise InputError if complex steps, differences and energy of a law disagree, or committing history changes it."""
     history = law.at_start(len(strain))
     found, tangent = law.linearised(strain, history, dt)
     moved = law.resultants(strain.astype(complex), history, dt).imag
@@ -79,14 +79,14 @@ def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarr
 
 
 def _force(law: ConstitutiveLaw, strain: np.ndarray, history: np.ndarray, unit: np.ndarray) -> np.ndarray:
-    """Return the derivatives (n, 3) of the stored energy at a history, times the unit of each strain."""
+    """Return the derivatives (n, 3) of the stored energy for a history, times the unit of each strain."""
     steps = 1j * COMPLEX_STEP * np.diag(unit)
     columns = [law.energy(strain + step, history)[:, 0].imag / COMPLEX_STEP for step in steps]
     return np.stack(columns, axis=-1)
 
 
 def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, unit: np.ndarray) -> np.ndarray:
-    """Return the derivatives (3, n, ...) along the unit of each strain, by differences of fourth order."""
+    """Return the derivatives (3, n, ...) by each strain, times its unit, by differences of fourth order."""
     found = []
     for step in _STEP * np.diag(unit):
         near = function(at + step) - function(at - step)
@@ -96,7 +96,7 @@ def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, unit: 
 
 
 def _require_rigidity(law: ConstitutiveLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
-    """Raise InputError if a law does not begin with the stiffness of its section."""
+    """Raise InputError if the stiffness of a law at zero strain is not the rigidity of its section."""
     own = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
     own[0, 2] = own[2, 0] = rigidity.coupling
     units = lengths[:, None] * lengths

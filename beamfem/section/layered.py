@@ -1,4 +1,4 @@
-"""Sections of layers of different materials."""
+"""Sections with layers of different materials."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class Layer:
 class Layered:
     """Rectangular layers of one width, each with its own material.
 
-    A beam of this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
+    A beam with this section needs no material. A neutral axis that is not on the beam's axis couples stretch with
     curvature: E A = sum E A_i, C = -sum E S_i, E I = sum E I_i about the axis.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Sections of one material, by their area moments."""
+"""Sections of one material, given by area moments."""
 
 from dataclasses import dataclass
 
@@ -12,8 +12,8 @@ from beamfem.section.protocol import Inertia, Rigidity
 from beamfem.section.stiffness import StiffnessSection
 from beamfem.validation import convert, positive
 
-_ROUNDING = 1e-9  # of numbers from tables
-_STRIPS = 8  # Gauss points over the height, for a body whose reference is curved
+_ROUNDING = 1e-9  # relative, of values from tables
+_STRIPS = 8  # Gauss points over the height, for curved bodies
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Section:
         I4 = integral of y^4 dA, by default that of the rectangle of the same area and second moment, I4 = A h^4 / 80
         with h = sqrt(12 I / A).
     height : float, [m], optional
-        Height, for the faces of the body and their stress. Without a height the body is drawn as that rectangle and its
-        faces have no stress.
+        Height, which gives the faces of the body and their stress. Without a height, the body is drawn as that
+        rectangle and its faces have no stress.
     centroid : float, [m], optional
         Height of the centroid above the lower face, by default mid-height.
 
@@ -58,7 +58,7 @@ class Section:
 
     def __post_init__(self) -> None:
         convert(self, positive, "area", "second_moment", "shear_factor")
-        least = self.second_moment / self.area * self.second_moment  # the rectangle's is 9/5 of it
+        least = self.second_moment / self.area * self.second_moment  # that of a rectangle is 9/5 of it
         if self.fourth_moment is None:
             object.__setattr__(self, "fourth_moment", 1.8 * least)
         fourth = positive("fourth_moment of Section", self.fourth_moment)
@@ -93,7 +93,7 @@ class Section:
     ) -> StiffnessSection:
         """Return a section given by its stiffness, which needs no material.
 
-        With coupling, from a neutral axis that is not on the beam's axis, N = E A eps + C kappa and M = C eps + E I
+        If the neutral axis is not on the beam's axis, there is a coupling: N = E A eps + C kappa and M = C eps + E I
         kappa.
 
         Parameters
@@ -187,7 +187,7 @@ class Section:
 
 
 def required(material: Material | None) -> Material:
-    """Return the material, or raise InputError if a section needs one and has none."""
+    """Return the material of a section that needs one. Raises InputError without a material."""
     if material is None:
         raise InputError("this section needs a material: give Beam one, or use a section with materials of its own")
     return material

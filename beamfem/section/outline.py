@@ -1,4 +1,4 @@
-"""What the stress over a section needs of its shape: how wide it is at each height, and what lies below it."""
+"""Outlines of sections for the stress over their height: width at each height, area and first moment below it."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
@@ -20,11 +20,11 @@ class Outline(Protocol):
     def width(self, y: np.ndarray) -> np.ndarray: ...  # [m], nan where it is not known
 
     def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the integrals of 1 [m^2] and y [m^3] over what lies below the heights y."""
+        """Return the integrals of 1 [m^2] and y [m^3] over the part below the heights y."""
         ...
 
     def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return heights [m] and weights [m^2] of a rule over the part; points: how fine it is."""
+        """Return heights [m] and weights [m^2] of a quadrature over the part; points: requested number."""
         ...
 
 
@@ -38,7 +38,7 @@ class Part:
 
 @dataclass(frozen=True)
 class RectangleOutline:
-    """A rectangle from low to high [m] of one width [m]."""
+    """A rectangle from low to high [m] with the width `breadth` [m]."""
 
     breadth: float
     low: float
@@ -59,7 +59,7 @@ class RectangleOutline:
 
 @dataclass(frozen=True)
 class TubeOutline:
-    """A circular tube of an outer and an inner radius [m] around the axis; a full circle with inner = 0."""
+    """A circular tube with outer and inner radius [m] about the axis; a full circle if inner = 0."""
 
     outer: float
     inner: float = 0.0
@@ -88,9 +88,9 @@ class TubeOutline:
 
 @dataclass(frozen=True)
 class MomentsOutline:
-    """A part of which only integrals are known: of 1, y, ..., y^4 [m^2 ... m^6].
+    """A part of which only the integrals of 1, y, ..., y^4 [m^2 ... m^6] are known.
 
-    known: whether it ends at low and high [m], or these are the equivalent rectangle's.
+    known: whether it ends at low and high [m]; otherwise these belong to the equivalent rectangle.
     """
 
     moments: tuple[float, float, float, float, float]
@@ -102,12 +102,15 @@ class MomentsOutline:
         return np.full(np.shape(y), np.nan)
 
     def below(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the integrals at the two ends; they are not known between."""
+        """Return the integrals, nan between the two ends, where they are unknown."""
         fraction = np.where(y >= self.high, 1.0, np.where(y <= self.low, 0.0, np.nan))
         return self.moments[0] * fraction, self.moments[1] * fraction
 
     def quadrature(self, points: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return three points around the centroid with these moments but the third, the outer ones not beyond faces."""
+        """Return three points about the centroid with the moments up to the second and the central fourth moment.
+
+        The fourth moment is not met if it would put the outer points beyond known faces.
+        """
         area, first, second, third, fourth = self.moments
         centroid = first / area
         spread = second - first * centroid
@@ -125,13 +128,13 @@ def _half_chord(radius: float, y: np.ndarray) -> np.ndarray:
 
 
 def _segment(radius: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return area and first moment of the part of a disc below y."""
+    """Return the area and first moment of the part of a disc below y."""
     at = np.clip(y, -radius, radius)
     chord = _half_chord(radius, at)
     return radius**2 * np.arctan2(chord, -at) + at * chord, -2.0 / 3.0 * chord**3
 
 
 def _disc_rule(radius: float, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points over a disc, those of the Chebyshev polynomials of the second kind."""
+    """Return heights and weights of a Gauss rule over a disc, with Chebyshev points of the second kind."""
     angle = np.pi * np.arange(1, points + 1) / (points + 1)
     return radius * np.cos(angle), 2.0 * np.pi / (points + 1) * (radius * np.sin(angle)) ** 2

@@ -1,4 +1,4 @@
-"""What elastic forces and inertia need of a section."""
+"""Protocols of sections, for elastic forces and inertia."""
 
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable

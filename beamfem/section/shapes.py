@@ -108,7 +108,7 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
     thickness : float, [m]
         Wall thickness.
     shear_factor : float, [-], default 1/2
-        Shear correction factor k_s; 1/2 is right for a thin wall, a full circle has 9/10.
+        Shear correction factor k_s; 1/2 is for a thin wall, 9/10 for a full circle.
 
     Returns
     -------
@@ -139,12 +139,12 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
 
 
 def _power(length: float, order: int) -> float:
-    """Return a power, inf where it is too large; the operator would raise an exception."""
+    """Return a power, inf if it overflows; the operator ** would raise an exception."""
     return math.prod([length] * order)
 
 
 def _require_moments(kind: str, *moments: float) -> None:
-    """Raise InputError if double precision has no moments [m^2, m^4, m^6] of a section so large or small."""
+    """Raise InputError if the moments [m^2, m^4, m^6] of a section overflow or underflow double precision."""
     for name, value in zip(("area", "second moment", "fourth moment"), moments, strict=False):
         if not 0.0 < value < math.inf:
             raise InputError(f"the {name} of this {kind} is {value:g} in double precision; give lengths in other units")

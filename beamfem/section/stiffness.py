@@ -1,4 +1,4 @@
-"""A section that is given by its stiffness."""
+"""A section given by its stiffness."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What heat does to a free section: how it stretches and bends."""
+"""Thermal strains of an unconstrained section."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from beamfem.section.protocol import CrossSection
 
 
 def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarray:
-    """Return stretch, curvature [1/m] and thickness stretch (3, 2) of a free section, by change of temperature.
+    """Return stretch, curvature [1/m] and thickness stretch (3, 2) of an unconstrained section due to temperature.
 
-    Columns: for a uniform change of 1 K and a gradient of 1 K/m towards +y. Of layers: eps - y kappa is nearest to
-    alpha T(y) in the measure of E dA, so that neither a normal force nor a moment is left (Timoshenko 1925).
+    The columns are for a uniform change of 1 K and a gradient of 1 K/m towards +y. For layers, eps - y kappa is the
+    least-squares fit to alpha T(y) weighted by E dA, so that normal force and moment are zero (Timoshenko 1925).
     """
     parts = _parts(section, material)
     expansions = [own.thermal_expansion for own, _ in parts]
@@ -27,7 +27,7 @@ def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarr
 
 
 def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
-    """Return `thermal_strain`, zeros where a section has no material."""
+    """Return `thermal_strain`, zeros if the section has no material."""
     try:
         return thermal_strain(section, material)
     except InputError:
@@ -35,12 +35,12 @@ def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
 
 
 def expands_evenly(section: CrossSection, material: Material | None) -> bool:
-    """Return whether all of a section has one coefficient of thermal expansion."""
+    """Return whether the whole section has the same coefficient of thermal expansion."""
     return len({own.thermal_expansion for own, _ in _parts(section, material)}) == 1
 
 
 def _parts(section: CrossSection, material: Material | None) -> list[tuple[Material, np.ndarray]]:
-    """Return the materials of a section with the integrals of 1, y, y^2, ... over their parts."""
+    """Return the materials of a section with the integrals of 1, y, ..., y^4 over their parts."""
     try:
         return section.moments(material)
     except InputError:  # known by its stiffness

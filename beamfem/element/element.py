@@ -129,12 +129,12 @@ class Element:
         return stiffness if counted is None else stiffness * counted
 
     def energy_rules(self) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], ...]:
-        """Return the quadrature rules of the strain energy: points and weights on [0, 1], and strain measures (ns,).
+        """Return the points and weights on [0, 1] and the mask of strain measures (ns,) of each quadrature rule.
 
-        There is one rule if all measures share it. With 2 points alone a stretch coordinate could change without
-        resistance: r_x + c at every node leaves r0' as it is at both of them. So all measures but shear take 3 there.
-        What resists a change of |d| alone is evaluated at the nodes of d: between them |d| is below 1 wherever the beam
-        bends, which would lock a thin one.
+        There is one rule if all measures share it. With 2 points for all measures, a stretch coordinate has a
+        zero-energy mode: r_x + c at every node does not change r0' at these points. All measures but shear therefore
+        use 3. A pure thickness strain is evaluated at the nodes of d: between them |d| is below 1 wherever the beam
+        bends, which would cause locking of thin beams.
         """
         forces = self.forces
         shear, thickness = np.array(forces.shear_measures), np.array(forces.thickness_measures)

@@ -27,7 +27,8 @@ LED = ("lead", "turn")
 QUICK = (0, 6, 12, 19, 33)
 QUICK_VIEWS = ("turned", "split", "mm", "all")
 MANY = range(500, 700)
-UNDECIDED = ("buckling", 582)  # ConvergenceError or a load factor of 393,242, 4e5 times what was given
+# ConvergenceError in some views, 393,242 in others: where the path ends, a load step is 4e5 times its first one
+UNDECIDED = pytest.mark.xfail(reason="round-off decides for a tie pulled to 4 times its length", strict=True)
 
 
 def in_views(recipe: Recipe, names: Sequence[str]):
@@ -142,12 +143,16 @@ def test_a_random_model_has_the_same_answers_in_every_view(check, seed):
         CHECKS[check](recipe, QUICK_VIEWS)
 
 
+def many():
+    """Every check of every seed."""
+    for check in CHECKS:
+        for seed in MANY:
+            yield pytest.param(check, seed, marks=UNDECIDED if (check, seed) == ("buckling", 582) else ())
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", MANY)
-@pytest.mark.parametrize("check", CHECKS)
+@pytest.mark.parametrize(("check", "seed"), many())
 def test_many_random_models_have_the_same_answers_in_every_view(check, seed):
-    if (check, seed) == UNDECIDED:
-        pytest.xfail("whether the limit point of a tie pulled to 6 times its length is found, round-off decides")
     recipe = random_recipe(seed)
     if applies(check, recipe):
         CHECKS[check](recipe, tuple(VIEWS))

@@ -151,7 +151,7 @@ def many():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("check", "seed"), many())
+@pytest.mark.parametrize(("check", "seed"), list(many()))
 def test_many_random_models_have_the_same_answers_in_every_view(check, seed):
     recipe = random_recipe(seed)
     if applies(check, recipe):

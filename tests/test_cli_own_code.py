@@ -53,10 +53,13 @@ def test_the_option_is_named_and_no_file_is_run_without_it(saved, command):
     assert "parts" not in sys.modules
 
 
-def test_info_shows_a_model_with_parts_of_the_file(saved):
+def test_info_shows_a_model_with_its_connectors(saved):
     found = json.loads(invoke("info", saved, "--code", "parts.py", "--json").stdout)
     assert (found["kind"], found["states"]) == ("motion", 11)
+    assert found["model"]["connectors"] == ["Dashpot: points arm.end, at (1, 0) m, damping 5"]
     assert Path("ran").exists()
+    text = invoke("info", saved, "--code", "parts.py").stdout
+    assert "\nconnectors\n  Dashpot: points arm.end, at (1, 0) m, damping 5\n" in text
 
 
 def test_export_writes_the_force_that_the_file_computes(saved):

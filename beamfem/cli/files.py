@@ -103,6 +103,7 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
             "beams": beam_lines(model),
             "supports": [part_line(item, model) for item in model.supports],
             "joints": [part_line(item, model) for item in model.joints],
+            "connectors": [part_line(item, model) for item in model.connectors],
             "loads": [part_line(item, model) for item in model.loads],
         },
     }

@@ -7,7 +7,8 @@ import pytest
 from test_cli import ROOT, invoke
 
 import beamfem as bf
-from beamfem.cli import options
+from beamfem.cli import elements, options
+from beamfem.cli.modelfile.elements import PRESETS
 
 STUDY = '''"""A study of nothing.
 
@@ -146,6 +147,36 @@ def test_parameters_of_studies_may_be_described_in_a_sentence(studies):
     _, options = helped("study", "short")
     assert options["--x"].endswith("The first (m). [default: 1.0]")
     assert options["--y"].endswith("The second one. [default: 2]")
+
+
+def test_elements_are_shown_as_they_are_typed(studies, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    head = "from collections.abc import Sequence\nimport beamfem as bf\n"
+    parameters = "one: bf.Element = bf.CRBF(3), some: Sequence[bf.Element] = (bf.CRBF(2), bf.ANCFCRBF())"
+    code = "    return {'one': one == bf.CRBF(3), 'some': some == (bf.CRBF(2), bf.ANCFCRBF())}\n"
+    (studies / "shown.py").write_text(f"{head}def main({parameters}):\n{code}")
+    _, rows = helped("study", "shown")
+    assert rows["--one"].endswith("<element> [default: CRBF(3)]")
+    assert rows["--some"].endswith("[default: CRBF(2),ANCFCRBF]")
+    for given in ((), ("--one", "CRBF(3)", "--some", "CRBF(2),ANCFCRBF")):
+        assert json.loads(invoke("study", "--json", "shown", *given).stdout)["result"] == {"one": True, "some": True}
+
+
+@pytest.mark.parametrize("name", [*(name for name in PRESETS if name != "CRBF"), "CRBF(1)", "CRBF(8)"])
+def test_the_text_of_an_element_is_read_as_this_element(name):
+    assert elements.text_of_element(elements.element_from_text(name)) == name
+
+
+@pytest.mark.parametrize(
+    ("element", "name"),
+    [
+        (bf.CRBF(3, integration="full"), "CRBF-3"),
+        (bf.ANCF(bf.Structural()), "ANCF"),
+        (bf.Element(bf.Lagrange(2), bf.Gradients(), bf.Structural()), "order2-gradients"),
+    ],
+)
+def test_elements_that_no_text_describes_are_shown_with_a_remark(element, name):
+    assert elements.text_of_element(element) == f"{name} (in Python only)"
 
 
 @pytest.mark.parametrize(

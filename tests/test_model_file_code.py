@@ -220,6 +220,8 @@ def test_results_are_saved_and_loaded_once_the_python_file_is_imported(file, mon
     assert invoke("run", file, "--out", path).exit_code == 0
     assert type(bf.load(path).model.supports[1]).__name__ == "Guide"
     monkeypatch.delitem(sys.modules, "own")
-    done = invoke("info", path)
-    assert done.exit_code == 2
-    assert "import that module before loading" in done.stderr
+    with pytest.raises(bf.InputError, match="a Guide of the module own: import that module before loading"):
+        bf.load(path)
+    moving = f'[analysis]\nkind = "dynamics"\nduration = 0.01\nstep = 0.01\nstart = {{ file = "{path.name}" }}\n'
+    words = "of the module own: name its Python file, or one that imports it, at the top of the model file: code = "
+    require_refused(file, ARM + LIFT + moving, "analysis.start.file", words)

@@ -4,6 +4,7 @@ import re
 
 from beamfem.cli.modelfile.elements import PRESETS
 from beamfem.element.element import Element
+from beamfem.element.fields import Lagrange
 from beamfem.element.presets import CRBF
 from beamfem.errors import InputError
 from beamfem.validation import nearest
@@ -26,3 +27,12 @@ def element_from_text(text: str) -> Element:
     element = PRESETS[name]()
     assert isinstance(element, Element)
     return element
+
+
+def text_of_element(element: Element) -> str:
+    """Return the text that `element_from_text` reads as this element; if there is none, its name with a remark."""
+    texts = [name for name, preset in PRESETS.items() if preset is not CRBF]
+    if isinstance(element.field, Lagrange):
+        texts.append(f"CRBF({element.field.order})")
+    alike = (text for text in texts if element_from_text(text) == element)
+    return next(alike, f"{element.name} (in Python only)")

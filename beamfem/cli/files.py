@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from beamfem.cli.loading import OwnCode, loaded
 from beamfem.cli.pictures import Colour, draw
 from beamfem.cli.report import AsJson, Quiet, print_json, reported
 from beamfem.units import units_of
@@ -15,16 +16,14 @@ if TYPE_CHECKING:
 Results = Annotated[Path, typer.Argument(help="A results file (.h5).", show_default=False)]
 
 
-def info(results: Results, as_json: AsJson = False) -> None:
-    """Show the contents of a results file: model, states, statistics."""
-    with reported(as_json):
-        from beamfem.io.results import load
-
-        found = _described(results, load(results))
+def info(results: Results, code: OwnCode = None, as_json: AsJson = False, quiet: Quiet = False) -> None:
+    """Show the contents of a results file: model, states, statistics; with --quiet, check that it can be read."""
+    with reported(as_json, quiet):
+        found = _described(results, loaded(results, code))
         if as_json:
             print_json(found)
-            return
-        _print(found)
+        elif not quiet:
+            _print(found)
 
 
 def export(
@@ -38,16 +37,16 @@ def export(
     ] = None,
     every: Annotated[int, typer.Option(help="Write every n-th state.", min=1)] = 1,
     single: Annotated[bool, typer.Option("--single", help="Write numbers of four bytes.")] = False,
+    code: OwnCode = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
     """Write the states of a results file for ParaView."""
     with reported(as_json, quiet):
         from beamfem.cli.targets import require_target
-        from beamfem.io.results import load
 
         require_target("vtk", target)
-        solution = load(results)
+        solution = loaded(results, code)
         shown = solution if every == 1 else solution[::every]
         shown.to_vtk(target, geometry="reference" if reference else "deformed", fields=field or None, single=single)
         _wrote(target, as_json, quiet)
@@ -63,16 +62,16 @@ def plot(
         ),
     ],
     colour: Colour = None,
+    code: OwnCode = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> None:
     """Draw the deformed shapes of a results file."""
     with reported(as_json, quiet):
         from beamfem.cli.targets import require_target
-        from beamfem.io.results import load
 
         require_target("plot", target)
-        draw(load(results), target, colour)
+        draw(loaded(results, code), target, colour)
         _wrote(target, as_json, quiet)
 
 
@@ -104,6 +103,7 @@ def _described(path: Path, solution: "Solution") -> dict[str, Any]:
             "beams": beam_lines(model),
             "supports": [part_line(item, model) for item in model.supports],
             "joints": [part_line(item, model) for item in model.joints],
+            "connectors": [part_line(item, model) for item in model.connectors],
             "loads": [part_line(item, model) for item in model.loads],
         },
     }

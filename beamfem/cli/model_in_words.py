@@ -45,7 +45,7 @@ def beam_lines(model: Model) -> list[str]:
 
 
 def part_line(item: Any, model: Model) -> str:
-    """Return a support, joint or load in a line, with its places and what differs from its defaults."""
+    """Return a support, joint, connector or load in a line, with its places and what differs from its defaults."""
     words = []
     if isinstance(item, Joint):
         (x, y), metre = item.a.reference, model.unit("m")
@@ -61,9 +61,9 @@ def part_line(item: Any, model: Model) -> str:
 
 def _field(item: Any, name: str, value: Any, model: Model) -> str:
     if isinstance(value, Point):
-        x, y = value.reference
-        where = f"{_place(value, model)}, at ({x:g}, {y:g}) {model.unit('m')}"
-        return where if name == "point" else f"{name} {where}"
+        return _where(value, model) if name == "point" else f"{name} {_where(value, model)}"
+    if isinstance(value, tuple) and value and all(isinstance(point, Point) for point in value):
+        return f"{name} {' and '.join(_where(point, model) for point in value)}"
     if isinstance(value, Beam):
         return f"along {names(model.beams)[model.number_of(value)]}"
     if isinstance(value, Sampled | SampledAlong):
@@ -72,6 +72,12 @@ def _field(item: Any, name: str, value: Any, model: Model) -> str:
         return name if value else f"{name} false"
     unit = _unit(item, name)
     return f"{name} {_number(value)}" + (f" {model.unit(unit)}" if unit else "")
+
+
+def _where(point: Point, model: Model) -> str:
+    """Return a point as model files name it, and where it is."""
+    x, y = point.reference
+    return f"{_place(point, model)}, at ({x:g}, {y:g}) {model.unit('m')}"
 
 
 def _place(point: Point, model: Model) -> str:

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from beamfem.cli.elements import element_from_text
+from beamfem.cli.elements import element_from_text, text_of_element
 from beamfem.element.element import Element
 from beamfem.errors import InputError
 
@@ -144,7 +144,7 @@ def _typed(default: Any) -> Any:
     if default is None or default is inspect.Parameter.empty:
         return default
     values = default if isinstance(default, tuple | list) else (default,)
-    text = _Typed(",".join(value.name if isinstance(value, Element) else str(value) for value in values))
+    text = _Typed(",".join(text_of_element(value) if isinstance(value, Element) else str(value) for value in values))
     text.value = default
     return text
 

@@ -9,6 +9,18 @@ from beamfem.errors import InputError
 from beamfem.model.remade import require_remade
 
 
+class NotImportedError(InputError):
+    """A file holds a part of a class that no loaded module has."""
+
+    def __init__(self, kind: str, module: str) -> None:
+        if module == "__main__":
+            message = f"the file holds a {kind} of the script that saved it: define it in this one as it was"
+        else:
+            message = f"the file holds a {kind} of the module {module}: import that module before loading the file"
+        super().__init__(message)
+        self.kind, self.module = kind, module
+
+
 def name_of(part: Any) -> str:
     """Return "module:Class" for a user-defined part of a model. Raises InputError if it cannot be found again."""
     kind = type(part)
@@ -25,13 +37,11 @@ def name_of(part: Any) -> str:
 
 
 def class_of(name: str) -> Any:
-    """Return the class of "module:Class" without importing anything. Raises InputError if its module is missing."""
+    """Return the class of "module:Class" without importing anything. Raises NotImportedError if there is none."""
     found = find(name)
     if not (isinstance(found, type) and is_dataclass(found)):
         module, _, kind = name.partition(":")
-        if module == "__main__":
-            raise InputError(f"the file holds a {kind} of the script that saved it: define it in this one as it was")
-        raise InputError(f"the file holds a {kind} of the module {module}: import that module before loading the file")
+        raise NotImportedError(kind, module)
     return found
 
 

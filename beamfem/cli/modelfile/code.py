@@ -1,4 +1,4 @@
-"""Python file that a model file names in its `code`: user-defined classes and functions."""
+"""Python file that a model file names in its `code`, or a command: user-defined classes and functions."""
 
 import sys
 import traceback
@@ -36,12 +36,25 @@ def run_code(folder: Path, name: str) -> Code:
     Neither files of other folders nor installed modules can be named, so that a model file alone cannot run any code.
     """
     file = folder / name
-    if Path(name).name != name or file.suffix != ".py" or not file.stem.isidentifier():
+    if Path(name).name != name or not _is_module(file):
         raise InputError(f'must be the name of a Python file beside the model file, such as "parts.py", got "{name}"')
     if not file.is_file():
         raise InputError(f"there is no {name} in {folder.resolve()}; Python that a model file runs lies beside it")
+    return run_file(file)
+
+
+def run_file(file: Path) -> Code:
+    """Run a Python file from any folder and return what it defines. Raises InputError."""
+    if not _is_module(file):
+        raise InputError(f'{file} cannot be run: it must be the name of a Python file, such as "parts.py"')
+    if not file.is_file():
+        raise InputError(f"{file} cannot be run: there is no such file")
     _require_own_name(file)
     return Code(file, _run(file))
+
+
+def _is_module(file: Path) -> bool:
+    return file.suffix == ".py" and file.stem.isidentifier()
 
 
 def _require_own_name(file: Path) -> None:

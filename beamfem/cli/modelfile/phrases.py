@@ -37,6 +37,10 @@ _PHRASES = (
     ),
     ("add one with scale=True", "add one to [[loads]] without `scale = false`"),
     ("take it from solve_static", 'take it from `kind = "static"`'),
+    (
+        "import that module before loading the file",
+        'name its Python file, or one that imports it, at the top of the model file: code = "FILE.py"',
+    ),
     ("give one of solve_static", 'give one of `kind = "static"`'),
     ("at of solve_static must be", "at must be"),
     ("as those returned by solve_buckling", 'as those of `kind = "buckling"`'),

@@ -1,6 +1,6 @@
 """Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
 
-from beamfem.kernels import model_passes, motion_steps
+from beamfem.kernels import model_passes, motion_steps, rollers
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows
@@ -11,6 +11,7 @@ _STRIP = 256  # vectors that are turned while they are in the cache near the cor
 
 _factor, _solve, _roll, _in_two = caller("iisrr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
 _turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
+_stay_on_planes = inlined(rollers.stay_on_planes)
 _factor_part, _solve_part = caller("iiisrr", "d"), caller("iiirr")
 
 
@@ -39,6 +40,9 @@ def predict(part, system, solver, calls):
         reals(b[r.PRESCRIBED_NOW]),
         rule,
     )
+    if b[r.ROLLERS] > 0:
+        first, normal, free = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL]), wholes(b[r.FREE_DOFS])
+        _stay_on_planes(s[r.SIZE], b[r.ROLLERS], first, normal, free, reals(b[r.STATE]), reals(b[r.BEFORE]))
     return 0.0
 
 

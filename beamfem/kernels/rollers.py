@@ -32,6 +32,23 @@ def hold_normals(n, half, rollers, rows, first, normal):
         upper[i] = size if size > 0.0 else 1.0
 
 
+@routine("iinrnrr")
+def stay_on_planes(n, rollers, first, normal, free, state, before):
+    """Remove what p, p' and p'' (3, n) of a predicted state have along normals beyond p of the state before.
+
+    No correction has a normal component, so that round-off in it would be extrapolated from step to step, and grow.
+    free (unknown,): coordinates of the unknowns.
+    """
+    for k in range(rollers):
+        x, y, c, s = free[first[k]], free[first[k] + 1], normal[2 * k], normal[2 * k + 1]
+        for part in range(3):
+            along = c * state[part * n + x] + s * state[part * n + y]
+            if part == 0:
+                along -= c * before[x] + s * before[y]
+            state[part * n + x] -= along * c
+            state[part * n + y] -= along * s
+
+
 @routine("inrr")
 def rotate_in(rollers, first, normal, right):
     """Rotate each pair of a right-hand side (n,) to (normal, tangent) in place, with a normal component of zero."""

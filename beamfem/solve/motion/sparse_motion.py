@@ -18,6 +18,7 @@ from beamfem.kernels.motion_steps import (
     padded,
     predict,
 )
+from beamfem.kernels.rollers import stay_on_planes
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
 
@@ -110,6 +111,8 @@ class SparseMotion:
         state[:] = before
         dofs = self.system.prescribed_dofs
         predict(self._size, len(dofs), order, state, before, self._differences, dofs, prescribed, self.rule)
+        first, normal = self.system.rotated
+        stay_on_planes(self._size, len(first), first, normal, free, state, before)
         state[0, self._multipliers] = before[0, self._multipliers]
         while iteration < most and not done:
             own = fresh or full or self._factors is None

@@ -89,6 +89,15 @@ def test_quiet_prints_nothing(saved, command):
     assert "there is no file" in refused.stderr
 
 
+def test_what_the_file_prints_is_not_part_of_the_answer(saved):
+    Path("parts.py").write_text("print('hello')\n" + PARTS)
+    for command in (("info", saved, "--code", "parts.py"), ("run", "m.toml")):
+        done = invoke(*command, "--json")
+        assert json.loads(done.stdout)
+        assert "hello" in done.stderr
+        del sys.modules["parts"]
+
+
 def test_a_file_may_import_the_parts_from_beside_it(saved):
     folder = saved.with_name("code")
     folder.mkdir()
@@ -104,6 +113,7 @@ def test_a_file_may_import_the_parts_from_beside_it(saved):
         ("parts", "", "parts cannot be run: it must be the name of a Python file"),
         ("json.py", "raise SystemExit\n", "json.py has the name of an installed module"),
         ("other.py", "import beamfem\nx + 1\n", "other.py cannot be run: line 2: NameError: name 'x'"),
+        ("other.py", "import sys\nsys.exit(0)\n", "other.py cannot be run: line 2: SystemExit: 0"),
         ("other.py", "", "parts, which other.py does not import; name the Python file to run: --code parts.py"),
         ("parts.py", "", "the file holds a Dashpot, and parts.py has no dataclass of this name"),
         ("parts.py", PARTS.replace("damping", "size"), "parts:Dashpot is no longer that which the file was saved with"),

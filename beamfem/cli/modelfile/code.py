@@ -3,6 +3,7 @@
 import sys
 import traceback
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec, spec_from_file_location
@@ -62,7 +63,8 @@ def _require_own_name(file: Path) -> None:
     installed = PathFinder.find_spec(file.stem)
     origin = installed.origin if installed is not None else None
     if file.stem in sys.stdlib_module_names or (origin is not None and Path(origin).resolve() != file.resolve()):
-        raise InputError(f"{file.name} has the name of an installed module; give it another one")
+        where = f" ({origin})" if origin is not None and Path(origin).is_file() else ""
+        raise InputError(f"{file.name} has the name of an installed module{where}; give one of them another name")
 
 
 def _run(file: Path) -> ModuleType:
@@ -75,8 +77,9 @@ def _run(file: Path) -> ModuleType:
     folder = str(file.parent.resolve())
     sys.path.append(folder)  # for files beside it, which do not replace other modules
     try:
-        spec.loader.exec_module(module)
-    except Exception as error:
+        with redirect_stdout(sys.stderr):  # stdout is for what the command itself says, such as JSON
+            spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
         del sys.modules[file.stem]
         if before is not None:
             sys.modules[file.stem] = before
@@ -86,7 +89,7 @@ def _run(file: Path) -> ModuleType:
     return module
 
 
-def _where(error: Exception, file: Path) -> str:
+def _where(error: Exception | SystemExit, file: Path) -> str:
     """Return an error with its line in the file."""
     said = f"{type(error).__name__}: {error}"
     steps = traceback.extract_tb(error.__traceback__)

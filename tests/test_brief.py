@@ -127,3 +127,16 @@ def test_arrays_are_shown_by_shape_and_range(results):
     assert repr(results["path"]).endswith("; 0 limit points, 1 bifurcation)")
     assert "values=({'y': <array (1000,) from 0 to 0>}, {'y': <array " in repr(results["sweep"])
     assert "parameters=<300 items>" in repr(results["long sweep"])
+
+
+def test_loaded_functions_are_shown_by_how_many_values_they_have(tmp_path):
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 10, bf.CRBF(2), lambda s: bf.Rectangle(0.1, 0.2 - 0.1 * s), STEEL)
+    ramp, growing = np.cos, lambda s: (0.0, -1.0 - s)
+    loads = [bf.DistributedLoad(beam, growing, ramp), bf.Pressure(beam, np.sin), bf.Actuation(beam, curvature=lambda s: 1e-3 * s)]
+    bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), duration=0.01, step=1e-4).save(tmp_path / "a.h5")
+    model = bf.load(tmp_path / "a.h5").model
+    assert "vector=SampledAlong(at=<83 items>, values=<83 items>, kinks=())" in repr(model.loads[0])
+    assert "amplitude=Sampled(at=<101 items>, values=<101 items>)" in repr(model.loads[0])
+    assert repr(model.beams[0].section).startswith("SampledSection(at=<")
+    for one in (*model.loads, model.beams[0].section):
+        assert len(repr(one)) < 300, repr(one)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.section.protocol import CrossSection
 
@@ -18,6 +19,8 @@ class Sampled:
 
     at: tuple[float, ...]
     values: tuple[float, ...]
+
+    __repr__ = brief
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -49,6 +52,8 @@ class SampledAlong:
     values: tuple[Any, ...]
     kinks: tuple[float, ...] = ()
 
+    __repr__ = brief
+
     def __call__(self, arc_length: float) -> Any:
         """Return the value at an arc length [m]; beyond the saved range, that of the nearer end."""
         columns = np.array(self.values).reshape(len(self.at), -1).T
@@ -66,6 +71,8 @@ class SampledSection:
     at: tuple[float, ...]
     values: tuple[CrossSection, ...]
     kinks: tuple[float, ...] = ()
+
+    __repr__ = brief
 
     def __call__(self, arc_length: float) -> CrossSection:
         """Return the section at an arc length [m]. Raises InputError between two of different kinds."""

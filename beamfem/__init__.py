@@ -17,26 +17,26 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 >>> round(float(solution.displacement(beam.end)[-1, 1]), 4)
 -0.0305
 
-What there is; help(bf.Beam) and the like say more of each.
+Contents; see help(bf.Beam), for example, for details.
 
     Model             Model Beam Point Material graded
     Axes              Line Arc Polyline Chain BSpline Parametric Curve
                       elliptic_arc spline_through_hermite without_removable_knots
     Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
     Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
-    parts of them     Cubic Lagrange Gradients Rotation ShearFree
+    Element parts     Cubic Lagrange Gradients Rotation ShearFree
                       ContinuumMechanics SplitContinuum ElasticLine Structural
     Supports          Clamp Pin Roller Spring Foundation Prescribed
     Joints            Rigid Hinge
     Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
-    over time         Interpolated Piecewise
+    Time functions    Interpolated Piecewise
     From files        read_mesh LineMesh Frame read_dxf load
     Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
-    their settings    Newton GeneralizedAlpha RigidVelocity
+    Solver settings   Newton GeneralizedAlpha RigidVelocity
     Results           Solution State Path PathState Bifurcation Modes Buckling Status
-    along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
+    Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
-    Parts of your own PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
+    User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
                       Contribution At Remembering RememberingLaw Integrator EquationsOfMotion
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError

@@ -176,10 +176,10 @@ def require_known(sentence: str, name: Any, known: Iterable[str]) -> None:
         raise InputError(f"{sentence}; {nearest(name, known)}")
 
 
-def nearest(word: Any, known: Iterable[str]) -> str:
-    """Return in words what a name could have meant."""
+def nearest(word: Any, known: Iterable[str], short: Iterable[str] = ()) -> str:
+    """Return in words what a name could have meant; short: further names, which are suggested but not listed."""
     known = list(known)
-    near = _nearest(word, known)
+    near = _nearest(word, [*known, *short])
     listed = ", ".join(known) if known else "none"
     return f"did you mean {near}? Known are {listed}" if near else f"known are {listed}"
 

@@ -132,7 +132,11 @@ def test_arrays_are_shown_by_shape_and_range(results):
 def test_loaded_functions_are_shown_by_how_many_values_they_have(tmp_path):
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 10, bf.CRBF(2), lambda s: bf.Rectangle(0.1, 0.2 - 0.1 * s), STEEL)
     ramp, growing = np.cos, lambda s: (0.0, -1.0 - s)
-    loads = [bf.DistributedLoad(beam, growing, ramp), bf.Pressure(beam, np.sin), bf.Actuation(beam, curvature=lambda s: 1e-3 * s)]
+    loads = [
+        bf.DistributedLoad(beam, growing, ramp),
+        bf.Pressure(beam, np.sin),
+        bf.Actuation(beam, curvature=lambda s: 1e-3 * s),
+    ]
     bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], loads), duration=0.01, step=1e-4).save(tmp_path / "a.h5")
     model = bf.load(tmp_path / "a.h5").model
     assert "vector=SampledAlong(at=<83 items>, values=<83 items>, kinks=())" in repr(model.loads[0])

@@ -155,7 +155,7 @@ def test_info_export_and_plot_of_a_results_file(results, tmp_path):
     assert "PointForce: arm.end, at (1, 0) m, vector (0, 833.333) N" in text
     assert "solve        completed: the " in text
     assert "Newton iterations in 1 step\n" in text
-    assert " digits of the forces are sure\n" in text
+    assert " digits of the forces are reliable\n" in text
     assert "arm: Line, 1 m long, 4 x CRBF-4 (structural), rectangle 0.01 x 0.01 m, E = 2e+11 Pa, nu = 0.3" in text
     for raw in ("Status.", "\niterations", "[]", "None", "Section("):
         assert raw not in text
@@ -218,3 +218,25 @@ def test_a_real_process(tmp_path):
     assert wrong.stderr == "error: none.toml: there is no such file\n"
     assert invoke("--version").stdout.startswith("beamfem 0.")
     assert "Exit codes: 0 success" in invoke("--help").stdout
+
+
+def test_help_shows_flags_without_the_name_of_a_type():
+    for command in ((), ("run",), ("study",), ("study", "pendulum"), ("info",)):
+        text = invoke(*command, "--help").stdout
+        assert "--help" in text
+        assert "bool" not in text, command
+
+
+def test_help_of_a_study_names_it_as_it_was_given_and_ends_with_its_title(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    text = " ".join(invoke("study", "pendulum", "--help").stdout.split())
+    assert "Usage: beamfem study pendulum [OPTIONS] The free-falling" in text
+    assert "Return a run" not in text
+
+
+def test_an_unknown_study_lists_each_study_once(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    message = invoke("study", "penduum").stderr
+    assert "did you mean pendulum? Known are all, benchmarks/chain_growth, " in message
+    assert message.count("chain_growth") == 1

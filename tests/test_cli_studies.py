@@ -115,7 +115,7 @@ def helped(*arguments):
 def test_help_of_a_study_comes_from_its_docstring(studies, monkeypatch):
     monkeypatch.setenv("COLUMNS", "100")
     text, options = helped("study", "nothing")
-    assert "A study of nothing. Return what was given. \u256d" in text
+    assert "Usage: beamfem study nothing [OPTIONS] A study of nothing. \u256d" in text
     assert list(options)[:4] == ["--elements", "--length", "--name", "--fine"]
     for name, words in (
         ("--elements", "Number of elements of the beam. [required]"),

@@ -1,4 +1,4 @@
-"""What rounded coordinates leave of a balance, and the digits that are sure, against sums by hand."""
+"""What rounded coordinates leave of a balance, and the reliable digits, against sums by hand."""
 
 import numpy as np
 import pytest

@@ -122,7 +122,7 @@ def _print(found: dict[str, Any]) -> None:
     if statistics["iterations"]:
         print(f"{'effort':12s} {found['effort']}")
     if statistics["digits"] is not None:
-        print(f"{'accuracy':12s} {statistics['digits']:.0f} digits of the forces are sure")
+        print(f"{'accuracy':12s} {statistics['digits']:.0f} digits of the forces are reliable")
     for warning in statistics["warnings"]:
         print(f"{'warning':12s} {warning}")
     for part, items in found["model"].items():

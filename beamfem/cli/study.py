@@ -25,11 +25,14 @@ class Study:
 
 def study(
     context: typer.Context,
-    name: Annotated[str | None, typer.Argument(help="The study to run; without it, all are listed.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="The study to run; without it, all are listed.")
+    ] = None,
     folder: Annotated[
         Path | None,
         typer.Option(
-            help="Folder of the studies; given before NAME. By default: studies, here or else of beamfem.",
+            help="Folder of the studies, given before NAME. By default the folder `studies` here, otherwise the one "
+            "shipped with beamfem.",
             show_default=False,
         ),
     ] = None,
@@ -48,7 +51,7 @@ def study(
                 print("\n".join(f"{item.name:{width}s}  {item.title}" for item in studies))
             return
         chosen = _named(name, studies, folder)
-        _run(chosen, _main_of(chosen, folder), context.args, as_json, quiet)
+        _run(chosen, name, _main_of(chosen, folder), context.args, as_json, quiet)
 
 
 def _folder() -> Path:
@@ -89,8 +92,8 @@ def _named(name: str, studies: list[Study], folder: Path) -> Study:
     if len(found) > 1 and not any(item.name == wanted for item in found):
         raise InputError(f"{name!r} may be {' or '.join(item.name for item in found)}; give it with its folder")
     if not found:
-        known = [text for item in studies for text in dict.fromkeys((item.file.stem, item.name))]
-        raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, known)}")
+        known, short = [item.name for item in studies], [item.file.stem for item in studies]
+        raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, known, short)}")
     return min(found, key=lambda item: item.name != wanted)
 
 
@@ -120,9 +123,11 @@ def _imported(item: Study) -> ModuleType:
     return module
 
 
-def _run(item: Study, main: Any, arguments: list[str], as_json: bool, quiet: bool) -> None:
+def _run(item: Study, name: str, main: Any, arguments: list[str], as_json: bool, quiet: bool) -> None:
+    """Run a study with its options; name: as it was given."""
     from rich.markup import escape
 
+    from beamfem.cli.flags import Command
     from beamfem.cli.options import command_of, with_hyphens
 
     def call(values: dict[str, Any]) -> None:
@@ -135,10 +140,11 @@ def _run(item: Study, main: Any, arguments: list[str], as_json: bool, quiet: boo
         for word, kind in (("json", AsJson), ("quiet", Quiet))
     }
     command = command_of(main, call, extra)
-    command.__doc__ = f"{escape(item.title)}\n\n{command.__doc__}".strip()
+    if item.title:  # what `main` returns is for callers in Python
+        command.__doc__ = escape(item.title)
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    app.command(context_settings={"help_option_names": ["-h", "--help"]})(command)
-    app([with_hyphens(word) for word in arguments], prog_name=f"beamfem study {item.name}")
+    app.command(cls=Command, context_settings={"help_option_names": ["-h", "--help"]})(command)
+    app([with_hyphens(word) for word in arguments], prog_name=f"beamfem study {name}")
 
 
 def _called(main: Any, values: dict[str, Any], silent: bool) -> Any:

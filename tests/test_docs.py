@@ -1,12 +1,13 @@
 """Every code block of README and docs runs, prints what the page shows, and what pages name exists."""
 
+import ast
 import re
 from pathlib import Path
 
 import pytest
 
 import beamfem as bf
-from docs.page_code import run
+from docs.page_code import blocks_of, run
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -62,6 +63,18 @@ def test_what_a_page_names_exists(page):
     for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
         drawn = re.fullmatch(r"/_pictures/(drawings/\w+)\.png", link)  # by the build
         assert (ROOT / "docs" / f"{drawn[1]}.py" if drawn else page.parent / link).exists(), link
+
+
+def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
+    page = ROOT / "docs" / "extending.md"
+    rows = re.findall(
+        r"^\| [^|]* \| `(\w+)` \| (?:`(tests/\w+\.py)`|\[below\][^|]*) \| (\d+) \|$", page.read_text(), re.M
+    )
+    assert len(rows) == 14
+    for name, file, lines in rows:
+        code = (ROOT / file).read_text() if file else "\n".join(block.code for block in blocks_of(page.read_text()))
+        parts = [part for part in ast.parse(code).body if getattr(part, "name", "") == name]
+        assert [part.end_lineno - part.lineno + 1 for part in parts] == [int(lines)], name
 
 
 def test_reference_lists_every_public_name():

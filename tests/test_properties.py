@@ -24,8 +24,9 @@ def solved(built, steps=1):
     """The end of a static solve, or nothing where a limit point is in the way: other tests are about these."""
     try:
         return bf.solve_static(built.model, steps)
-    except bf.LimitPointError:
-        assume(False)
+    except bf.ConvergenceError as error:
+        assume("reach a limit point" not in str(error) and not isinstance(error, bf.LimitPointError))
+        raise
 
 
 def apart(recipe, one, other):
@@ -119,13 +120,13 @@ def test_a_tangent_that_is_said_to_be_symmetric_is(recipe):
 def test_the_work_of_slow_loads_is_stored_in_beams_and_springs(recipe):
     """Gauss' rule over the load factor integrates the work, of forces, moments and what leads the supports.
 
-    Where the tangent is soft on the way the work bends sharply there, and takes more panels.
+    Where the tangent is soft on the way the work bends sharply there, and takes more panels, up to 64.
     """
     assume(all(load.scale for load in recipe.loads))
     assume(all(support.kind != "foundation" for support in recipe.supports))
     stored, work = stored_and_done(recipe, panels=1)
     if stored != pytest.approx(work, rel=1e-6, abs=1e-12 * recipe.reach):
-        stored, work = stored_and_done(recipe, panels=8)
+        stored, work = stored_and_done(recipe, panels=64)
     assert stored == pytest.approx(work, rel=1e-6, abs=1e-12 * recipe.reach)
 
 

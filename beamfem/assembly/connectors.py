@@ -52,7 +52,12 @@ class Connectors:
     @cached_property
     def keep_energy(self) -> bool:
         """Whether no connector adds energy to a motion or dissipates it."""
-        return self.conservative and not any(resists_rates(item) or any(follows_time(item)) for item in self.items)
+        return self.conservative and not self.damp and not any(any(follows_time(item)) for item in self.items)
+
+    @cached_property
+    def damp(self) -> bool:
+        """Whether a connector resists rates."""
+        return any(resists_rates(item) for item in self.items)
 
     def gravity(self, time: float) -> np.ndarray:
         """Return the acceleration (2,) [m/s^2] of all gravity loads at a time."""

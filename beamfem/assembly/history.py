@@ -54,7 +54,7 @@ class History:
             return p
         found = p.copy()
         found[self.connectors.memory] = self.connectors.remember(motion, time)
-        for (law, block), sheet in zip(self.laws, self._strains, strict=True):
+        for (law, block), sheet in zip(self.laws, self.strains, strict=True):
             strain = resultants(sheet, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
             known, past = strain[..., :3].reshape(-1, 3), p[block.history]
             found[block.history] = law.remember(known, past.reshape(len(known), -1), dt).reshape(past.shape)
@@ -68,7 +68,7 @@ class History:
         return self.committed((p, zeros, zeros), load_factor, imposing)
 
     @cached_property
-    def _strains(self) -> tuple[Sheet, ...]:
+    def strains(self) -> tuple[Sheet, ...]:
         """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
         unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
         blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]

@@ -35,7 +35,8 @@ class Energy:
         Potential of gravity, other constant dead loads, springs and foundations; follower forces and pressures have
         none.
     dissipated : array, [J], (steps,)
-        Energy dissipated since the start by sections with history; the dampers of a model are not included.
+        Energy dissipated since the start by sections with history; nan if something else may dissipate too, which is
+        not integrated: in motions a retardation time or a dashpot, and always a connector that is not conservative.
     unit : str
         Name of the model's unit of energy.
     """
@@ -64,6 +65,17 @@ def potential(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.n
     """
     acting = _of_gravity(solution, first_moments) + _of_loads(solution) + _of_springs(solution)
     return acting + potential_of_connectors(solution)
+
+
+def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
+    """Return what was dissipated since the start (steps,) [J]; by_sections: by sections with history.
+
+    What resists rates has no history variable for it, and rows that are not saved cannot be integrated: nan.
+    """
+    system = loading(solution)[0]
+    damped = system.connectors.damp or any(block.damping.any() for block in system.blocks)
+    known = system.connectors.conservative and (solution.static or not damped)
+    return by_sections if known else np.full(len(solution), np.nan)
 
 
 def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np.ndarray:

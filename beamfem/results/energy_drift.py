@@ -9,6 +9,7 @@ from beamfem.assembly.system import system_of
 from beamfem.results.turns import start_rotations
 
 if TYPE_CHECKING:
+    from beamfem.results.energies import Energy
     from beamfem.results.solution import Solution
 
 _MUCH = 0.1  # fraction of the exchanged energy; a larger drift makes the results meaningless
@@ -51,17 +52,13 @@ def energy_drift(solution: "Solution") -> EnergyDrift | None:
     """
     if solution.static or solution.loaded is not None or not _conservative(solution):
         return None
-    rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
-    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
-    some = replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows])
-    energy = some.energy()
-    total, parts = energy.total, (energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential))
-    return EnergyDrift(float(total[-1] - total[0]), float(max(parts)), solution.model.unit("J"))
+    energy = _energy_of_rows(solution)
+    return EnergyDrift(float(energy.total[-1] - energy.total[0]), _exchanged(energy), solution.model.unit("J"))
 
 
 def drift_warnings(solution: "Solution") -> tuple[str, ...]:
     """Return a warning if the energy of a motion rises although no work is done on it."""
-    drift = solution.energy_drift
+    drift = solution.energy_drift or _rise(solution)
     if drift is None or not drift.change > _MUCH * drift.exchanged:
         return ()
     return (
@@ -71,10 +68,40 @@ def drift_warnings(solution: "Solution") -> tuple[str, ...]:
     )
 
 
+def _rise(solution: "Solution") -> EnergyDrift | None:
+    """Return the largest rise of the energy of a motion that only materials and section laws can dissipate.
+
+    Whatever they dissipate, the energy cannot rise above that of the start. A law with history that tells a negative
+    dissipation drives the motion: then the sum counts. None for motions that something else may drive or damp.
+    """
+    if solution.static or not len(solution) or solution.loaded is not None or _driven(solution):
+        return None
+    energy = _energy_of_rows(solution)
+    most = np.fmin(energy.total, energy.total + energy.dissipated)
+    return EnergyDrift(float((most - most[0]).max()), _exchanged(energy), solution.model.unit("J"))
+
+
+def _energy_of_rows(solution: "Solution") -> "Energy":
+    """Return the energies of at most `_ROWS` rows, and of the fastest one."""
+    fastest = np.argmax(np.einsum("sn,sn->s", solution.v, solution.v))
+    rows = np.unique(np.append(np.linspace(0, len(solution) - 1, _ROWS).astype(int), fastest))
+    at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
+    return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows]).energy()
+
+
+def _exchanged(energy: "Energy") -> float:
+    return float(max(energy.kinetic.max(), np.ptp(energy.strain), np.ptp(energy.potential)))
+
+
 def _conservative(solution: "Solution") -> bool:
     system = system_of(solution.model, static=False)
-    moved = any(callable(item.value) for item in system.prescribed)
-    driven = any(load.amplitude is not None or not load.conservative for load in solution.model.loads)
     damped = any(block.damping.any() for block in system.blocks)
-    lossless = system.connectors.keep_energy and not system.history.laws
-    return not moved and not driven and not damped and lossless
+    return not _driven(solution) and not damped and not system.history.laws
+
+
+def _driven(solution: "Solution") -> bool:
+    """Return whether loads or supports may do work on a motion, or connectors dissipate or add energy."""
+    system = system_of(solution.model, static=False)
+    moved = any(callable(item.value) for item in system.prescribed)
+    loaded = any(load.amplitude is not None or not load.conservative for load in solution.model.loads)
+    return moved or loaded or not system.connectors.keep_energy

@@ -10,7 +10,7 @@ from beamfem.model.beam import Beam
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
 from beamfem.results.connected import kinetic_of_connectors, momenta_of_connectors
-from beamfem.results.energies import Energy, potential
+from beamfem.results.energies import Energy, dissipated, potential
 from beamfem.results.energy_drift import EnergyDrift, energy_drift
 from beamfem.results.imposed import imposed_measures
 from beamfem.results.last_digits import remainders
@@ -138,9 +138,9 @@ class Quantities(PointQuantities):
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self._whole))
         imposed = ((mesh, imposed_measures(self._whole, mesh)) for mesh in self.model.meshes)
         parts = (postprocess.strain_energies(mesh, self.p, own) for mesh, own in imposed)
-        strain, dissipated = sum(parts, np.zeros((len(self), 2))).T
+        strain, lost = sum(parts, np.zeros((len(self), 2))).T
         acting = potential(self._whole, [m.first_moment for m in self._momenta])
-        return Energy(kinetic, strain, acting, dissipated, self.model.unit("J"))
+        return Energy(kinetic, strain, acting, dissipated(self._whole, lost), self.model.unit("J"))
 
     @cached_property
     def energy_drift(self) -> EnergyDrift | None:

@@ -25,6 +25,9 @@ _BESIDE = 0.03
 _ANOTHER = 1e-4  # of the model: the least distance of another path; near limit points the tangent itself has an error
 _FARTHEST = 2.0  # of the step: iterates further away are considered to diverge
 _WANTED_ITERATIONS = 8
+# Of the longest step: in a shorter one a change of the pivots of an unsymmetric tangent by an even number is taken for
+# one that keeps the determinant away from zero, as two pivots can change their signs together.
+_PAIR = 1.0 / 64.0
 _LARGEST_INCREASE = 4.0
 
 
@@ -95,6 +98,8 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
         new = line.linearised(corrected.y, point.tangent)
     except LinAlgError:
         return Refused("the tangent is singular", corrected.iterations)
+    if _may_hide_pair(line, point, new) and size > _PAIR * longest_step(line, point):
+        return Refused("the tangent may be singular at an even number of points within the step", corrected.iterations)
     if _crosses_over(line, (point, new), corrected):
         return Refused("another path lies between the start and the end of the step", corrected.iterations)
     turn = float(np.arccos(min(line.dot(new.tangent, point.tangent), 1.0)))
@@ -116,6 +121,15 @@ def take_step(line: Continuation, point: PathPoint, size: float) -> Step | Refus
 def leaves_arc(deviation: float, turn: float) -> bool:
     """Return whether a step deviates from a tangent [rad] by more than a path whose tangent turns by `turn` [rad]."""
     return deviation > _ARC * turn + _BESIDE
+
+
+def _may_hide_pair(line: Continuation, before: PathPoint, after: PathPoint) -> bool:
+    """Return whether pivots changed by an even number, which the sign of the determinant does not show.
+
+    A symmetric tangent has as many negative eigenvalues as negative pivots, so that nothing is hidden.
+    """
+    change = after.negative_pivots - before.negative_pivots
+    return not line.system.symmetric and change != 0 and change % 2 == 0
 
 
 def _crosses_over(line: Continuation, ends: tuple[PathPoint, PathPoint], corrected: Corrected) -> bool:

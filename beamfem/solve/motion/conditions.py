@@ -6,11 +6,11 @@ from scipy.sparse import block_array, csc_array
 
 from beamfem.assembly.connector import Motion
 from beamfem.assembly.connector_checks import follows_time
-from beamfem.assembly.equations import INERTIA, STATICS, linearise
+from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.saddle import SaddleTangent
-from beamfem.linalg.tangent import UNROTATED, SparseTangent
+from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.solve.start.multipliers import dependent
 
 _MET = 1e-8  # of the model, or of the largest velocity
@@ -41,17 +41,20 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
             )
 
 
-def constrained_acceleration(system: System, motion: Motion, unbalanced: np.ndarray, time: float) -> np.ndarray:
+def constrained_acceleration(
+    system: System, motion: Motion, unbalanced: np.ndarray, mass: Tangent, time: float
+) -> np.ndarray:
     """Return p'' and multipliers (unknown,), with [M, G'; G, 0] [p'', l] = [-r, -dG/dt p'].
 
-    motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers.
+    motion: p, p' and p'' of prescribed coordinates; unbalanced (n,): residual r without multipliers; mass: M, between
+    coordinates.
     """
     (p, v, a), k, zeros = motion, len(system.connectors.multipliers), np.zeros(len(motion[0]))
-    mass = linearise(system, p, zeros, zeros, time, INERTIA)[1].sparse(UNROTATED)[:-k, :-k]
+    inertia = mass.sparse(UNROTATED)[:-k, :-k]
     conditions = linearise(system, p, zeros, zeros, time, STATICS)[1].sparse(UNROTATED)[-k:, :-k]
     right = -unbalanced[system.free_dofs]
     right[-k:] = -_change_of_rates(system, p, v, a)
-    whole = SaddleTangent(SparseTangent(csc_array(block_array([[mass, conditions.T], [conditions, None]]))), k)
+    whole = SaddleTangent(SparseTangent(csc_array(block_array([[inertia, conditions.T], [conditions, None]]))), k)
     try:
         return whole.solve(right, system.rotated)
     except LinAlgError as error:

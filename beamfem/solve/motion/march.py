@@ -6,10 +6,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csc_array
 
+from beamfem.assembly.connector import Motion
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.motion_space import motion_space
 from beamfem.assembly.system import System
+from beamfem.assembly.viscosity import viscous_tangent
+from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion
 from beamfem.solve.motion.conditions import constrained_acceleration
@@ -86,8 +90,10 @@ def march(
     done, row, failed = 0, 0, None
     own = not isinstance(integrator, GeneralizedAlpha)
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
-    # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration
-    relaxed = damped and isinstance(integrator, GeneralizedAlpha) and integrator.rho_inf < 1.0
+    # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration; laws with history know rates by differences only
+    relaxed = isinstance(integrator, GeneralizedAlpha) and (
+        bool(system.history.laws) or (damped and integrator.rho_inf < 1.0)
+    )
     # a user-defined integrator may raise any exception; the states reached before are kept
     size = 1 if own else max(_FIRST_CHUNK // system.model.size, 1)
     turned = record.turned[0].copy()
@@ -190,15 +196,20 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
+    unbalanced, mass = residual(system, p, v, a, time), _mass(system, (p, v, a), time, step)
     if len(multipliers):
-        unbalanced = residual(system, p, v, a, time)
-        a[free] = constrained_acceleration(system, (p, v, a), unbalanced, time)
+        a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)
         state[0, multipliers], state[1, multipliers], a[multipliers] = a[multipliers], 0.0, 0.0
         return a
-    if step > 0.0:
-        unbalanced = residual(system, p, v, a, time)
-        _, mass = linearise(system, p, np.zeros_like(v), np.zeros_like(a), time, (0.0, step, 1.0))
-    else:
-        unbalanced, mass = linearise(system, p, v, a, time, INERTIA)
     a[free] = mass.solve(-unbalanced[free], system.rotated)
     return a
+
+
+def _mass(system: System, motion: Motion, time: float, step: float) -> Tangent:
+    """Return M + step D in p, p', p'' at a time, with the damping D of materials, connectors and laws with history."""
+    if not step > 0.0:
+        return linearise(system, *motion, time, INERTIA)[1]
+    p, v, zeros = *motion[:2], np.zeros(len(motion[0]))
+    mass = linearise(system, p, zeros, zeros, time, (0.0, step, 1.0))[1]
+    viscous = viscous_tangent(system, p, v, time, step)
+    return mass if viscous is None else SparseTangent(csc_array(mass.sparse(UNROTATED) + viscous))

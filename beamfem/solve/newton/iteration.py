@@ -19,6 +19,7 @@ class Termination(Enum):
     SINGULAR = "the tangent is singular"
     NO_DIGITS = "round-off leaves no digit of the forces: stiffnesses and loads of this model are too far apart"
     LOST = "the count of negative pivots changed on the way, so the equilibrium may be one of another path"
+    LIMIT = "as they grow from zero, they reach a limit point, beyond which there is no equilibrium nearby"
     INVERTED = "the beam was turned inside out: r_x and r_y no longer form a right-handed pair"
 
     @property

@@ -6,8 +6,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise, load_slope
-from beamfem.assembly.system import System, system_of
+from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError, RoundOffWarning, warn
 from beamfem.keywords import keywords_checked
 from beamfem.linalg.eigenpairs import digits_for
@@ -18,16 +17,13 @@ from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
-from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.linearised import linearised_loads
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
-from beamfem.solve.start.balance import left_over
+from beamfem.solve.stability.stable_start import stable_start
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import refuse_memory, refuse_multipliers
-from beamfem.solve.start.start_state import resting_state
 from beamfem.tabulate import as_pandas
 from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
@@ -259,7 +255,7 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
     with digits_for("critical load factors"):
-        p, load_factor = _stable_start(system, about)
+        p, load_factor = stable_start(system, about)
         path = LoadingPath(system, p, load_factor)
         slope = path.start.tangent[:-1] / path.start.tangent[-1]
         linearised = linearised_loads(system, p, load_factor, slope, count)
@@ -293,27 +289,6 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         ended,
         status,
     )
-
-
-def _stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
-    """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
-    p, load_factor = resting_state(system, about)
-    if left_over(system, p, load_factor) > 0.0:
-        begun = solve_equilibrium(system, p, load_factor, Newton())
-        if not begun.ended.good:
-            raise ConvergenceError(f"no equilibrium at load factor {load_factor:g} to start from: {begun.ended.value}")
-        p = begun.state
-    if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
-        raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
-    zeros = np.zeros_like(p)
-    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
-    unstable = tangent.factorised(system.rotated).negative_pivots
-    if unstable > 0:
-        raise InputError(
-            f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "
-            f"in {unstable} direction(s)"
-        )
-    return p, load_factor
 
 
 def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:

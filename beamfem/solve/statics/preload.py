@@ -8,7 +8,7 @@ import numpy as np
 from beamfem.assembly.equations import residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
-from beamfem.errors import ConvergenceError
+from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.model.load import Load, factor
 from beamfem.model.model import Model
 from beamfem.model.support import DIRECTIONS, PointSupport
@@ -58,6 +58,8 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
     done.add(0.0, growing.reference, 0, Termination.CONVERGED)
     try:
         reach(growing, done, 1.0, newton, "error")
+    except LimitPointError:
+        return replace(failed, iterations=done.iterations, ended=Termination.LIMIT)
     except ConvergenceError:
         return replace(failed, iterations=done.iterations)
     return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots, done.digits)

@@ -1,0 +1,38 @@
+"""The stable equilibrium that a search for buckling starts from."""
+
+import numpy as np
+
+from beamfem.assembly.equations import STATICS, linearise, load_slope
+from beamfem.assembly.system import System
+from beamfem.errors import ConvergenceError, InputError
+from beamfem.results.solution import Solution, State
+from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.start.balance import left_over
+from beamfem.solve.start.start_state import resting_state
+from beamfem.solve.statics.preload import first_equilibrium
+
+
+def stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
+    """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
+    p, load_factor = resting_state(system, about)
+    if left_over(system, p, load_factor) > 0.0:
+        if about is None:
+            begun, wanted = first_equilibrium(system, Newton()), "under the loads that do not scale"
+        else:
+            begun = solve_equilibrium(system, p, load_factor, Newton())
+            wanted = f"at load factor {load_factor:g} to start from"
+        if not begun.ended.good:
+            raise ConvergenceError(f"no equilibrium {wanted}: {begun.ended.value}")
+        p = begun.state
+    if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
+        raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
+    zeros = np.zeros_like(p)
+    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
+    unstable = tangent.factorised(system.rotated).negative_pivots
+    if unstable > 0:
+        raise InputError(
+            f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "
+            f"in {unstable} direction(s)"
+        )
+    return p, load_factor

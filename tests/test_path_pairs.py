@@ -1,0 +1,37 @@
+"""Paths of loads that follow: pivots that change in pairs, which the sign of the determinant does not show."""
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+
+RUBBER = bf.Material(1e9, 0.3, 1000.0)
+
+
+@pytest.mark.parametrize("step", [None, 0.2, 0.1, 0.05, 0.02])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_strut_that_a_follower_force_pushes_aside_does_not_stay_straight(step, sign):
+    """Its end is led past two buckling loads: a step over both once left it straight, with two negative eigenvalues."""
+    strut = bf.Beam(bf.Line((0, 0), (-0.75, 7e-4 * sign)), 2, bf.CRBF(3), bf.Rectangle(0.02, 0.078125), RUBBER)
+    middle = strut.at(0.5)
+    supports = [bf.Clamp(strut.start), bf.Prescribed(strut.end, ux=0.0625, uy=0.0, rotation=0.0)]
+    model = bf.Model([strut], supports, [bf.PointForce(middle, (800.0, 0.0), follower=True)])
+    path, solution = bf.trace_equilibrium(model, 1.0, step=step), bf.solve_static(model, 10)
+    assert path.stable.all()
+    assert path.displacement(middle)[-1, 1] * sign == pytest.approx(0.1037, abs=1e-3)
+    np.testing.assert_allclose(path.p[-1], solution.p[-1], atol=1e-8)
+
+
+@pytest.mark.parametrize("solve", [bf.solve_static, bf.trace_equilibrium, bf.solve_buckling])
+def test_standing_loads_beyond_a_limit_point_say_so(solve):
+    """A shallow toggle that stands under twice what it can carry."""
+    left = bf.Beam(bf.Line((0.0, 0.0), (0.5, 0.05)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), RUBBER)
+    right = bf.Beam(bf.Line((0.5, 0.05), (1.0, 0.0)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), RUBBER)
+    supports, joints = [bf.Clamp(left.start), bf.Clamp(right.end)], [bf.Rigid(left.end, right.start)]
+    pushed = bf.Model([left, right], supports, [bf.PointForce(left.end, (0.0, -52.0))], joints)
+    with pytest.raises(bf.LimitPointError) as limit:
+        bf.solve_static(pushed)
+    assert limit.value.load_factor == pytest.approx(0.5, abs=0.01)
+    loads = [bf.PointForce(left.end, (0.0, -52.0), scale=False), bf.PointForce(left.end, (0.01, 0.0))]
+    with pytest.raises(bf.ConvergenceError, match="do not scale: as they grow from zero, they reach a limit point"):
+        solve(bf.Model([left, right], supports, loads, joints))

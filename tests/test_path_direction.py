@@ -58,3 +58,17 @@ def test_a_wave_under_a_prescribed_motion_does_not_pass_its_limit_point_in_silen
     assert expected.limit == pytest.approx(0.66236, abs=1e-5)
     found = outcome(recipe.build(), expected, steps)
     assert found.right, found.said
+
+
+@pytest.mark.parametrize("steps", [1, 3, 10])
+def test_a_beam_that_bends_by_itself_between_its_supports_does_not_skip_its_limit_point(steps):
+    """One step from rest took nine iterations, fewer than were looked at, and ended on another path."""
+    ends = (0.0, 0.0), (-0.99, -0.141)
+    beam = bf.Beam(bf.Line(*ends), 2, bf.ANCFCRBF(), bf.Rectangle(0.02, 0.0625), bf.Material(1e9, 0.3, 1000.0))
+    supports = [bf.Clamp(beam.start), bf.Roller(beam.end, (1.0, 0.0))]
+    model = bf.Model([beam], supports, [bf.Actuation(beam, curvature=-1.0, stretch=-0.01)])
+    path = bf.trace_equilibrium(model, points=60)
+    with pytest.raises(bf.LimitPointError) as caught:
+        bf.solve_static(model, steps)
+    assert caught.value.load_factor == pytest.approx(path.limit_points[0].at, rel=1e-6)
+    assert caught.value.load_factor == pytest.approx(0.393, abs=2e-3)

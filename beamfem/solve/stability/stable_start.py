@@ -12,6 +12,8 @@ from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
 
+_ROUND_OFF = 8.0 * np.finfo(float).eps  # of the largest force: what is left of one along the normal of a roller
+
 
 def stable_start(system: System, about: State | Solution | None) -> tuple[np.ndarray, float]:
     """Return the state p (n,) and load factor to start from. Raises InputError, ConvergenceError."""
@@ -25,7 +27,7 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
         if not begun.ended.good:
             raise ConvergenceError(f"no equilibrium {wanted}: {begun.ended.value}")
         p = begun.state
-    if not np.any(load_slope(system, p, load_factor)[system.free_dofs]):
+    if not _moves(system, load_slope(system, p, load_factor)):
         raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
     zeros = np.zeros_like(p)
     tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
@@ -36,3 +38,9 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
             f"in {unstable} direction(s)"
         )
     return p, load_factor
+
+
+def _moves(system: System, slope: np.ndarray) -> bool:
+    """Return whether forces (n,) that grow with the load factor are more than supports take up, and round-off."""
+    acting = np.abs(system.along_free(slope)) * system.scale[system.free_dofs]
+    return bool(np.any(acting > _ROUND_OFF * np.max(np.abs(slope) * system.scale)))

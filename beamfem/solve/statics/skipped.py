@@ -10,7 +10,8 @@ from beamfem.solve.statics.path_direction import leaves_path
 from beamfem.solve.statics.static_record import StaticRecord
 
 _OVERSHOOT = 3.0  # ratio of the first correction to the whole step; it is larger if a limit point is near the start
-_SLOW, _SLOW_FROM_REST = 7, 12  # iterations; most models start at rest and reach the end in one long step
+# Iterations. Most models under constant forces start at rest and reach the end in one long step.
+_SLOW, _SLOW_FROM_REST = 7, 12
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
@@ -30,7 +31,8 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         moved = float(np.max(np.abs(result.state - done.state) / system.scale))
         if result.first > _OVERSHOOT * moved + newton.tolerance:
             return True
-    if result.iterations < (_SLOW if done.reached > 0.0 else _SLOW_FROM_REST):
+    at_rest = done.reached == 0.0 and _constant_forces(system, target)
+    if result.iterations < (_SLOW_FROM_REST if at_rest else _SLOW):
         return False
     if _differs_half_way(system, done, target, result.state):
         return True
@@ -38,6 +40,13 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         return False  # the tangent of a committed state is that of unloading, not of the path
     done.iterations += 2
     return leaves_path(system, (done.state, done.reached), (result.state, target))
+
+
+def _constant_forces(system: System, load_factor: float) -> bool:
+    """Return whether forces alone act, which neither follow the beam nor come from imposed strains and supports."""
+    follow = any(np.any(loads.follows) for loads in system.point_loads)
+    imposed = any(block.imposed is not None for block in system.blocks)
+    return not (follow or imposed or np.any(system.prescribed_changes(load_factor)))
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:

@@ -89,11 +89,12 @@ def test_a_spring_acts_on_the_first_acceleration():
 
 
 def test_a_start_is_put_back_onto_the_plane_of_an_inclined_roller():
-    """Found by mutation."""
+    """Found by mutation: it has slid by 0.1 m along the plane, and lies half of what is tolerated beside it."""
     one = straight(bf.CRBF(2), 2)
-    moved = bf.simulate(bf.Model([one]), 0.1, 0.1, velocity=bf.RigidVelocity((0.0, 1e-5)))[-1]
+    slid = bf.RigidVelocity((0.8 + 0.6 * 5e-7, -0.6 + 0.8 * 5e-7))
+    moved = bf.simulate(bf.Model([one]), 0.1, 0.1, velocity=slid)[-1]
     state = bf.simulate(bf.Model([one], [bf.Roller(one.start, (3, 4))]), 1e-6, 1e-6, start=moved)
-    assert state.displacement(one.start)[0] == pytest.approx([-0.48e-6, 0.36e-6], abs=1e-15)
+    assert state.displacement(one.start)[0] == pytest.approx([0.08, -0.06], abs=1e-15)
     assert state.velocity(one.start)[0] @ [3.0, 4.0] == pytest.approx(0.0, abs=1e-15)
 
 
@@ -146,6 +147,63 @@ def test_a_start_with_a_beam_too_many_is_refused_by_name():
     state = bf.simulate(bf.Model([a, b]), 1e-3, 1e-3)[-1]
     with pytest.raises(bf.InputError, match=r"this model does not have the 5 nodes of CRBF-2 on beam 0 from \(0, 0\)"):
         bf.simulate(bf.Model([b]), 1e-3, 1e-3, start=state)
+
+
+FORCE = (0.0, 5.0)
+NODES_APART = {
+    "a load is gone": (lambda b: [bf.PointForce(b.at(0.3), FORCE)], lambda b: [], 0.3, "PointForce", "this model"),
+    "an end of elements was moved to it": (
+        lambda b: [bf.PointForce(b.at(0.501), FORCE)],
+        lambda b: [],
+        0.501,
+        "PointForce",
+        "this model",
+    ),
+    "a load begins inside": (
+        lambda b: [bf.DistributedLoad(b, lambda s: (0.0, 1.0 if s > 0.3 else 0.0))],
+        lambda b: [],
+        0.3,
+        "DistributedLoad",
+        "this model",
+    ),
+    "a support comes": (
+        lambda b: [bf.PointForce(b.end, FORCE)],
+        lambda b: [bf.Spring(b.at(0.3), (1.0, 1.0))],
+        0.3,
+        "Spring",
+        "the model of start",
+    ),
+}
+
+
+def parts_of_a_rod(own, parts):
+    loads = [part for part in parts if not isinstance(part, bf.Spring)]
+    return bf.Model([own], [bf.Clamp(own.start), *(part for part in parts if part not in loads)], loads)
+
+
+@pytest.mark.parametrize(("before", "after", "at", "part", "lacks"), NODES_APART.values(), ids=NODES_APART)
+def test_a_start_whose_nodes_a_part_placed_names_it_and_what_keeps_them(before, after, at, part, lacks):
+    """It told the numbers of nodes only, and to keep the supports, where a load was gone."""
+    own, copy = straight(bf.CRBF(3), 4), straight(bf.CRBF(3), 4)
+    state = bf.solve_static(parts_of_a_rod(own, before(own)))[-1]
+    told = f"on beam 0 for {part} at fraction {at}, and {lacks} has none there; add a PointForce .* to {lacks}"
+    for other in (own, copy):
+        with pytest.raises(bf.InputError, match=told):
+            bf.simulate(parts_of_a_rod(other, after(other)), 1e-4, 1e-4, start=state)
+    # as it says
+    kept = [bf.PointForce(own.at(at), (0.0, 0.0))]
+    here, there = (kept, []) if lacks == "this model" else ([], kept)
+    static = bf.solve_static(parts_of_a_rod(own, [*before(own), *there]))
+    motion = bf.simulate(parts_of_a_rod(own, [*after(own), *here]), 1e-4, 1e-4, start=static[-1])
+    assert motion.displacement(own.end)[0] == pytest.approx(static.displacement(own.end)[-1], abs=1e-15)
+
+
+def test_many_points_that_placed_nodes_are_counted():
+    own = straight(bf.CRBF(3), 4)
+    loads = [bf.PointForce(own.at(share), FORCE) for share in (0.1, 0.2, 0.3, 0.4, 0.6)]
+    state = bf.solve_static(parts_of_a_rod(own, loads))[-1]
+    with pytest.raises(bf.InputError, match=r"PointForce at fraction 0\.3 and 2 more, .* at each point to this model"):
+        bf.simulate(parts_of_a_rod(own, []), 1e-4, 1e-4, start=state)
 
 
 def test_a_motion_whose_duration_is_no_multiple_of_the_step_has_a_row_more():

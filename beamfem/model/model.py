@@ -13,7 +13,6 @@ from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.kernels.block import NO_HISTORY
-from beamfem.model.along_beam import AlongBeam, functions_along, kinks_along
 from beamfem.model.beam import Beam, Point, reference_positions
 from beamfem.model.body import require_body
 from beamfem.model.contribution import Contribution, remembered, require_connector
@@ -25,6 +24,7 @@ from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoa
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
+from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
@@ -48,7 +48,7 @@ _NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 class Model(ModelOutputs):
     """Beams with supports, loads and joints, meshed and numbered.
 
-    Supports, joints, point loads and kinks of loads along beams place a mesh node at their point.
+    Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point.
 
     Parameters
     ----------
@@ -170,19 +170,8 @@ class Model(ModelOutputs):
     @cached_property
     def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
         require_room(self.beams)
-        fractions: list[list[float]] = [[] for _ in self.beams]
-        places = [support.point for support in self.point_supports]
-        places += [point for joint in self.joints for point in (joint.a, joint.b)]
-        places += [load.point for load in self.point_loads]
         connected = [point for connector in self.connectors for point in connector.points]
-        for point in (*places, *connected):
-            fractions[self._numbers[id(point.beam)]].append(point.fraction)
-        for beam, own in zip(self.beams, fractions, strict=True):
-            own += [jump / beam.curve.length for jump in beam.jumps]
-        lines: tuple[AlongBeam, ...] = (*self.line_loads, *(load for _, load in self.imposing))
-        for line in lines:
-            kinks = [kink for name in functions_along(line) for kink in kinks_along(line, name)]
-            fractions[self._numbers[id(line.beam)]] += [kink / line.beam.curve.length for kink in kinks]
+        fractions = [[fraction for fraction, _ in own] for own in nodes_asked(self)]
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)

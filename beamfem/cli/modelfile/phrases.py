@@ -15,6 +15,9 @@ _PHRASES = (
     ("trace_equilibrium follows the path around it", '`kind = "path"` in [analysis] follows the path around it'),
     ('snap="jump" goes', '`snap = "jump"` beside `kind = "static"` goes'),
     ("prescribe a displacement (Prescribed)", 'prescribe a displacement (`kind = "prescribed"` in [[supports]])'),
+    ("use a Prescribed support with", 'use a support of kind "prescribed" with'),
+    ("start from what solve_static finds with this support", 'take `start = "static"` with this support'),
+    ("add a PointForce of (0, 0)", 'add a load of kind "force" with `vector = [0, 0]`'),
     ("let a Prescribed support move", 'let a support of kind "prescribed" move'),
     (
         "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "

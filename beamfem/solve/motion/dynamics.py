@@ -18,6 +18,7 @@ from beamfem.solve.motion.conditions import require_met
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
+from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
 from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lack
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
@@ -52,7 +53,8 @@ def simulate(
     integrator : GeneralizedAlpha or Integrator, optional
         Time integration method, by default `GeneralizedAlpha()`; an `Integrator` is a user-defined one.
     start : State, optional
-        State to start from, such as the last one of a static solution; by default the reference at rest.
+        State to start from, such as the last one of a static solution; by default the reference at rest. Supports have
+        to hold its points where they are; velocities that they stop are lost at once, as in a plastic impact.
     velocity : RigidVelocity or callable, optional
         Initial velocity field.
     save_every : int, default 1
@@ -66,7 +68,7 @@ def simulate(
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments.
+        Before the solve, for invalid arguments, such as a start from which a support would jump.
     ConvergenceError
         If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
         KeyboardInterrupt, carries the states so far as its `solution` too.
@@ -101,11 +103,9 @@ def simulate(
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    state[:3, system.prescribed_dofs] = prescribed[0]
-    for dof, normal in system.inclined:
-        pair = slice(dof, dof + 2)
-        state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
-        state[1, pair] -= normal * (normal @ state[1, pair])
+    if start is not None:
+        require_on_supports(system, state[0], prescribed[0, 0])
+    put_onto_supports(system, state, prescribed[0])
     if len(system.connectors.multipliers):
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)

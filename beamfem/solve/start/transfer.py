@@ -12,13 +12,15 @@ from beamfem.kernels.block import TURNED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.named import beam_in_words
+from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.reference import reference_angle
 from beamfem.model.turns import uncounted
 from beamfem.results import postprocess
 from beamfem.results.solution import State
 
 _SAME = 1e-9  # of the length of a beam: tolerance between positions of nodes
-_ADVICE = "take it from a model of the same beams, elements and points with supports"
+_SEVERAL = 3  # points that a message names
+_ADVICE = "take it from a model of the same beams and elements, whose supports, loads and joints are at the same points"
 
 
 def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -125,6 +127,9 @@ def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, Be
     for new in target.meshes:
         old = own.get(id(new.beam)) or next((mesh for mesh in left if _alike(mesh, new)), None)
         if old is None or not _alike(old, new):
+            like = old or next((mesh for mesh in left if _divided_alike(mesh, new)), None)
+            if like is not None and (parted := _parted(source, target, like, new, name)):
+                raise InputError(parted)
             other = [old] if old is not None else source.meshes[:5]
             there = "; ".join(_described(source, mesh) for mesh in other)
             raise InputError(
@@ -146,6 +151,38 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
     apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
     turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
     return bool(apart <= near and turned <= _SAME * new.speed.max())
+
+
+def _divided_alike(old: BeamMesh, new: BeamMesh) -> bool:
+    """Return whether two beams lie at the same place with the same elements, but for those that points divide."""
+    if old.vectors != new.vectors or old.beam.elements != new.beam.elements:
+        return False
+    ends = np.abs(old.position[[0, -1]] - new.position[[0, -1]]).max()
+    return bool(max(ends, abs(old.arc[-1] - new.arc[-1])) <= _SAME * new.arc[-1])
+
+
+def _parted(source: Model, target: Model, old: BeamMesh, new: BeamMesh, name: str) -> str:
+    """Return the message that parts inside elements place nodes in one model only; empty if they do not.
+
+    A divided element has more freedom than a whole one, so that no transfer between them is exact.
+    """
+    beam, message = beam_in_words(target.beams, target.number_of(new.beam)), []
+    for one, mesh, other in ((source, old, new), (target, new, old)):
+        asked = nodes_asked(one)[one.number_of(mesh.beam)]
+        there = other.vertices / other.vertices[-1]
+        only = {at: part for at, part in sorted(asked) if np.abs(there - at).min() > _SAME}
+        if not only:
+            continue
+        parts = ", ".join(f"{part} at fraction {at:.12g}" for at, part in list(only.items())[:_SEVERAL])
+        if len(only) > _SEVERAL:
+            parts += f" and {len(only) - _SEVERAL} more"
+        has, lacks = (f"the model of {name}", "this model") if one is source else ("this model", f"the model of {name}")
+        nodes, point = ("a node", "this point") if len(only) == 1 else ("nodes", "each point")
+        message.append(
+            f"{has} has {nodes} on {beam} for {parts}, and {lacks} has none there; add a PointForce of (0, 0) at "
+            f"{point} to {lacks}"
+        )
+    return "; and ".join(message)
 
 
 def _described(model: Model, mesh: BeamMesh) -> str:

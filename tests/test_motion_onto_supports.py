@@ -1,0 +1,134 @@
+"""A motion does not begin with a jump: what its supports prescribe at time 0 is what its start has there."""
+
+import numpy as np
+import pytest
+from connectors import Anchor
+
+import beamfem as bf
+
+STEEL = bf.Material(2e11, 0.3, 7800.0)
+
+
+def straight(element=None, size=1.0):
+    section = bf.Rectangle(0.01 * size, 0.01 * size)
+    return bf.Beam(bf.Line((0.0, 0.0), (size, 0.0)), 4, element or bf.CRBF(3), section, STEEL)
+
+
+def bent(own, force):
+    return bf.solve_static(bf.Model([own], [bf.Clamp(own.start)], [bf.PointForce(own.end, (0.0, force))]))
+
+
+def go_on(own, state, *supports, **given):
+    return bf.simulate(bf.Model([own], [bf.Clamp(own.start), *supports]), 2e-4, 1e-4, start=state, **given)
+
+
+ROD = straight()
+BENT = bent(ROD, 5.0)
+UX, UY = BENT.displacement(ROD.end)[-1].tolist()
+TURN = float(BENT.rotation(ROD.end)[-1])
+
+ELSEWHERE = {
+    "pin": (bf.Pin(ROD.end), r"Pin at \(1, 0\), fraction 1 of .* prescribes ux = 0 m, uy = 0 m .* jump by 0.01 m"),
+    "roller": (bf.Roller(ROD.end), r"Roller at .* prescribes uy = 0 m .* start has uy = 0.00999975 m there"),
+    "inclined roller": (bf.Roller(ROD.end, (3, 4)), r"Roller at .* along \(0.6, 0.8\) at 0, but start has 0.007964 m"),
+    "displacement": (bf.Prescribed(ROD.end, uy=0.0), r"Prescribed support with uy = 0.0099997\d+; or start from what"),
+    "rotation": (bf.Prescribed(ROD.end, rotation=1.0), r"rotation = 1 rad .* has rotation = 0.01\d+ rad .* 0.985 rad"),
+    "clamp": (bf.Clamp(ROD.end), r"Clamp at .* jump by 0.01 m and 0.015 rad"),
+    "function": (bf.Prescribed(ROD.end, uy=lambda t: 0.1 * t), r"uy = 0 m .* to continue a motion, shift the time"),
+}
+
+
+@pytest.mark.parametrize(("support", "told"), ELSEWHERE.values(), ids=ELSEWHERE)
+def test_a_support_that_would_move_a_point_of_the_start_at_once_is_refused(support, told):
+    """A bent rod of 0.025 J had 5556 J in the first row, in silence."""
+    with pytest.raises(bf.InputError, match=told):
+        go_on(ROD, BENT[-1], support)
+
+
+HELD = {
+    "position": bf.Prescribed(ROD.end, ux=UX, uy=UY),
+    "all": bf.Prescribed(ROD.end, ux=UX, uy=UY, rotation=TURN),
+    "function": bf.Prescribed(ROD.end, uy=lambda t: UY + 0.1 * t),
+}
+
+
+@pytest.mark.parametrize("support", HELD.values(), ids=HELD)
+def test_a_support_that_holds_the_start_where_it_is_keeps_its_energy(support):
+    motion = go_on(ROD, BENT[-1], support)
+    assert motion.energy().strain[0] == pytest.approx(BENT.energy().strain[-1], rel=1e-9)
+
+
+def test_the_displacements_that_the_message_names_are_taken():
+    with pytest.raises(bf.InputError) as refused:
+        go_on(ROD, BENT[-1], bf.Clamp(ROD.end))
+    named = str(refused.value).partition("use a Prescribed support with ")[2].partition(";")[0]
+    values = {name: float(value) for name, value in (pair.split(" = ") for pair in named.split(", "))}
+    motion = go_on(ROD, BENT[-1], bf.Prescribed(ROD.end, **values))
+    assert motion.energy().strain[0] == pytest.approx(BENT.energy().strain[-1], rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("deflection", [1e-7, 1e-5, 1e-2])
+def test_a_jump_is_measured_by_the_displacements_of_the_start(size, deflection):
+    """A tenth of a small deflection is a jump too: held at the reference, its energy would be another."""
+    own = straight(size=size)
+    force = 3.0 * STEEL.youngs_modulus * own.section.second_moment / size**2 * deflection
+    static = bent(own, force)
+    up = static.displacement(own.end)[-1, 1]
+    assert up == pytest.approx(deflection * size, rel=0.05)
+    go_on(own, static[-1], bf.Prescribed(own.end, uy=up * (1.0 + 5e-7)))
+    with pytest.raises(bf.InputError, match="it would jump by"):
+        go_on(own, static[-1], bf.Prescribed(own.end, uy=0.9 * up))
+
+
+def test_a_state_at_half_the_load_is_not_where_a_prescribed_number_begins():
+    """Numbers grow with the load factor in statics, but are constant in a motion."""
+    model = bf.Model([ROD], [bf.Clamp(ROD.start), bf.Prescribed(ROD.end, uy=0.02)])
+    path = bf.solve_static(model, at=[0.5, 1.0])
+    bf.simulate(model, 2e-4, 1e-4, start=path[-1])
+    with pytest.raises(bf.InputError, match=r"prescribes uy = 0.02 m .* start has uy = 0.01 m there"):
+        bf.simulate(model, 2e-4, 1e-4, start=path[-2])
+
+
+def test_a_driven_motion_goes_on_where_the_time_of_its_function_is_shifted():
+    def driven(begin):
+        lift = bf.Prescribed(ROD.start, ux=0.0, uy=lambda t: 0.01 * np.sin(50.0 * (t + begin)), rotation=0.0)
+        return bf.Model([ROD], [lift])
+
+    first = bf.simulate(driven(0.0), 0.02, 1e-3)
+    rest = bf.simulate(driven(0.02), 0.01, 1e-3, start=first[-1])
+    assert rest.displacement(ROD.start)[0] == pytest.approx(first.displacement(ROD.start)[-1], abs=1e-14)
+    with pytest.raises(bf.InputError, match="shift the time of its functions, which begins at 0 again"):
+        bf.simulate(driven(0.0), 0.01, 1e-3, start=first[-1])
+
+
+def test_a_crank_begins_each_period_anew_unless_a_spring_or_a_connector_counts_its_turns():
+    """After a full turn the section is where it was; a torsion spring is not."""
+    crank = bf.Prescribed(ROD.start, ux=0.0, uy=0.0, rotation=lambda t: 2.0 * np.pi * t / 0.1)
+    model = bf.Model([ROD], [crank])
+    first = bf.simulate(model, 0.1, 5e-4)
+    assert first.rotation(ROD.start)[-1] == pytest.approx(2.0 * np.pi)
+    second = bf.simulate(model, 0.01, 5e-4, start=first[-1])
+    assert second.energy().total[0] == pytest.approx(first.energy().total[-1], rel=1e-9)
+    wound = (
+        bf.Model([ROD], [crank, bf.Spring(ROD.start, rotational=1.0)]),
+        bf.Model([ROD], [crank], connectors=[Anchor(ROD.start, (0.0, 0.0, 1.0))]),
+    )
+    for other in wound:
+        with pytest.raises(bf.InputError, match=r"it would jump by 6.283 rad"):
+            bf.simulate(other, 0.01, 5e-4, start=first[-1])
+
+
+@pytest.mark.parametrize("support", [bf.Pin, bf.Roller, lambda point: bf.Roller(point, (3, 4))])
+def test_an_impact_onto_a_support_is_plastic(support):
+    """Velocities that a support stops are lost at once, with their kinetic energy; nothing is strained by that."""
+    free = bf.simulate(bf.Model([ROD]), 1e-6, 1e-6, velocity=bf.RigidVelocity((0.0, -1e-4)))[0]
+    motion = bf.simulate(bf.Model([ROD], [support(ROD.end)]), 1e-6, 1e-6, start=free)
+    assert motion.energy().strain[0] == pytest.approx(0.0, abs=1e-15)
+    assert 0.0 < motion.energy().kinetic[0] < 0.5 * 7800.0 * 1e-4 * 1e-8
+
+
+def test_a_motion_from_the_reference_begins_where_supports_prescribe():
+    """Without a start there is no state that would be lost: the theory page says so."""
+    model = bf.Model([ROD], [bf.Clamp(ROD.start), bf.Prescribed(ROD.end, uy=0.01)])
+    assert bf.simulate(model, 2e-4, 1e-4).displacement(ROD.end)[0, 1] == pytest.approx(0.01)

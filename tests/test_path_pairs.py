@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from random_models import random_recipe
 
 import beamfem as bf
 
@@ -35,3 +36,29 @@ def test_standing_loads_beyond_a_limit_point_say_so(solve):
     loads = [bf.PointForce(left.end, (0.0, -52.0), scale=False), bf.PointForce(left.end, (0.01, 0.0))]
     with pytest.raises(bf.ConvergenceError, match="do not scale: as they grow from zero, they reach a limit point"):
         solve(bf.Model([left, right], supports, loads, joints))
+
+
+@pytest.mark.parametrize("steps", [1, 3, 10, 100])
+@pytest.mark.parametrize("beyond", [1.0001, 1.002, 1.02, 1.1])
+def test_a_limit_point_just_beyond_the_load_is_not_in_its_way(beyond, steps):
+    """A step along the path that rose over the load and came down again was taken for one that turned below it."""
+    strut = bf.Beam(bf.Line((0.0, 0.0), (0.5, 0.05)), 4, bf.CRBF(2), bf.Rectangle(0.01, 0.01), RUBBER)
+    supports = [bf.Clamp(strut.start), bf.Prescribed(strut.end, ux=0.0, rotation=0.0)]
+
+    def pushed(force):
+        return bf.Model([strut], supports, [bf.PointForce(strut.end, (0.0, -force))])
+
+    limit = bf.trace_equilibrium(pushed(20.0)).limit_points[0].at * 20.0
+    model = pushed(limit / beyond)
+    path, solution = bf.trace_equilibrium(model, 1.0), bf.solve_static(model, steps)
+    assert solution.at[-1] == 1.0
+    assert solution.stable.all()
+    np.testing.assert_allclose(solution.p[-1], path.p[-1], atol=1e-7)
+
+
+def test_a_strut_that_turns_back_just_beyond_its_load_reaches_it():
+    """Seed 1158 of the random models."""
+    model = random_recipe(1158).build().model
+    path = bf.trace_equilibrium(model, 1.0)
+    for steps in (1, 3, 100):
+        np.testing.assert_allclose(bf.solve_static(model, steps).p[-1], path.p[-1], atol=1e-9)

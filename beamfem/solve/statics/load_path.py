@@ -100,12 +100,16 @@ class PathFollower:
             self.size = step.next_size
             point = step.segment.after
             extrema = sorted([*step.limits, *step.segment.turned])
-            if extrema:
-                limit = step.segment.critical(extrema[0])
+            limit = step.segment.critical(extrema[0]) if extrema else None
+            if limit is not None and limit[-1] > end and extrema[0] in step.segment.found:
+                # the path turns back within the step, but beyond the load factor asked for
+                rising = Segment(line, before, step.segment.at(extrema[0]))
+                point = _at_load(rising, end, iterations, cuts)
+            elif limit is not None:
                 if np.array_equal(limit, point.y):
                     point = _step(line, point, self.size)[0].segment.after
                 raise TurnsBackError(limit, point.y, iterations, cuts)
-            if point.load_factor > end:
+            elif point.load_factor > end:
                 point = _at_load(step.segment, end, iterations, cuts)
             yield Followed(point, iterations, cuts)
 

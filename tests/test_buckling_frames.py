@@ -243,3 +243,18 @@ def test_buckling_is_found_where_the_iteration_does_not_converge(monkeypatch, el
     found = bf.solve_buckling(portal([0.5], [EI], elements=elements), 2)
     assert found.load_factors == pytest.approx(exact.load_factors, rel=1e-8)
     assert found.linearised == pytest.approx(exact.linearised, rel=1e-8)
+
+
+@pytest.mark.parametrize("led", [0.005, 0.01, 0.02])
+def test_a_search_that_finds_the_same_place_again_ends(led):
+    """It went on for ever: behind a step onto another path the tangent seemed to change wherever it was looked."""
+    curve, rubber = bf.Line((0, 0), (1.029752878431586, -0.41368336197898953)), bf.Material(2e9, 0.3, 1000.0)
+    beam = bf.Beam(curve, 1, bf.BilinearCRBF(), bf.Rectangle(0.05, 0.05), rubber)
+    spring = bf.Spring(beam.at(0.6915750966897879), (1e5, 0.0), 100.0)
+    loads = [bf.PointForce(beam.end, (1.129427939135084, 3.4673748983930257)), bf.Gravity((0.0, -9.81))]
+    loads.append(bf.PointForce(beam.at(0.18637701771339518), (1.2234820193249452, 12.979194119574597)))
+    found = bf.solve_buckling(bf.Model([beam], [bf.Pin(beam.start), bf.Prescribed(beam.end, ux=led), spring], loads))
+    path = bf.trace_equilibrium(found.model, until=lambda state: state.load_factor > 50.0)
+    assert not len(found) or found.load_factors[0] > 50.0
+    assert not path.limit_points
+    assert not path.bifurcations

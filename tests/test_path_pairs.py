@@ -62,3 +62,10 @@ def test_a_strut_that_turns_back_just_beyond_its_load_reaches_it():
     path = bf.trace_equilibrium(model, 1.0)
     for steps in (1, 3, 100):
         np.testing.assert_allclose(bf.solve_static(model, steps).p[-1], path.p[-1], atol=1e-9)
+
+
+def test_a_model_that_cannot_move_at_all_has_no_path():
+    bar = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 1, bf.CRBF(1), bf.Rectangle(0.05, 0.05), RUBBER)
+    model = bf.Model([bar], [bf.Clamp(bar.start), bf.Clamp(bar.end)], [bf.Gravity((0.0, -9.81))])
+    with pytest.raises(bf.InputError, match="prescribe all of its coordinates"):
+        bf.trace_equilibrium(model, 1.0)

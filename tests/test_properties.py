@@ -176,6 +176,7 @@ def test_the_energy_of_a_free_motion_drifts_with_the_square_of_the_step(recipe):
     drifts = []
     for count in (steps, 2 * steps):
         motion = bf.simulate(model, 0.5 * period, 0.5 * period / count, bf.GeneralizedAlpha(1.0))
+        assume(np.ptp(motion.p, axis=0).max() > 1e-9 * recipe.reach)  # else supports take up all loads
         energy = motion.energy()
         size = max(energy.kinetic.max(), np.ptp(energy.potential), np.ptp(energy.strain))
         drifts.append(np.abs(energy.total - energy.total[0]).max() / size)

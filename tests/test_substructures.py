@@ -200,3 +200,14 @@ def test_pivots_cost_no_iteration(monkeypatch):
         )
         assert general.first == pytest.approx(compiled.first, rel=1e-6)
         assert general.iterations == compiled.iterations
+
+
+def test_a_chain_with_a_corner_at_every_node_is_not_cut(monkeypatch):
+    """Nothing is shared there; a digitised curve of 20,000 pieces raised IndexError where there were two cores."""
+    monkeypatch.setattr(cut_chain, "usable_cores", lambda: 2)
+    angles = np.linspace(0.0, 1.5, 9)
+    curve = bf.Polyline(list(zip(np.sin(angles), np.cos(angles), strict=True)))
+    for pieces, cut in ((8, False), (16, True)):
+        beam = bf.Beam(curve, pieces, bf.CRBF(1), bf.Rectangle(0.05, 0.05), bf.Material(2e9, 0.3, 1000.0))
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -100.0))])
+        assert cut_chain.worth_cutting(system_of(model, static=True), elements=4) == cut

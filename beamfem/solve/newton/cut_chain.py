@@ -44,8 +44,18 @@ class Substructure:
 
 
 def worth_cutting(system: System, elements: int = _LONG) -> bool:
-    """Return whether a model is one chain of at least `elements` elements and two cores are available."""
-    return is_chain(system) and len(system.blocks[0].node) >= elements and usable_cores() > 1
+    """Return whether a model is a chain of so many elements that can be cut, and two cores are available."""
+    long = is_chain(system) and len(system.blocks[0].node) >= elements
+    return long and usable_cores() > 1 and len(_cuts(system)) > 0
+
+
+def _cuts(system: System) -> np.ndarray:
+    """Return the elements of a chain that share their first node with the previous one.
+
+    At a corner of the curve two nodes coincide, and nothing is shared.
+    """
+    node = system.blocks[0].node
+    return 1 + np.flatnonzero(node[1:, 0] == node[:-1, -1])
 
 
 def usable_cores() -> int:
@@ -58,8 +68,7 @@ def usable_cores() -> int:
 def substructures_of(system: System, start: np.ndarray, load_factor: float) -> tuple[Substructure, Substructure]:
     """Return the halves of a chain in the state `start` (n,), cut at the node nearest to the middle element."""
     (block,), size = system.blocks, len(start)
-    # at a corner of the curve two nodes coincide
-    cuts = 1 + np.flatnonzero(block.node[1:, 0] == block.node[:-1, -1])
+    cuts = _cuts(system)
     cut = int(cuts[len(cuts) // 2])
     shared = block.dof[block.node[cut, 0]]
     shared = shared[shared >= 0]

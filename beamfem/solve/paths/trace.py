@@ -112,6 +112,8 @@ def trace_equilibrium(
     refuse_multipliers(system, "trace_equilibrium")
     refuse_memory(system, "trace_equilibrium")
     require_support(system)
+    if not len(system.free_dofs):
+        raise InputError("the supports of this model prescribe all of its coordinates, so there is no path to follow")
     _require_load(system)
     _require_crossing(model, start)
     record = PathRecord(model)

@@ -20,6 +20,9 @@ _INSIDE = 0.3  # of the radius: critical points further out get windows of their
 _CLEAR = 1.2  # times the radius: least distance of the nearest critical point outside
 _RADII = 0.2 * 0.3 ** np.arange(8)  # of the step in which a critical point lies
 _RECENTRED = 4
+_NEARER = (
+    1.0 - 1e-6
+)  # of the distance searched: a search before a critical point is shorter by the radius of its window
 _IMPERFECT = 1e-9  # deviation of a path that still counts as a bifurcation: lengths of the model, radians
 _ROUND_OFF = 30.0  # times the unbalanced force along a mode: deviation of a path that round-off can explain
 _SMOOTH = 0.03  # of a step: largest deviation of its interior from the prediction of its ends
@@ -53,6 +56,8 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
         found, first, last = search.located(search.estimate())
         if search.distance(first) <= 0.0 or not Search(path, before, first).changes:
             return found, last
+        if search.distance(first) > _NEARER * search.reach:
+            raise PathLostError("a change of stability was found again where there is none")
         after = first
 
 

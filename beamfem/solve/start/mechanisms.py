@@ -39,7 +39,7 @@ def require_support(system: System) -> None:
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     raise FreeMotionError(
-        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
+        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(dict.fromkeys(described))}; its point ({x:g}, {y:g}) "
         "moves. A static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
         "(Rigid instead of Hinge); without them, use simulate"
     )

@@ -27,8 +27,13 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
         if not begun.ended.good:
             raise ConvergenceError(f"no equilibrium {wanted}: {begun.ended.value}")
         p = begun.state
-    if not _moves(system, load_slope(system, p, load_factor)):
-        raise InputError("no load grows with the load factor, so none can buckle the model; add one with scale=True")
+    # imposed strains, as of heat, may load a beam between its supports without moving it
+    imposed = any(block.imposed is not None for block in system.blocks)
+    if not imposed and not _moves(system, load_slope(system, p, load_factor)):
+        raise InputError(
+            "no load grows with the load factor, or supports take it up, so none can buckle the model; add one with "
+            "scale=True"
+        )
     zeros = np.zeros_like(p)
     tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
     unstable = tangent.factorised(system.rotated).negative_pivots

@@ -29,17 +29,17 @@ def require_support(system: System) -> None:
     # the first of those that move equally, whatever the round-off
     number = int(np.flatnonzero(sizes > (1.0 - 1e-6) * sizes.max())[0])
     motions = [motion.reshape(-1, 3)[body[number]] for motion in free]
-    described = [
+    described = dict.fromkeys(
         "it " + describe(motion[:2] * system.extent, motion[2], rows.centre, system.extent)
         for motion in motions
         if np.abs(motion).max() > NEGLIGIBLE
-    ]
+    )
     start, end = model.beams[number].start, model.beams[number].end
     moved = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     raise FreeMotionError(
-        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(dict.fromkeys(described))}; its point ({x:g}, {y:g}) "
+        f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
         "moves. A static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
         "(Rigid instead of Hinge); without them, use simulate"
     )

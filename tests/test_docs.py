@@ -1,12 +1,14 @@
 """Every code block of README and docs runs, prints what the page shows, and what pages name exists."""
 
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 import beamfem as bf
-from docs.page_code import run
+from docs.page_code import blocks_of, run
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -50,6 +52,22 @@ def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
     for block, printed in run(page, page.read_text()):
         if block.output is not None:
             assert same(block.output, printed), f"{page}, line {block.line}: it prints\n{printed}"
+
+
+def test_a_result_with_the_form_load_of_the_page_is_saved(tmp_path, monkeypatch):
+    """Once its class stands in a module, as in a script."""
+    page = ROOT / "docs" / "extending.md"
+    module = ModuleType("page")
+    monkeypatch.setitem(sys.modules, "page", module)
+    for block in blocks_of(page.read_text()):
+        exec(block.code, module.__dict__)
+        if "class Water" in block.code:
+            break
+    module.bent.save(tmp_path / "gate.h5")
+    loaded = bf.load(tmp_path / "gate.h5")
+    assert isinstance(loaded.model.connectors[0], module.Water)
+    again = bf.solve_static(loaded.model).position(loaded.model.beams[0].end)[-1]
+    assert again == pytest.approx(module.bent.position(module.gate.end)[-1], rel=1e-9)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

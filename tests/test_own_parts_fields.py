@@ -17,9 +17,12 @@ BENDING = 2e11 * 1e-8 / 12
 
 
 def tip(element):
+    """Return where a bent cantilever of 4 elements ends; its estimate of locking is of another rule."""
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, element, SECTION, STEEL)
     loads = [bf.PointForce(beam.end, (0.0, 2.0 * BENDING))]
-    return bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads)).position(beam.end)[-1]
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads))
+    assert not [warning for warning in solution.warnings if "lock" in warning and element.field.degree > 2]
+    return solution.position(beam.end)[-1]
 
 
 @pytest.mark.parametrize("order", [1, 2])

@@ -58,6 +58,17 @@ class InAnotherUnit(Offset):
         return np.concatenate([1e3 * found[:6], found[6:]])
 
 
+class OfTheOtherSign(Offset):
+    def force(self, at):
+        found = super().force(at)
+        return np.concatenate([-found[:6], found[6:]])
+
+
+class InAnotherOrder(Offset):
+    def force(self, at):
+        return super().force(at)[[0, 1, 2, 3, 4, 5, 7, 6, 8]]
+
+
 @dataclass(frozen=True)
 class Wheel:
     """A foot below a node on an inclined floor, with friction."""
@@ -182,12 +193,20 @@ def test_a_rigid_offset_that_does_no_work_is_in_balance(kind):
     upper, model = bracket(kind)
     solution = bf.solve_static(model)
     tip = solution.position(upper.end)[-1]
+    assert solution.warnings == ()
     assert solution.reaction(model.beams[0].start)[-1] == pytest.approx([0.0, 20.0, 20.0 * tip[0]], abs=1e-6)
     rigid = bf.Material(STEEL.youngs_modulus * 1e4, 0.3, 1.0)
     post = bf.Beam(bf.Line((1.0, 0.0), (1.0, 0.3)), 4, bf.CRBF(3), SECTION, rigid)
     joints = [bf.Rigid(model.beams[0].end, post.start), bf.Rigid(post.end, upper.start)]
     peer = bf.solve_static(bf.Model([model.beams[0], post, upper], model.supports, model.loads, joints))
     assert tip == pytest.approx(peer.position(upper.end)[-1], abs=2e-4)
+
+
+@pytest.mark.parametrize("kind", [OfTheOtherSign, InAnotherOrder])
+def test_multipliers_against_their_conditions_are_refused(kind):
+    """The equilibrium would be right, but a determinant of the other sign made it unstable in a warning."""
+    with pytest.raises(bf.InputError, match=r"multiplier 0 does not act along the derivative of its condition by q"):
+        bf.solve_static(bracket(kind)[1])
 
 
 @pytest.mark.parametrize("kind", [HalfLever, HalfLeverOnADamper, HalfLeverWithAPast])

@@ -25,20 +25,27 @@ def require_workless(item: Connector) -> None:
 
     Friction that grows with a multiplier has forces besides: it takes its direction from velocities or from the past,
     or vanishes where nothing has slid, and passes. So do forces that are right only where the conditions are met, and
-    multipliers in another unit. A condition that contains its multiplier, such as that of an open contact, tells
-    nothing.
+    multipliers in another unit, but not of the other sign: stability is counted by signs. A condition that contains its
+    multiplier, such as that of an open contact, tells nothing.
     """
-    least, place = np.inf, 0
+    least, place, turned = np.inf, 0, -1
     for motion in _on_the_conditions(item) if len(item.own) else ():
         found = [each for each in (_derivatives(item, motion), _derivatives(item, _reversed(item, motion))) if each]
         if len(found) == 2:  # a friction that grows with |lambda| has a slope of either sign
             found.append((0.5 * (found[0][0] + found[1][0]), found[0][1]))
         for held, conditions in found:
-            size, row = _besides(item, held, conditions)
-            if size <= _AGREE:
+            size, row, opposed = _besides(item, held, conditions)
+            if size <= _AGREE and opposed < 0:
                 return
+            if size <= _AGREE:
+                turned = opposed
             if size < least:
                 least, place = size, row
+    if turned >= 0:
+        raise InputError(
+            f"force of {item.name}: multiplier {turned} does not act along the derivative of its condition by q; the "
+            "force must contain each multiplier times the derivative of its own condition, with this sign"
+        )
     if least == np.inf or _knows_what_slides(item):
         return
     point, direction = divmod(place, 3)
@@ -98,19 +105,20 @@ def _derivatives(item: Connector, motion: Motion) -> tuple[np.ndarray, np.ndarra
     return tangent[:number, number:], tangent[number:, :number].T
 
 
-def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple[float, int]:
+def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple[float, int, int]:
     """Return the largest force that is no combination of the conditions, relative to all at its place, and its place.
 
-    Every coordinate is scaled to 1, so that short arms count as much as long ones.
+    Third, a multiplier whose part of its own condition is not positive, -1 if there is none. Every coordinate is scaled
+    to 1, so that short arms count as much as long ones.
     """
     works = (_lengths(item)[:, None] * table for table in (held, conditions))  # moments and forces become comparable
     held, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
     sizes = np.maximum(np.abs(held), np.abs(conditions)).max(axis=1, keepdims=True)
     held, conditions = (table / np.maximum(sizes, _ACTS) for table in (held, conditions))
-    left, values, _ = np.linalg.svd(conditions, full_matrices=False)
-    basis = left[:, values > 1e-9 * values.max()]
-    rest = np.abs(held - basis @ (basis.T @ held)).max(axis=1)
-    return float(rest.max()), int(rest.argmax())
+    parts = np.linalg.lstsq(conditions, held, rcond=1e-9)[0]
+    rest = np.abs(held - conditions @ parts).max(axis=1)
+    opposed = np.flatnonzero((np.diag(parts) <= _ROUND_OFF) & held.any(axis=0))
+    return float(rest.max()), int(rest.argmax()), int(opposed[0]) if len(opposed) else -1
 
 
 def _knows_what_slides(item: Connector) -> bool:

@@ -14,7 +14,7 @@ class InputError(BeamfemError, ValueError):
 
 
 class UnknownKeywordError(InputError, TypeError):
-    """A keyword that a function, a class or a method does not have."""
+    """A keyword that a function, a class or a method does not have, or more arguments than it takes by position."""
 
 
 class UnknownPointError(InputError):

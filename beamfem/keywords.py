@@ -1,4 +1,4 @@
-"""Misspelt keywords of what is public: the call names the nearest and all that there are.
+"""Misspelt keywords of what is public: the call names the nearest and all that there are; also surplus arguments.
 
 Functions have the decorator where they are defined, so that they are found by their name in other processes; of classes
 `public` has all methods checked in place.
@@ -17,7 +17,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def keywords_checked(function: _Function) -> _Function:
-    """Return the function, which raises UnknownKeywordError for a keyword that it does not have."""
+    """Return the function, which raises UnknownKeywordError for keywords or positional arguments that it lacks."""
 
     @wraps(function)
     def call(*arguments: Any, **keywords: Any) -> Any:
@@ -25,7 +25,7 @@ def keywords_checked(function: _Function) -> _Function:
             return function(*arguments, **keywords)
         except TypeError as error:
             # of the call itself: a frame further in has a traceback of its own
-            if keywords and error.__traceback__ is not None and error.__traceback__.tb_next is None:
+            if error.__traceback__ is not None and error.__traceback__.tb_next is None:
                 _refuse_unknown(function, arguments, keywords)
             raise
 
@@ -86,11 +86,17 @@ def with_options_listed(own: Signature) -> Signature:
 def _refuse_unknown(function: Callable[..., Any], arguments: tuple[Any, ...], given: Iterable[str]) -> None:
     parameters = list(signature(function).parameters.values())
     named = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
-    method = "." in function.__qualname__ and named[:1] == ["self"]
-    if not method:
-        require_keywords(function.__qualname__, given, named)
-        return
-    require_keywords(name_of(function, arguments[0]).removesuffix(".__init__"), given, named[1:])
+    placed = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.POSITIONAL_ONLY)]
+    name = function.__qualname__
+    if "." in name and named[:1] == ["self"]:
+        name = name_of(function, arguments[0]).removesuffix(".__init__")
+        named, placed, arguments = named[1:], placed[1:], arguments[1:]
+    if given:
+        require_keywords(name, given, named)
+    if len(arguments) > len(placed) and not any(each.kind == each.VAR_POSITIONAL for each in parameters):
+        most = f"{len(placed)} at most: {', '.join(placed)}" if placed else "none"
+        number = f"{len(arguments)} argument{'s' * (len(arguments) > 1)}"
+        raise UnknownKeywordError(f"{name} got {number} by position, but it takes {most}")
 
 
 def name_of(method: Callable[..., Any], item: object) -> str:

@@ -207,11 +207,12 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 def fulfils(item: object, protocol: type) -> bool:
     """Return whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
     kind = type(item)
-    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in _members(protocol))
+    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in members(protocol))
 
 
 @cache
-def _members(protocol: type) -> tuple[str, ...]:
+def members(protocol: type) -> tuple[str, ...]:
+    """Return the names that a protocol asks for."""
     return tuple(name for name in vars(protocol) if not name.startswith("_"))
 
 

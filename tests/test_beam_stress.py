@@ -159,17 +159,20 @@ def test_the_peak_of_tension_is_no_compression():
 
 def test_what_is_not_known_is_no_number():
     shapeless = bf.Section(area=8e-4, second_moment=1e-7)
-    for section, material in (
-        (shapeless, STEEL),
-        (LinearLaw(1e7, 1e6, 1e3, 1.0, 1e-4), None),
-        (bf.Section.from_stiffness(1e7, 1e6, 1e3, 1.0, 1e-4), STEEL),
+    shape = "stresses need sections with a material and a height"
+    for section, material, why in (
+        (shapeless, STEEL, shape),
+        (LinearLaw(1e7, 1e6, 1e3, 1.0, 1e-4), None, "the section law LinearLaw tells resultants, but no stress"),
+        (bf.Section.from_stiffness(1e7, 1e6, 1e3, 1.0, 1e-4), STEEL, shape),
     ):
         own, solution = cantilever(section, material)
         found = solution.stresses(own)
         assert np.isnan(found.von_mises).all()
         assert np.isnan(found.peak().value)
-        with pytest.raises(bf.InputError, match="no beam has a von Mises stress to draw: stresses need sections"):
+        with pytest.raises(bf.InputError, match=f"no beam has a von Mises stress to draw: {why}"):
             solution.plot(colour="stress")
+        with pytest.raises(bf.InputError, match=f"the section at this point has no von Mises stress to draw: {why}"):
+            solution.plot_curve("load_factor", ("stress", own.start))
     own, solution = cantilever(bf.Rectangle(0.02, 0.04), bf.Material(2e11, 0.3, 7800.0))
     assert np.isnan(solution.stresses(own).utilisation).all()
     with pytest.raises(bf.InputError, match="strength"):

@@ -2,7 +2,9 @@
 
 import ast
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -53,6 +55,22 @@ def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
             assert same(block.output, printed), f"{page}, line {block.line}: it prints\n{printed}"
 
 
+def test_a_result_with_the_form_load_of_the_page_is_saved(tmp_path, monkeypatch):
+    """Once its class stands in a module, as in a script."""
+    page = ROOT / "docs" / "extending.md"
+    module = ModuleType("page")
+    monkeypatch.setitem(sys.modules, "page", module)
+    for block in blocks_of(page.read_text()):
+        exec(block.code, module.__dict__)
+        if "class Water" in block.code:
+            break
+    module.bent.save(tmp_path / "gate.h5")
+    loaded = bf.load(tmp_path / "gate.h5")
+    assert isinstance(loaded.model.connectors[0], module.Water)
+    again = bf.solve_static(loaded.model).position(loaded.model.beams[0].end)[-1]
+    assert again == pytest.approx(module.bent.position(module.gate.end)[-1], rel=1e-9)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_what_a_page_names_exists(page):
     text = page.read_text()
@@ -70,7 +88,7 @@ def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
     rows = re.findall(
         r"^\| [^|]* \| `(\w+)` \| (?:`(tests/\w+\.py)`|\[below\][^|]*) \| (\d+) \|$", page.read_text(), re.M
     )
-    assert len(rows) == 14
+    assert len(rows) == 15
     for name, file, lines in rows:
         code = (ROOT / file).read_text() if file else "\n".join(block.code for block in blocks_of(page.read_text()))
         parts = [part for part in ast.parse(code).body if getattr(part, "name", "") == name]

@@ -71,6 +71,27 @@ def test_the_sentence_has_all_that_is_known():
         bf.Section.from_stiffness(axail=1.0)
 
 
+def test_surplus_arguments_are_counted_with_what_there_is():
+    for call, said in (
+        (
+            lambda: bf.Interpolated((0, 0.1), (0, 1)),
+            "Interpolated got 2 arguments by position, but it takes 1 at most: po",
+        ),
+        (
+            lambda: bf.CRBF(3, None, "full", 1),
+            "CRBF got 4 arguments by position, but it takes 3 at most: order, forces, ",
+        ),
+        (lambda: SOLUTION.energy(1, 2, 3), r"Solution\.energy got 3 arguments by position, but it takes "),
+    ):
+        with pytest.raises(UnknownKeywordError, match=f"^{said}"):
+            call()
+    with pytest.raises(UnknownKeywordError, match="has no parameter 'wrong'"):
+        bf.Interpolated(1, 2, wrong=3)
+    with pytest.raises(TypeError, match="multiple values") as caught:
+        bf.Interpolated([(0, 0), (1, 1)], points=[(0, 0), (1, 1)])
+    assert not isinstance(caught.value, bf.InputError)
+
+
 def test_other_type_errors_stay_what_they_are():
     """Of a user's function inside, and of a call with too few arguments."""
 

@@ -127,3 +127,14 @@ def test_what_own_integrators_do_not_take_is_refused():
     linked = bf.Model([beam], [bf.Pin(beam.start)], connectors=[RigidLink(beam.at(0.5), beam.end)])
     with pytest.raises(bf.InputError, match="unknowns of their own"):
         bf.simulate(linked, 0.1, 1e-2, integrator=Radau())
+
+
+def test_what_a_step_raises_names_the_integrator_and_the_time():
+    class Broken:
+        def step(self, motion, begin, end):
+            return {}["x"] if end > 0.002 else replace(begin, at=end)
+
+    _, model = pendulum(bf.CRBF(2))
+    with pytest.raises(KeyError, match="'x'") as caught:
+        bf.simulate(model, 0.01, 1e-3, integrator=Broken())
+    assert caught.value.__notes__[0] == "raised by step of Broken, in the step to 0.003 s"

@@ -247,3 +247,33 @@ def test_parts_that_can_change_are_refused():
     beam = bar()
     with pytest.raises(bf.InputError, match="Own, one of the loads of a Model, must be a frozen dataclass"):
         bf.Model([beam], [bf.Clamp(beam.start)], [Own(beam.end)])
+
+
+@dataclass(frozen=True)
+class Warmed(bf.ImposedStrain):
+    beam: bf.Beam
+    gradient: object
+
+    def free_strain(self, arc_length):
+        return np.outer(self.gradient(arc_length), [0.0, 0.0, 1.0, 0.0])
+
+
+@dataclass(frozen=True)
+class Tug(bf.PointLoad):
+    point: bf.Point
+    law: object
+    value = (0.0, 1.0, 0.0)
+
+
+def test_a_function_that_a_file_has_no_place_for_is_named_with_what_to_do(tmp_path):
+    beam = bar()
+    for load, said in (
+        (
+            Warmed(beam, lambda s: 0.1 * s),
+            "its field gradient is a function; if it is one of the arc length, name it in",
+        ),
+        (Tug(beam.end, abs), "its field law is a function; make it a method of the class"),
+    ):
+        solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]))
+        with pytest.raises(bf.InputError, match=f"a {type(load).__name__} cannot be saved: {said}"):
+            solution.save(tmp_path / "own.h5")

@@ -10,11 +10,12 @@ import numpy as np
 from beamfem.alike import whole
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
-from beamfem.element.fields import Field
+from beamfem.element.field_checks import require_field
+from beamfem.element.fields import Cubic, Field
 from beamfem.element.forces import ElasticLine, Forces, Structural
 from beamfem.errors import InputError
 from beamfem.quadrature import gauss
-from beamfem.validation import fulfils, one_of, optional, shown, text
+from beamfem.validation import one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
 
@@ -25,8 +26,8 @@ class Element:
 
     Parameters
     ----------
-    field : Cubic or Lagrange
-        Field basis.
+    field : Cubic, Lagrange or Field
+        Field basis; one of your own has the members of `beamfem.element.fields.Field`.
     coordinates : Gradients, Rotation or ShearFree
         Nodal coordinates.
     forces : ContinuumMechanics, SplitContinuum, ElasticLine or Structural
@@ -42,7 +43,8 @@ class Element:
     Raises
     ------
     InputError
-        For an invalid combination.
+        For an invalid combination, or a field of your own whose shape functions do not interpolate its nodal values,
+        or do not represent rigid motions and a constant stretch.
 
     Examples
     --------
@@ -63,16 +65,15 @@ class Element:
         for name, kind in (("coordinates", Coordinates), ("forces", Forces)):
             if not isinstance(getattr(self, name), kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {shown(getattr(self, name))}")
-        if not fulfils(self.field, Field):
-            raise InputError(f"field of an element must be one of {Field}, got {shown(self.field)}")
+        require_field(self.field)
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:
-            free_of_locking = has_slope and isinstance(self.forces, Structural | ElasticLine)
+            free_of_locking = has_stations(self.field) and isinstance(self.forces, Structural | ElasticLine)
             object.__setattr__(self, "integration", "lobatto" if free_of_locking else "full")
-        if self.integration == "lobatto" and not has_slope:
+        if self.integration == "lobatto" and not has_stations(self.field):
             raise InputError(
-                f'integration="lobatto" is for the cubic field, whose nodes have r_x; on the {self.field.name} field '
-                '"reduced" does not lock'
+                f'integration="lobatto" is for the cubic field, whose two nodes have r_x; on the {self.field.name} '
+                'field "reduced" does not lock'
             )
         if isinstance(self.coordinates, ShearFree) and not has_slope:
             raise InputError(
@@ -143,6 +144,11 @@ class Element:
         if isinstance(self.coordinates, Gradients) and thickness.any():
             return (*self.quadrature(), ~thickness), (*self.field.director_rule(), thickness)
         return ((*self.quadrature(), np.ones_like(shear)),)
+
+
+def has_stations(field: Field) -> bool:
+    """Return whether the strains at the Lobatto points of the cubic field determine a field, and do not lock."""
+    return type(field) is Cubic or ("r_x" in field.vectors and len(field.nodes) == 2 and field.degree == 3)
 
 
 @lru_cache(maxsize=64)  # every beam of a model needs them

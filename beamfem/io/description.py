@@ -140,7 +140,10 @@ class _Writer:
         for field in fields(value):
             given = getattr(value, field.name)
             if field.name != _OF_TIME and self.has_function(given):
-                raise InputError(f"a {type(value).__name__} cannot be saved: its field {field.name} is a function")
+                what = f"a {type(value).__name__} cannot be saved: its field {field.name} is a function"
+                if isinstance(value, AlongBeam):
+                    raise InputError(f"{what}; if it is one of the arc length, name it in `along`")
+                raise InputError(f"{what}; make it a method of the class")
             described[field.name] = self.own_field(given)
         return described
 

@@ -1,12 +1,13 @@
 """Fields along the axes of beams, at points suited to plotting and export."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.model.beam import Beam
 from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
@@ -123,6 +124,15 @@ class Quantity:
     unit: str
     values: Callable[[AxisPoints, "Solution", np.ndarray], np.ndarray]
     unknown: str = ""
+
+    def unknown_of(self, beams: Iterable[Beam]) -> str:
+        """Return why it is not known of any of these beams."""
+        laws = [beam.law for beam in beams]
+        named = next((law.name for law in laws if law is not None), None)
+        if named is None:
+            return self.unknown
+        why = f"the section law {named} tells resultants, but no stress"
+        return why if all(laws) else f"{why}; besides, {self.unknown}"
 
 
 def _section_force(name: str) -> Callable[..., np.ndarray]:

@@ -15,7 +15,7 @@ from beamfem.assembly.blocks import build_block
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, residual
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
-from beamfem.element.element import Element
+from beamfem.element.element import Element, has_stations
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
 from beamfem.results import postprocess
@@ -94,9 +94,7 @@ def _change(state: "State", span: float | None) -> float:
 
 def _unlocked(element: Element) -> Element:
     """Return the element with an integration rule that avoids locking."""
-    if "r_x" in element.field.vectors:
-        return replace(element, integration="lobatto")
-    return replace(element, integration="reduced")
+    return replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
 
 
 def _locking_elements(model: Model) -> tuple[Element, ...]:

@@ -23,7 +23,10 @@ from beamfem.validation import shown, whole
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Coordinates of a model and their rates at a load factor or a time.
+    """Coordinates of a model and their rates at a load factor or a time, such as those of a row of a solution.
+
+    The solution has the results of its rows, such as `solution.displacement(point)[-1]`; a `PathState`, as `until` of
+    `trace_equilibrium` gets it, has its own.
 
     Parameters
     ----------

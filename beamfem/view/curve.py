@@ -95,5 +95,6 @@ def _of_section(solution: Solution, quantity: Quantity, point: Point) -> tuple[s
     mesh = solution.model.mesh_of(point)
     values = quantity.values(OnePoint(mesh, 0, point.fraction), solution, np.arange(len(solution)))[:, 0]
     if not np.isfinite(values).any():
-        raise InputError(f"the section at this point has no {quantity.label} to draw: {quantity.unknown}")
+        why = quantity.unknown_of([point.beam])
+        raise InputError(f"the section at this point has no {quantity.label} to draw: {why}")
     return quantity.label, quantity.unit, values

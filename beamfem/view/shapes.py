@@ -84,7 +84,8 @@ class Shapes:
         assert self.quantity is not None
         found = [self.quantity.values(points, self.solution, self.rows) for points in self.points]
         if not any(np.isfinite(values).any() for values in found):
-            raise InputError(f"no beam has a {self.quantity.label} to draw: {self.quantity.unknown}")
+            why = self.quantity.unknown_of(points.mesh.beam for points in self.points)
+            raise InputError(f"no beam has a {self.quantity.label} to draw: {why}")
         return found
 
     @cached_property

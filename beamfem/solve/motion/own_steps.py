@@ -202,6 +202,9 @@ class OwnSteps:
             except (ConvergenceError, LinAlgError) as error:
                 self.why = str(error)
                 return step
+            except Exception as error:
+                error.add_note(f"raised by step of {type(self.integrator).__name__}, in the step to {time:.6g} s")
+                raise
             if not isinstance(reached, State) or reached.model is not self.system.model:
                 raise InputError(
                     f"step of {type(self.integrator).__name__} must return a State of the model, such as "

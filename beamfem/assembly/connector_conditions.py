@@ -1,0 +1,160 @@
+"""Check of connectors with conditions: what holds a condition does no work in the motions that the condition allows."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from beamfem.assembly.connector import Connector, Motion
+from beamfem.errors import InputError
+from beamfem.model.contribution import remembered
+
+_FAR = 1e-2  # distance from the reference, relative to the length, and rotation [rad]
+_MET, _TRIES = 1e-10, 30  # of the iteration onto the conditions
+_ACTS = 1e-6  # part of the largest force from which on a coordinate counts
+_AGREE = 1e-4
+_ROUND_OFF = 1e-9  # of forces that depend on nothing else; coefficients of friction may be small
+_SPEEDS = (1.0, -1.0, 1e-6, -1e-6, 1e3, -1e3)  # [m/s, rad/s], at which a friction would turn over
+_PASTS = (1.0, -1.0, 1e-3, -1e-3, 1e6, -1e6)  # added to history variables
+_TIME, _GRAVITY = 0.5, np.zeros(2)  # arbitrary
+_BY_Q, _BY_V = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+
+
+def require_workless(item: Connector) -> None:
+    """Raise InputError if the forces of multipliers are nowhere combinations of the derivatives of the conditions.
+
+    Friction that grows with a multiplier has forces besides: it takes its direction from velocities or from the past,
+    or vanishes where nothing has slid, and passes. So do forces that are right only where the conditions are met, and
+    multipliers in another unit, but not of the other sign: stability is counted by signs. A condition that contains its
+    multiplier, such as that of an open contact, tells nothing.
+    """
+    least, place, turned = np.inf, 0, -1
+    for motion in _on_the_conditions(item) if len(item.own) else ():
+        found = [each for each in (_derivatives(item, motion), _derivatives(item, _reversed(item, motion))) if each]
+        if len(found) == 2:  # a friction that grows with |lambda| has a slope of either sign
+            found.append((0.5 * (found[0][0] + found[1][0]), found[0][1]))
+        for held, conditions in found:
+            size, row, opposed = _besides(item, held, conditions)
+            if size <= _AGREE and opposed < 0:
+                return
+            if size <= _AGREE:
+                turned = opposed
+            if size < least:
+                least, place = size, row
+    if turned >= 0:
+        raise InputError(
+            f"force of {item.name}: multiplier {turned} does not act along the derivative of its condition by q; the "
+            "force must contain each multiplier times the derivative of its own condition, with this sign"
+        )
+    if least == np.inf or _knows_what_slides(item):
+        return
+    point, direction = divmod(place, 3)
+    raise InputError(
+        f"force of {item.name}: the forces of its multipliers do work in motions that its conditions allow; "
+        f"{('fx', 'fy', 'the moment')[direction]} at points[{point}] is not the multipliers times the derivatives of "
+        "the conditions by q there. A friction that grows with a multiplier takes its direction from at.v or at.memory"
+    )
+
+
+def _on_the_conditions(item: Connector) -> Iterator[Motion]:
+    """Yield states at rest that meet the conditions: one near the reference, others further away.
+
+    Those are where arms that are wrong show; near the reference nothing has slid.
+    """
+    rng, lengths = np.random.default_rng(5), _lengths(item)
+    last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
+    for far in (0.0, _FAR, _FAR):
+        moved, own = far * lengths * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
+        for side in (1.0, -1.0):  # a contact may be open for one of them
+            p, zeros = np.zeros(last), np.zeros(last)
+            p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * own
+            p[item.memory] = remembered(item.item)
+            if _meets(item, (p, zeros, zeros)):
+                yield p, zeros, zeros
+                break
+
+
+def _meets(item: Connector, motion: Motion) -> bool:
+    """Move a state onto the conditions, in place, by Gauss-Newton steps; return whether it arrives."""
+    number, lengths = len(item.dofs), _lengths(item)
+    for _ in range(_TRIES):
+        try:
+            slope = item.tangent(motion, _TIME, _GRAVITY, _BY_Q)[number:, :number] * lengths
+            missed = item.force(item.at(motion, _TIME, _GRAVITY)).real[number:]
+            change = np.linalg.lstsq(slope, missed, rcond=1e-9)[0]
+        except (InputError, LinAlgError):
+            return False
+        if np.all(np.abs(missed) <= _MET * np.abs(slope).max(axis=1)):
+            return True
+        motion[0][item.dofs] -= lengths * change
+    return False
+
+
+def _derivatives(item: Connector, motion: Motion) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the derivatives (3 m, k) of the forces by the multipliers, and (3 m, k) of the conditions by q.
+
+    None if the conditions depend on multipliers or velocities there.
+    """
+    number = len(item.dofs)
+    try:
+        tangent, resisted = (item.tangent(motion, _TIME, _GRAVITY, weights) for weights in (_BY_Q, _BY_V))
+    except (InputError, LinAlgError):
+        return None
+    if tangent[number:, number:].any() or resisted[number:].any():
+        return None
+    return tangent[:number, number:], tangent[number:, :number].T
+
+
+def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple[float, int, int]:
+    """Return the largest force that is no combination of the conditions, relative to all at its place, and its place.
+
+    Third, a multiplier whose part of its own condition is not positive, -1 if there is none. Every coordinate is scaled
+    to 1, so that short arms count as much as long ones.
+    """
+    works = (_lengths(item)[:, None] * table for table in (held, conditions))  # moments and forces become comparable
+    held, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
+    sizes = np.maximum(np.abs(held), np.abs(conditions)).max(axis=1, keepdims=True)
+    held, conditions = (table / np.maximum(sizes, _ACTS) for table in (held, conditions))
+    parts = np.linalg.lstsq(conditions, held, rcond=1e-9)[0]
+    rest = np.abs(held - conditions @ parts).max(axis=1)
+    opposed = np.flatnonzero((np.diag(parts) <= _ROUND_OFF) & held.any(axis=0))
+    return float(rest.max()), int(rest.argmax()), int(opposed[0]) if len(opposed) else -1
+
+
+def _knows_what_slides(item: Connector) -> bool:
+    """Return whether the forces of the multipliers depend on velocities or on the past, as those of friction do."""
+    number, rng = len(item.dofs), np.random.default_rng(7)
+    for motion in _on_the_conditions(item):
+        p, v, a = motion
+        others: list[Motion] = []
+        for speed in _SPEEDS:
+            moving = v.copy()
+            moving[item.dofs] = speed * rng.standard_normal(number)
+            others.append((p, moving, a))
+        for past in _PASTS if len(item.memory) else ():
+            later = p.copy()
+            later[item.memory] += past * rng.standard_normal(len(item.memory))
+            others.append((later, v, a))
+        for turned in (lambda one: one, lambda one: _reversed(item, one)):
+            try:
+                known, *found = (
+                    item.tangent(turned(each), _TIME, _GRAVITY, _BY_Q)[:number, number:] for each in (motion, *others)
+                )
+            except (InputError, LinAlgError):  # a past that cannot be: it may well be friction
+                return True
+            if any(np.abs(each - known).max() > _ROUND_OFF * np.abs(known).max() for each in found):
+                return True
+    return False
+
+
+def _reversed(item: Connector, motion: Motion) -> Motion:
+    """Return the motion with multipliers of the other sign."""
+    p = motion[0].copy()
+    p[item.own] *= -1.0
+    return p, motion[1], motion[2]
+
+
+def _lengths(item: Connector) -> np.ndarray:
+    """Return the unit (3 m,) of each coordinate: the length [m] of the longest beam, and 1 rad."""
+    size = max(point.beam.curve.length for point in item.item.points)
+    return np.tile([size, size, 1.0], len(item.reference))

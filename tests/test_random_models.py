@@ -23,7 +23,7 @@ WITH_REFERENCE = 0.94  # share of the models whose path agrees with itself; thin
 def iterations_before():
     """Newton iterations since slow load steps are compared with the direction of their path.
 
-    That costs 1.6 % more than looking at the end of a step only, which went over limit points in silence: seed 469.
+    That costs 2.4 % more than looking at the end of a step only, which went over limit points in silence: seed 469.
     """
     with open(Path(__file__).parent / "random_models_iterations.csv", newline="") as lines:
         return {int(row["seed"]): {n: row[f"steps {n}"] for n in STEPS} for row in csv.DictReader(lines)}

@@ -74,7 +74,7 @@ def _require(field: Field) -> None:
 
 def _nodes(field: Field) -> np.ndarray:
     nodes: Any = field.nodes
-    known = isinstance(nodes, np.ndarray) and nodes.dtype.kind == "f" and nodes.ndim == 1 and len(nodes) > 1
+    known = isinstance(nodes, np.ndarray) and nodes.dtype.kind in "fiu" and nodes.ndim == 1 and len(nodes) > 1
     if not known or not np.isfinite(nodes).all() or np.any(np.diff(nodes) <= 0.0):
         _refuse(field, f"nodes must be an array of two or more increasing numbers, got {shown(nodes)}")
     if np.abs(nodes[[0, -1]] - [0.0, 1.0]).max() > _ENDS:

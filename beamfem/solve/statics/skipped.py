@@ -31,8 +31,9 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
         moved = float(np.max(np.abs(result.state - done.state) / system.scale))
         if result.first > _OVERSHOOT * moved + newton.tolerance:
             return True
-    at_rest = done.reached == 0.0 and _constant_forces(system, target)
-    if result.iterations < (_SLOW_FROM_REST if at_rest else _SLOW):
+    if result.iterations < _SLOW:
+        return False
+    if result.iterations < _SLOW_FROM_REST and done.reached == 0.0 and _constant_forces(system, target):
         return False
     if _differs_half_way(system, done, target, result.state):
         return True

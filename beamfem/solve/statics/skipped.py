@@ -12,6 +12,7 @@ from beamfem.solve.statics.static_record import StaticRecord
 _OVERSHOOT = 3.0  # ratio of the first correction to the whole step; it is larger if a limit point is near the start
 # Iterations. Most models under constant forces start at rest and reach the end in one long step.
 _SLOW, _SLOW_FROM_REST = 7, 12
+_CONSTANT = "loads neither follow the beam nor impose strains"
 
 
 def skips_limit_points(system: System, done: StaticRecord, target: float, result: NewtonResult, newton: Newton) -> bool:
@@ -45,9 +46,14 @@ def skips_limit_points(system: System, done: StaticRecord, target: float, result
 
 def _constant_forces(system: System, load_factor: float) -> bool:
     """Return whether forces alone act, which neither follow the beam nor come from imposed strains and supports."""
-    follow = any(np.any(loads.follows) for loads in system.point_loads)
-    imposed = any(block.imposed is not None for block in system.blocks)
-    return not (follow or imposed or np.any(system.prescribed_changes(load_factor)))
+    if any(item.change(load_factor, system.static) for item in system.prescribed):
+        return False
+    if _CONSTANT not in system.proven:
+        follow = any(np.any(loads.follows) for loads in system.point_loads)
+        if follow or any(block.imposed is not None for block in system.blocks):
+            return False
+        system.proven.add(_CONSTANT)
+    return True
 
 
 def _differs_half_way(system: System, done: StaticRecord, target: float, end: np.ndarray) -> bool:

@@ -39,8 +39,8 @@ class Convergence:
         Name of the parameter of refinement.
     reference : float or None
         The given limit, None if each curve is extrapolated.
-    curves : tuple of Curve
-        The curves, see `beamfem.convergence.curve.Curve`.
+    curves : tuple
+        Curves of the study, each a `beamfem.convergence.curve.Curve`.
     failures : tuple of Failure
         The calls that failed.
 

@@ -221,7 +221,7 @@ def test_no_two_kernels_share_a_name():
         found |= {routine.name for short in (True, False) for routine in two_sided(half_width, short)}
     assert len(found) == 3 * 7 + 2 * (7 + 6)
     found |= {routine.name for half_width in KNOWN for routine in band_halves(half_width)}
-    assert len(found) == 3 * 7 + 2 * (7 + 6) + 4 * 6
+    assert len(found) == 3 * 7 + 2 * (7 + 6) + 3 * 6
     for nodes in (2, 3):
         inertia.add_inertia.fixed(nodes=nodes, vectors=2, others=4)
     names = [routine.name for routine in compiling.Routine.made if routine.__module__.startswith("beamfem.kernels")]

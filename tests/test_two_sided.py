@@ -1,5 +1,7 @@
 """Factors of a band from both ends: solutions, pivots and refusals as those from one end, against NumPy."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.system import system_of
 from beamfem.kernels.band import KNOWN, band
-from beamfem.kernels.band_halves import band_halves
+from beamfem.kernels.band_halves import BLOCK, band_halves, whole_blocks
 from beamfem.kernels.two_sided import two_sided
 
 
@@ -27,7 +29,8 @@ def matrix(n, w, rng, sign=1.0):
 
 def whole_band(n, w):
     """Return the envelope of a band without zeros in it, see `assembly.layout.reaches`."""
-    return np.tile(np.minimum(np.arange(n) + w + 1, n).astype(np.int32), (2, 1))
+    down = np.minimum(np.arange(n) + w + 1, n).astype(np.int32)
+    return np.array([down, down[::-1]])
 
 
 @pytest.mark.parametrize("w", [1, 3, *KNOWN])
@@ -70,22 +73,42 @@ def test_negative_definite_and_mixed_matrices_are_solved_too(w, rng):
         np.testing.assert_allclose(x, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-13)
 
 
+def factor_halves(w, n, m, reach, rows, chunk=BLOCK):
+    """Factor in place, both ends by some blocks of rows in each call, then the middle; return the smallest ratio."""
+    own, space, ratios = band_halves(w), np.empty(n), []
+    for part, count in ((0, m), (1, n - 2 * w - m)):
+        ratios += [own.factor(part, *each, n, m, w, reach, rows, space) for each in calls(count, w, chunk)]
+    return min(*ratios, own.factor(2, 0, 0, n, m, w, reach, rows, space))
+
+
+def calls(count, w, chunk):
+    """Return start and stop of the calls that eliminate so many rows of an end."""
+    limits = [*range(0, whole_blocks(count, count, w) + 1, chunk), count]
+    return list(pairwise(limits))
+
+
 @pytest.mark.parametrize("w", KNOWN)
-def test_halves_of_a_long_band_are_solved_in_parts_or_at_once(w, rng):
-    """With a few rows, and with so many that factors are stored in blocks."""
+def test_halves_of_a_long_band_are_solved_by_blocks_or_at_once(w, rng):
+    """With a few rows, and with so many that factors are stored in blocks; the middle may be anywhere."""
     own = band_halves(w)
-    for n in (2 * w, 2 * w + 1, 4 * w + 3, 1100, 1301):
+    for n, m in ((2 * w, 0), (2 * w + 1, 1), (4 * w + 3, w), (1100, 540), (1301, 700), (1300, 0), (1301, 257)):
         whole, rows = matrix(n, w, rng)
-        space, right = np.empty(n), rng.standard_normal(n)
-        assert min(own.factor(part, n, w, whole_band(n, w), rows, space) for part in range(3)) > 0.2
-        parts, once = right.copy(), right.copy()
-        for part in range(3):
-            own.lower(part, n, w, rows, parts)
-        for part in range(3):
-            own.upper(part, n, w, rows, parts)
-        own.solve(n, w, rows, once)
-        np.testing.assert_allclose(parts, np.linalg.solve(whole, right), rtol=1e-11, atol=1e-14)
-        np.testing.assert_allclose(once, parts, rtol=1e-13, atol=1e-15)
+        right, found = rng.standard_normal(n), []
+        for chunk in (BLOCK, 2 * BLOCK, 10 * BLOCK):
+            lu, x = rows.copy(), right.copy()
+            assert factor_halves(w, n, m, whole_band(n, w), lu, chunk) > 0.2
+            ends = ((0, m), (1, n - 2 * w - m))
+            for part, count in ends:
+                for start, stop in calls(count, w, chunk):
+                    own.lower(part, start, stop, n, m, w, lu, x)
+            own.lower(2, 0, 0, n, m, w, lu, x)
+            for part, count in ends:
+                for start, stop in reversed(calls(count, w, chunk)):
+                    own.upper(part, start, stop, n, m, w, lu, x)
+            found.append(x)
+        np.testing.assert_allclose(found[0], np.linalg.solve(whole, right), rtol=1e-11, atol=1e-14)
+        for other in found[1:]:
+            np.testing.assert_array_equal(other, found[0])
 
 
 @pytest.mark.parametrize("w", KNOWN)
@@ -94,7 +117,7 @@ def test_a_pivot_of_halves_that_is_zero_is_seen_wherever_it_is(w, rng):
     for where in (2, n // 2, n - 3):
         _, rows = matrix(n, w, rng)
         rows[where] = 0.0
-        assert min(band_halves(w).factor(part, n, w, whole_band(n, w), rows, np.empty(n)) for part in range(3)) == 0.0
+        assert factor_halves(w, n, (n - 2 * w) // 2, whole_band(n, w), rows) == 0.0
 
 
 CHAINS = [
@@ -123,8 +146,7 @@ def test_rows_that_a_chain_does_not_couple_stay_as_they_are(element, extra, rng)
     routines = [lambda lu, own: band(w).factor(n, n, w, 0, own[0].copy(), lu, np.empty(n), np.empty(n))]
     routines.append(lambda lu, own: two_sided(w, False).factor(n, w, own, lu, np.empty(n)))
     if w in KNOWN:
-        space = np.empty(n)
-        routines.append(lambda lu, own: [band_halves(w).factor(part, n, w, own, lu, space) for part in range(3)])
+        routines.append(lambda lu, own: factor_halves(w, n, (n - 2 * w) // 2, own, lu))
     for factored in routines:
         within, whole = rows.copy(), rows.copy()
         assert factored(within, reach) == factored(whole, whole_band(n, w))

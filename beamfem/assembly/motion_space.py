@@ -6,7 +6,6 @@ from contextlib import contextmanager
 import numpy as np
 
 from beamfem.assembly.arena import Arena
-from beamfem.assembly.assembler import Assembler
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import tiles_of
 from beamfem.kernels import record
@@ -14,6 +13,7 @@ from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a motion
+_NONE = np.empty(0, dtype=np.int64)
 _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 
 
@@ -32,13 +32,15 @@ class MotionSpace:
         self.loads = None if tiles is None else tiles.loads
         self._turning = system.turning if tiles is None else tiles.turning
         self.in_two = tiles is not None
-        self._bounds = _whole(system, self.assembler) if tiles is None else tiles.bounds
+        self._bounds = _whole(system) if tiles is None else tiles.bounds
+        self._tiles = _NONE if tiles is None else tiles.table
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
+        in_place = system.solver_table.first_free >= 0
         room = Arena(
             {
                 "residual": (size,),
                 record.ROWS: (unknown, 2 * half + 1),
-                record.RIGHT: (unknown,),
+                **({} if in_place else {record.RIGHT: (unknown,)}),
                 record.STEP: (max(size, unknown) + 1,),
                 record.CHANGE: (padded(size),),
                 record.BEFORE: (4, size),
@@ -53,24 +55,25 @@ class MotionSpace:
         self.arrays, places = room.arrays, room.addresses
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self.residual, self.rows = places.pop("residual"), places[record.ROWS]
+        if in_place:  # unknowns in a row are solved for where the residual is
+            places[record.RIGHT] = self.residual + 8 * system.solver_table.first_free
         self.solver = system.solver_table.filled(places)
         self._prescribed = system.prescribed_dofs
         for field, values in (
             (record.PAIR_TABLE, self._turning),
             (record.PRESCRIBED_DOFS, self._prescribed),
             (record.BOUNDS, self._bounds),
+            (record.TILES, self._tiles),
         ):
             self.solver[field] = address_of(values)
         self.solver[record.PARTS] = len(self._bounds)
+        self.solver[record.ROWS_DOWN] = 0 if tiles is None else tiles.rows_down
         self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(self._turning), len(self._prescribed)
 
 
-def _whole(system: System, assembler: Assembler) -> np.ndarray:
+def _whole(system: System) -> np.ndarray:
     """Return the bounds (1, fields) of a single part, the whole model."""
-    counts = len(assembler.works), system.model.size, len(system.free_dofs), len(system.turning)
-    bounds = np.zeros((1, record.BOUND_FIELDS), dtype=np.int64)
-    bounds[0, 1::2] = counts
-    return bounds
+    return np.array([[0, system.model.size, 0, len(system.free_dofs), 0, 0]], dtype=np.int64)
 
 
 @contextmanager

@@ -6,7 +6,16 @@ from functools import cache
 import numpy as np
 
 from beamfem.assembly.layout import Unknowns
-from beamfem.kernels import model_passes, motion_stages, motion_steps, newton, record, rollers, two_threads
+from beamfem.kernels import (
+    model_passes,
+    motion_stages,
+    motion_steps,
+    newton,
+    record,
+    rollers,
+    tile_stages,
+    two_threads,
+)
 from beamfem.kernels.band import Band, band
 from beamfem.kernels.band_halves import BandHalves, band_halves
 from beamfem.kernels.compiling import Routine
@@ -17,7 +26,8 @@ from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
 class SolverTable:
     """The constant part of a table for `kernels.newton` and `kernels.march`: the unknowns of a band matrix.
 
-    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates.
+    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates;
+    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1.
     """
 
     def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
@@ -34,7 +44,8 @@ class SolverTable:
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width
         self._table[record.ROLLERS] = len(rotated[0])
         in_a_row = len(free_dofs) > 0 and (free_dofs[1:] - free_dofs[:-1] == 1).all()
-        self._table[record.FIRST_FREE] = free_dofs[0] if in_a_row else -1
+        self.first_free = int(free_dofs[0]) if in_a_row else -1
+        self._table[record.FIRST_FREE] = self.first_free
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
         """Return a copy of the table with further addresses."""
@@ -85,9 +96,6 @@ def _of_motions() -> dict[int, Routine]:
         record.TURN_PAIRS: motion_steps.turn_pairs,
         record.COUNT_TURNS: motion_steps.count_turns,
         record.PREDICT: motion_stages.predict,
-        record.ASSEMBLE: motion_stages.assemble,
-        record.FACTORISE: motion_stages.factorise,
-        record.CORRECT: motion_stages.correct,
         record.COMPLETE: motion_stages.complete,
     }
 
@@ -96,7 +104,10 @@ def _of_all(own: TwoSided) -> dict[int, Routine]:
     return {
         record.FACTOR_BOTH: own.factor,
         record.SOLVE_BOTH: own.solve,
+        record.ASSEMBLE: motion_stages.assemble,
+        record.FACTORISE: motion_stages.factorise,
         record.SOLVE: motion_stages.solve,
+        record.CORRECT: motion_stages.correct,
     }
 
 
@@ -105,11 +116,11 @@ def _of_halves(own: BandHalves) -> dict[int, Routine]:
         record.FACTOR_PART: own.factor,
         record.LOWER_PART: own.lower,
         record.UPPER_PART: own.upper,
-        record.SOLVE_BOTH: own.solve,
-        record.SOLVE: motion_stages.solve_in_two,
         record.IN_TWO: two_threads.in_two,
-        record.FILL_RIGHT: motion_stages.fill_right,
-        record.SOLVE_DOWN: motion_stages.solve_down,
-        record.SOLVE_UP: motion_stages.solve_up,
-        record.TURN_BACK: motion_stages.turn_back,
+        record.ASSEMBLE: tile_stages.assemble,
+        record.FACTORISE: tile_stages.factorise,
+        record.SOLVE: tile_stages.solve,
+        record.CORRECT: tile_stages.correct,
+        record.LOWER_REST: tile_stages.lower_rest,
+        record.SUBSTITUTE: tile_stages.substitute,
     }

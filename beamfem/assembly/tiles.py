@@ -3,18 +3,20 @@
 The two halves of the chain share no coordinate, so that two threads can process them; one element lies between.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
-from beamfem.assembly.sheet import make_sheet
+from beamfem.assembly.sheet import Sheet, make_sheet
 from beamfem.assembly.sheet_structure import storage_order
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
-from beamfem.kernels.block import Block
+from beamfem.kernels.band_halves import whole_blocks
+from beamfem.kernels.block import Block, Springs
 
 LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
 _NODES = 2048  # of a tile: about 400 kB, and half as much again for tables
@@ -26,13 +28,16 @@ class Tiles:
 
     assembler: its equations, with a workspace for each half; loads: indices of the loads of each group among those of
     the chain; turning (np, 3): see `System.turning`, with nodes in the storage order of the groups; bounds (3, fields):
-    of both halves and of the element between them, see `kernels.record`.
+    of both halves and of the element between them; table (tiles, fields): of the tiles of all three, each in the order
+    from its end of the chain, see `kernels.record`; rows_down: equations eliminated from the start of the chain.
     """
 
     assembler: Assembler
     loads: tuple[np.ndarray, ...]
     turning: np.ndarray
     bounds: np.ndarray
+    table: np.ndarray
+    rows_down: int
 
 
 def tiles_of(system: System) -> Tiles | None:
@@ -40,54 +45,99 @@ def tiles_of(system: System) -> Tiles | None:
     if not is_chain(system) or len(system.blocks[0].node) < LONG:
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
-    middle = _middle(block)
+    middle = _middle(block, system.free_dofs)
     if middle is None or layout.half_width not in KNOWN:
         return None
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
-    slices = [*halves[0], *halves[1], slice(middle - 1, middle)]
-    sheets, loaded, place, stored = [], [], np.empty(len(block.dof), dtype=np.int64), 0
-    for own in slices:
+    sheets: list[Sheet] = []
+    loaded, coordinates, place, stored = [], [], np.empty(len(block.dof), dtype=np.int64), [0]
+    for own in (*halves[0], *halves[1], slice(middle - 1, middle)):
         part, (points, which) = block_of(block, own), loads_of(loads, own)
         sheets.append(make_sheet(part, layout, points))
         loaded.append(which)
+        coordinates.append((part.dof[part.dof >= 0].min(), part.dof.max() + 1))
         order, nodes = sheets[-1].order, len(part.dof)
         first = int(block.node[own.start, 0])
-        place[first + (np.arange(nodes) if order is None else order)] = stored + np.arange(nodes)
-        stored += nodes
+        place[first + (np.arange(nodes) if order is None else order)] = stored[-1] + np.arange(nodes)
+        stored.append(stored[-1] + nodes)
+    springs = Springs(*(values[np.argsort(system.springs.dof, kind="stable")] for values in system.springs))
     spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
-    assembler = Assembler(Equations(sheets, system.springs, system.model.size), spaces=spaces)
+    assembler = Assembler(Equations(sheets, springs, system.model.size), spaces=spaces)
     turning, order = system.turning.copy(), storage_order(block.node, len(block.node_kind))
     turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
-    return Tiles(assembler, tuple(loaded), turning, _bounds(system, turning, block.dof[block.node[middle, 0]], spaces))
+    ranges = _nested(np.array(coordinates), len(halves[0]))
+    # what one half needs to solve for its unknowns, the other must not have rotated: half of it lies between them
+    rows_down = int(np.searchsorted(system.free_dofs, ranges[-1]).sum()) // 2 - layout.half_width
+    bounds, table = _tables(system, turning[:, 0], springs.dof, ranges, len(halves[0]), rows_down)
+    table[:, record.TILE_NODE] = np.array(stored)[table[:, record.TILE_GROUP]]
+    return Tiles(assembler, tuple(loaded), turning, bounds, table, rows_down)
 
 
-def _bounds(system: System, turning: np.ndarray, dof: np.ndarray, spaces: list[int]) -> np.ndarray:
-    """Return the bounds (3, fields) of both halves and of the element between them.
+def _nested(ranges: np.ndarray, first: int) -> np.ndarray:
+    """Return the ranges (tiles, 2) of coordinates, widened so that bounds increase along both halves."""
+    for half in (slice(0, first), slice(first, len(ranges) - 1)):
+        ranges[half, 1] = np.maximum.accumulate(ranges[half, 1])
+        ranges[half, 0] = np.minimum.accumulate(ranges[half][::-1, 0])[::-1]
+    return ranges
 
-    dof: coordinates of the first node of the second half; spaces: workspace number of each group.
+
+def _tables(
+    system: System, pairs: np.ndarray, springs: np.ndarray, ranges: np.ndarray, first: int, rows_down: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds (3, fields) of the parts, and the table (tiles, fields) of their tiles.
+
+    pairs: equation number of the first component of each vector that rotates; springs: coordinates; ranges (tiles, 2)
+    of the coordinates of each group; first: number of groups of the first half.
     """
-    size, unknown, groups = system.model.size, len(system.free_dofs), len(spaces)
-    coordinate = int(dof[dof >= 0].min())
-    number = int(np.searchsorted(system.free_dofs, coordinate))
-    pair = int(np.searchsorted(turning[:, 0], number))
-    ends = np.zeros((3, 4), dtype=np.int64)
-    ends[1:] = (spaces.index(1), coordinate, number, pair), (groups - 1, size, unknown, len(turning))
-    bounds = np.empty((3, record.BOUND_FIELDS), dtype=np.int64)
-    bounds[:, ::2] = ends
-    bounds[:2, 1::2], bounds[2, 1::2] = ends[1:], (groups, size, unknown, len(turning))
-    return bounds
+    free, size, half = system.free_dofs, system.model.size, system.layouts[0].half_width
+    groups, (begin, end), middle = len(ranges), ranges[-1], int(ranges[first, 0])
+    # bounds between what one tile has and the next, as coordinates: where it is new, and where it is complete
+    new = [[0, *ranges[: first - 1, 1], middle], [size, *ranges[groups - 2 : first : -1, 0], middle], [middle, middle]]
+    done = [[0, *ranges[1:first, 0], begin], [size, *ranges[groups - 3 : first - 1 : -1, 1], end], [begin, end]]
+    order = [np.arange(first), np.arange(groups - 2, first - 1, -1), np.array([groups - 1])]
+    parts, bounds, reached = [], np.zeros((3, record.BOUND_FIELDS), dtype=np.int64), 0
+    for part in range(3):
+        table = np.zeros((len(order[part]), record.TILE_FIELDS), dtype=np.int64)
+        table[:, record.TILE_GROUP] = order[part]
+        known = np.searchsorted(free, done[part])
+        for field, limits in (
+            (record.NEW_COORDINATE, new[part]),
+            (record.NEW_UNKNOWN, np.searchsorted(free, new[part])),
+            (record.DONE_COORDINATE, done[part]),
+            (record.DONE_UNKNOWN, known),
+            (record.DONE_PAIR, np.searchsorted(pairs, known)),
+            (record.DONE_SPRING, np.searchsorted(springs, done[part])),
+        ):
+            table[:, field : field + 2] = _ranges(limits)
+        if part < 2:
+            own = rows_down if part == 0 else len(free) - 2 * half - rows_down
+            rows = [whole_blocks(abs(int(row - known[0])), own, half) for row in known]
+            table[:, record.ROWS_BEFORE], table[:, record.ROWS_WITH] = rows[:-1], rows[1:]
+        parts.append(table)
+        limits = [0, middle] if part == 0 else [middle, size] if part == 1 else [size, size]
+        bounds[part, record.FIRST_COORDINATE : record.END_COORDINATE + 1] = limits
+        bounds[part, record.FIRST_UNKNOWN : record.END_UNKNOWN + 1] = np.searchsorted(free, limits)
+        bounds[part, record.FIRST_TILE], bounds[part, record.END_TILE] = reached, reached + len(table)
+        reached += len(table)
+    return bounds, np.concatenate(parts)
+
+
+def _ranges(limits: Iterable[int] | Sequence[int]) -> np.ndarray:
+    """Return the ranges (k, 2) between limits (k + 1,) that increase or decrease."""
+    own = np.asarray(limits)
+    return np.sort(np.column_stack([own[:-1], own[1:]]), axis=1)
 
 
 def _cut(first: int, end: int, size: int) -> list[slice]:
     return [slice(begin, min(begin + size, end)) for begin in range(first, end, size)]
 
 
-def _middle(block: Block) -> int | None:
-    """Return the first element of the second half, None if the halves share coordinates."""
+def _middle(block: Block, free: np.ndarray) -> int | None:
+    """Return the first element of the second half, about half of the unknowns (nu,) on, None if halves share some."""
     dof = np.where(block.dof < 0, block.dof.max(), block.dof)
-    half = len(block.node) // 2
-    for element in range(half, len(block.node)):
+    half = int(np.searchsorted(dof[block.node[:, 0]].min(axis=1), free[len(free) // 2]))
+    for element in range(max(half, 2), len(block.node)):
         node = block.node[element, 0]
         first = dof[node].min()
         # at a corner of the curve, adjacent elements have separate nodes

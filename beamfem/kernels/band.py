@@ -12,7 +12,7 @@ from typing import NamedTuple
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.kinds import WHOLE, Value
-from beamfem.kernels.compiling import Routine, routine
+from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.pointers import at, room
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -49,29 +49,37 @@ def push(build: Build, window: Value, count: Value, value: Value) -> None:
 def _band(known: int) -> Band:
     """Return functions that know a half width; 0: any."""
     case = f"half_width_{known or 'any'}"
-    solves = _solves(known, case) if known else (_solve_lower, _solve_upper)
-    return Band(elimination(known, case, backwards=False), *solves)
+    _eliminate = inlined(elimination(known, case, backwards=False))
+
+    @routine("iiiisrrr", "d", case, fastmath=FAST)
+    def factor(n, count, half, eliminates, reach, ab, right, original):
+        """Take the first `count` pivots, see `elimination`."""
+        return _eliminate(n, count, 0, count, half, eliminates, reach, ab, right, original)
+
+    return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
 
 
 def elimination(known: int, case: str, backwards: bool) -> Routine:
     """Return the factorisation for a half width, 0: any; backwards: from the last row to the first."""
     way = -1 if backwards else 1
 
-    @routine("iiiisrrr", "d", case, fastmath=FAST)
-    def factor(n, count, half, eliminates, reach, ab, right, original):
+    @routine("iiiiiisrrr", "d", case, fastmath=FAST)
+    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
         """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
 
         reach (n,): end of the rows that a row and those above are coupled to, which are the only ones that change.
         The diagonal holds the inverse pivots then. right (n,): eliminated on the way, `solve_upper` does the rest.
-        original (count,): space; so many pivots are taken, and the rows below keep what is left of the matrix, their
-        Schur complement. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab,
-        right and reach are the last entries, and rows the last ones first.
+        original (count,): space; so many pivots are taken in all, and the rows below keep what is left of the matrix,
+        their Schur complement. This call takes those from `start`, which is even, to `stop`, and needs the rows before
+        stop + w only. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab, right
+        and reach are the last entries, and rows the last ones first.
         """
         w = known if known != 0 else half
         width, worst = 2 * w + 1, 1.0
-        for i in range(min(count, w)):
-            original[i] = abs(ab[way * (i * width + w)])
-        for k in range(0, count, 2):
+        if start == 0:
+            for i in range(min(count, w)):
+                original[i] = abs(ab[way * (i * width + w)])
+        for k in range(start, stop, 2):
             top = at(ab, way * k * width)
             if k + w < count:
                 original[k + w] = abs(ab[way * ((k + w) * width + w)])
@@ -80,7 +88,7 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
             worst = min(worst, abs(top[way * w]) / original[k])
             inverse = 1.0 / top[way * w]
             top[way * w] = inverse
-            if k + 1 == count:
+            if k + 1 == stop:
                 for i in range(k + 1, min(n, k + w + 1)):
                     row = at(ab, way * (i * width + w + k - i))
                     first = row[0] * inverse
@@ -133,7 +141,7 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
                 below[way * (w + j)] *= inverse_below
         return worst
 
-    return factor
+    return eliminate
 
 
 def _solves(known: int, case: str) -> tuple[Routine, Routine]:

@@ -1,8 +1,9 @@
 """LU factorisation of a long band matrix from both ends to the middle, in parts that two threads may do at once.
 
-As `two_sided`, but 2 w or 2 w + 1 rows are left in the middle, so that what both ends change has no entry in common.
-Factors of rows at both ends are stored in blocks, those of the lower triangle before those of the upper one: a
-solution then reads each once, where whole rows would pass through memory twice.
+As `two_sided`, but 2 w rows are left in the middle, so that what both ends change has no entry in common.
+Each end advances by blocks of rows, as far as the rows that it needs are known. Factors are stored in blocks, those of
+the lower triangle before those of the upper one: a solution then reads each once, where whole rows would pass through
+memory twice.
 """
 
 from functools import cache
@@ -12,87 +13,75 @@ from beamfem.kernels.band import FAST, elimination, push
 from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.pointers import at, room
 
-_BLOCK = 256  # rows
+BLOCK = 256  # rows
 
 
 class BandHalves(NamedTuple):
     """Compiled functions for a half width.
 
-    Parts 0 and 1 are the ends, part 2 is the middle, after both. factor(part, n, w, reach, ab, space): smallest ratio
-    of a pivot to the row's original diagonal entry, reach as for `two_sided`; lower, then upper(part, n, w, lu, x);
-    solve(n, w, lu, x): all of both.
+    Parts 0 and 1 are the ends, part 2 is the middle, after both. factor(part, start, stop, n, m, w, reach, ab, space):
+    smallest ratio of a pivot to the row's original diagonal entry, reach as for `two_sided`; then lower and, backwards,
+    upper(part, start, stop, n, m, w, lu, x). m: rows eliminated downwards from the top, n - 2 w - m upwards; start,
+    stop: those of this call, counted from their end, see `whole_blocks`.
     """
 
     factor: Routine
     lower: Routine
     upper: Routine
-    solve: Routine
 
 
-@inlined
-def _end_rows(n, w):
-    """Return how many rows are eliminated from each end."""
-    return max(0, (n - 2 * w) // 2)
+def whole_blocks(known: int, rows: int, w: int) -> int:
+    """Return how many of the rows that an end eliminates can be eliminated where `known` rows are known."""
+    return max(0, min(known, rows) - w) // BLOCK * BLOCK
 
 
 @cache
 def band_halves(w: int) -> BandHalves:
     """Return the compiled functions for a half width."""
-    case, width, entries = f"half_width_{w}", 2 * w + 1, _BLOCK * (2 * w + 1)
+    case, width, entries = f"half_width_{w}", 2 * w + 1, BLOCK * (2 * w + 1)
     _down = inlined(elimination(w, f"{case}_of_halves_down", backwards=False))
     _up = inlined(elimination(w, f"{case}_of_halves_up", backwards=True))
 
     @inlined
-    def _store(way, rows, first):
-        """Store rows in blocks; way -1: first is the last entry of the matrix, and all is counted backwards."""
+    def _store(way, start, stop, first):
+        """Store whole blocks of rows; way -1: first is the last entry of the matrix, and all is counted backwards."""
         space = room(entries)
-        for block in range(rows // _BLOCK):
-            own = at(first, way * block * _BLOCK * width)
-            for i in range(_BLOCK * width):
+        for block in range(start // BLOCK, stop // BLOCK):
+            own = at(first, way * block * BLOCK * width)
+            for i in range(BLOCK * width):
                 space[i] = own[way * i]
-            above = at(own, way * _BLOCK * w)
-            for row in range(_BLOCK):
+            above = at(own, way * BLOCK * w)
+            for row in range(BLOCK):
                 for j in range(w):
                     own[way * (row * w + j)] = space[row * width + j]
                 for j in range(w + 1):
                     above[way * (row * (w + 1) + j)] = space[row * width + w + j]
 
     @inlined
-    def _place(row, rows):
-        """Return where the factors of a row begin, those of the lower triangle and of the upper one."""
-        block, within = row // _BLOCK, row % _BLOCK
-        if block == rows // _BLOCK:
-            return row * width, row * width + w
-        first = block * _BLOCK * width
-        return first + within * w, first + _BLOCK * w + within * (w + 1)
-
-    @inlined
-    def _eliminate(way, rows, first, x):
+    def _eliminate(way, start, stop, rows, first, x):
         last = room(w)
         for j in range(w):
-            last[j] = 0.0
-        for block in range(rows // _BLOCK + 1):
-            begin = block * _BLOCK
-            lower, _ = _place(begin, rows)
-            step = width if begin + _BLOCK > rows else w
-            for i in range(begin, min(begin + _BLOCK, rows)):
-                row, total = at(first, way * (lower + (i - begin) * step)), x[way * i]
+            last[j] = x[way * (start - w + j)] if start > 0 else 0.0
+        for block in range(start // BLOCK, (stop + BLOCK - 1) // BLOCK):
+            begin, step = block * BLOCK, width if (block + 1) * BLOCK > rows else w
+            for i in range(begin, min(begin + BLOCK, stop)):
+                row, total = at(first, way * (begin * width + (i - begin) * step)), x[way * i]
                 for j in range(w):
                     total -= row[way * j] * last[j]
                 push(last, w, total)
                 x[way * i] = total
 
     @inlined
-    def _substitute(way, rows, first, x):
+    def _substitute(way, start, stop, rows, first, x):
         last = room(w)
         for j in range(w):
-            push(last, w, x[way * (rows + w - 1 - j)])
-        for block in range(rows // _BLOCK, -1, -1):
-            begin = block * _BLOCK
-            _, upper = _place(begin, rows)
-            step = width if begin + _BLOCK > rows else w + 1
-            for i in range(min(begin + _BLOCK, rows) - 1, begin - 1, -1):
-                row = at(first, way * (upper + (i - begin) * step))
+            push(last, w, x[way * (stop + w - 1 - j)])
+        for block in range((stop + BLOCK - 1) // BLOCK - 1, start // BLOCK - 1, -1):
+            begin, lower, step = block * BLOCK, BLOCK * w, w + 1
+            if begin + BLOCK > rows:
+                lower, step = w, width
+            for i in range(min(begin + BLOCK, stop) - 1, begin - 1, -1):
+                row = at(first, way * (begin * width + lower + (i - begin) * step))
                 total = x[way * i] * row[0]
                 for j in range(w):
                     total -= row[way * (w - j)] * last[j]
@@ -100,8 +89,28 @@ def band_halves(w: int) -> BandHalves:
                 x[way * i] = total
 
     @inlined
+    def _factor_middle(m, ab, space):
+        end, worst = m + 2 * w, 1.0
+        for k in range(m, end):
+            pivot, reached = at(ab, k * width + w - k), min(end, k + w + 1)
+            if pivot[k] == 0.0 or space[k] == 0.0:
+                return 0.0
+            worst = min(worst, abs(pivot[k]) / space[k])
+            inverse = 1.0 / pivot[k]
+            pivot[k] = inverse
+            for i in range(k + 1, reached):
+                row = at(ab, i * width + w - i)
+                multiplier = row[k] * inverse
+                row[k] = multiplier
+                for j in range(k + 1, reached):
+                    row[j] -= multiplier * pivot[j]
+            for j in range(k + 1, reached):
+                pivot[j] *= inverse
+        return worst
+
+    @inlined
     def _solve_middle(m, n, lu, x):
-        end = n - m
+        end = m + 2 * w
         for i in range(m, end):
             row, total = at(lu, i * width + w - i), x[i]
             for j in range(max(0, i - w), i):
@@ -116,97 +125,43 @@ def band_halves(w: int) -> BandHalves:
                 total -= row[j] * x[j]
             x[i] = total
 
-    @routine("iiisrr", "d", case, fastmath=FAST)
-    def factor(part, n, half, reach, ab, space):
-        """Factor a part of ab (n, 2 w + 1) in place; space (n,): each part has its own."""
-        m, worst = _end_rows(n, w), 1.0
-        end = n - m
+    @routine("iiiiiisrr", "d", case, fastmath=FAST)
+    def factor(part, start, stop, n, m, half, reach, ab, space):
+        """Factor rows of ab (n, 2 w + 1) in place; space (n,): each part has its own."""
+        other, middle, worst = n - 2 * w - m, m + w, 1.0
         if part == 0:
-            for i in range(m, m + w):
-                space[i] = abs(ab[i * width + w])
-            worst = _down(end, m, w, 0, reach, ab, ab, space)
-            _store(1, m, ab)
+            if stop == m:
+                for i in range(m, middle):
+                    space[i] = abs(ab[i * width + w])
+            worst = _down(middle + w, m, start, stop, w, 0, reach, ab, ab, space)
+            _store(1, start, stop, ab)
         elif part == 1:
-            for i in range(m + w, end):
-                space[i] = abs(ab[i * width + w])
-            worst = _up(end, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(space, end))
-            _store(-1, m, at(ab, n * width - 1))
+            if stop == other:
+                for i in range(middle, middle + w):
+                    space[i] = abs(ab[i * width + w])
+            bottom, own = at(ab, n * width - 1), at(space, middle + w)
+            worst = _up(other + 2 * w, other, start, stop, w, 0, at(reach, 2 * n - 1), bottom, ab, own)
+            _store(-1, start, stop, bottom)
         else:
-            for k in range(m, end):
-                pivot, reached = at(ab, k * width + w - k), min(end, k + w + 1)
-                if pivot[k] == 0.0 or space[k] == 0.0:
-                    return 0.0
-                worst = min(worst, abs(pivot[k]) / space[k])
-                inverse = 1.0 / pivot[k]
-                pivot[k] = inverse
-                for i in range(k + 1, reached):
-                    row = at(ab, i * width + w - i)
-                    multiplier = row[k] * inverse
-                    row[k] = multiplier
-                    for j in range(k + 1, reached):
-                        row[j] -= multiplier * pivot[j]
-                for j in range(k + 1, reached):
-                    pivot[j] *= inverse
+            worst = _factor_middle(m, ab, space)
         return worst
 
-    @routine("iiirr", case=case, fastmath={"contract"})
-    def lower(part, n, half, lu, x):
-        """Eliminate from an end, or solve for the middle."""
-        m = _end_rows(n, w)
+    @routine("iiiiiirr", case=case, fastmath={"contract"})
+    def lower(part, start, stop, n, m, half, lu, x):
+        """Eliminate rows of an end, or solve for the middle."""
         if part == 0:
-            _eliminate(1, m, lu, x)
+            _eliminate(1, start, stop, m, lu, x)
         elif part == 1:
-            _eliminate(-1, m, at(lu, n * width - 1), at(x, n - 1))
+            _eliminate(-1, start, stop, n - 2 * w - m, at(lu, n * width - 1), at(x, n - 1))
         else:
             _solve_middle(m, n, lu, x)
 
-    @routine("iiirr", case=case, fastmath={"contract"})
-    def upper(part, n, half, lu, x):
-        """Solve for an end."""
-        m = _end_rows(n, w)
+    @routine("iiiiiirr", case=case, fastmath={"contract"})
+    def upper(part, start, stop, n, m, half, lu, x):
+        """Solve for rows of an end, those from `stop` on are known."""
         if part == 0:
-            _substitute(1, m, lu, x)
+            _substitute(1, start, stop, m, lu, x)
         elif part == 1:
-            _substitute(-1, m, at(lu, n * width - 1), at(x, n - 1))
+            _substitute(-1, start, stop, n - 2 * w - m, at(lu, n * width - 1), at(x, n - 1))
 
-    @routine("iirr", case=case, fastmath={"contract"})
-    def solve(n, half, lu, x):
-        """Replace the right-hand side x (n,) by the solution; both ends in turns, so that their latencies overlap."""
-        m, above, below = _end_rows(n, w), room(w), room(w)
-        end_of_lu, end_of_x = at(lu, n * width - 1), at(x, n - 1)
-        for j in range(w):
-            above[j] = 0.0
-            below[j] = 0.0
-        for block in range(m // _BLOCK + 1):
-            begin = block * _BLOCK
-            first, _ = _place(begin, m)
-            step = width if begin + _BLOCK > m else w
-            for i in range(begin, min(begin + _BLOCK, m)):
-                own = first + (i - begin) * step
-                row, other, total, sum_below = at(lu, own), at(end_of_lu, -own), x[i], end_of_x[-i]
-                for j in range(w):
-                    total -= row[j] * above[j]
-                    sum_below -= other[-j] * below[j]
-                push(above, w, total)
-                push(below, w, sum_below)
-                x[i], end_of_x[-i] = total, sum_below
-        _solve_middle(m, n, lu, x)
-        for j in range(w):
-            push(above, w, x[m + w - 1 - j])
-            push(below, w, x[n - m - w + j])
-        for block in range(m // _BLOCK, -1, -1):
-            begin = block * _BLOCK
-            _, first = _place(begin, m)
-            step = width if begin + _BLOCK > m else w + 1
-            for i in range(min(begin + _BLOCK, m) - 1, begin - 1, -1):
-                own = first + (i - begin) * step
-                row, other = at(lu, own), at(end_of_lu, -own)
-                total, sum_below = x[i] * row[0], end_of_x[-i] * other[0]
-                for j in range(w):
-                    total -= row[w - j] * above[j]
-                    sum_below -= other[j - w] * below[j]
-                push(above, w, total)
-                push(below, w, sum_below)
-                x[i], end_of_x[-i] = total, sum_below
-
-    return BandHalves(factor, lower, upper, solve)
+    return BandHalves(factor, lower, upper)

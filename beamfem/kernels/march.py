@@ -110,13 +110,15 @@ def march(system, solver, calls):
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
             b[r.TURNS_WANTED] = iteration == 0 or renew
-            _run(call[r.ASSEMBLE], system, solver, calls, b, call)
+            pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
             if renew:
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
                     _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
-                statistics[3] = min(statistics[3], -_run(call[r.FACTORISE], system, solver, calls, b, call))
+                pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
+                statistics[3] = min(statistics[3], -pivots)
                 statistics[5] += 1.0
+            b[r.STEP_WANTED] = full != 0
             _stage(call[r.SOLVE], 0, system, solver, calls)
             if full != 0:
                 _predict_resultants(s, b, call, system)

@@ -37,8 +37,8 @@ def add_group(s, system, number):
 
 
 @inlined
-def add_springs(s):
-    """Add the forces of springs to the ground to the residual and, if needed, their stiffness to the matrix."""
+def add_springs(s, first, end):
+    """Add the forces of some springs to the ground to the residual and, if needed, their stiffness to the matrix."""
     p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[0]
     residual, matrix, stiffness, rest, place = (
         reals(s[r.RESIDUAL]),
@@ -47,7 +47,7 @@ def add_springs(s):
         reals(s[r.SPRING_REST]),
         wholes(s[r.SPRING_PLACE]),
     )
-    for i in range(s[r.SPRINGS]):
+    for i in range(first, end):
         residual[dof[i]] += stiffness[i] * (p[dof[i]] - rest[i])
         if s[r.TANGENT] != 0 and place[i] >= 0:
             matrix[place[i]] += factor * stiffness[i]
@@ -61,7 +61,7 @@ def balance(system):
     clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
     for group in range(s[r.GROUPS]):
         add_group(s, system, group)
-    add_springs(s)
+    add_springs(s, 0, s[r.SPRINGS])
 
 
 @routine("iiiiiinrrr", fastmath={"contract", "reassoc", "nsz"})

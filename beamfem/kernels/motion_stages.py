@@ -7,12 +7,9 @@ from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.motion_steps import FAST
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
-_STRIP = 256  # vectors that are turned while they are in the cache near the core
-
-_factor, _solve, _roll, _in_two = caller("iisrr", "d"), caller("iirr"), caller("inrr"), caller("iiii", "d")
+_factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
 _turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
 _stay_on_planes = inlined(rollers.stay_on_planes)
-_factor_part, _solve_part = caller("iiisrr", "d"), caller("iiirr")
 
 
 @inlined
@@ -48,33 +45,24 @@ def predict(part, system, solver, calls):
 
 @routine("iiii", "d")
 def assemble(part, system, solver, calls):
-    """Fill the residual and, if needed, the matrix; springs to the ground are added with the last part.
+    """Fill the residual and, if needed, the matrix; return -1, as nothing is factorised yet.
 
     With `TURNS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
     directions first.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    own, width, groups = bounds_of(b, part), 2 * b[r.HALF] + 1, wholes(s[r.GROUP_RECORDS])
-    kept, turns, node = reals(b[r.KEPT]), reals(b[r.TURNS]), 0
-    model_passes.clear(
-        s,
-        own[r.FIRST_COORDINATE],
-        own[r.END_COORDINATE],
-        own[r.FIRST_UNKNOWN] * width,
-        own[r.END_UNKNOWN] * width,
-    )
-    for group in range(own[r.END_GROUP]):
-        if group >= own[r.FIRST_GROUP]:
-            model_passes.add_group(s, system, group)
-            if b[r.TURNS_WANTED] != 0:
-                if s[r.TANGENT] != 0:
-                    _keep(call[r.KEEP_DIRECTIONS], groups[group], node, kept)
-                _turns(call[r.TURNS_SINCE], groups[group], node, kept, turns)
+    groups, kept, turns, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS]), 0
+    model_passes.clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
+    for group in range(s[r.GROUPS]):
+        model_passes.add_group(s, system, group)
+        if b[r.TURNS_WANTED] != 0:
+            if s[r.TANGENT] != 0:
+                _keep(call[r.KEEP_DIRECTIONS], groups[group], node, kept)
+            _turns(call[r.TURNS_SINCE], groups[group], node, kept, turns)
         node += wholes(groups[group])[r.NODES]
-    if own[r.END_GROUP] == s[r.GROUPS]:
-        model_passes.add_springs(s)
-    return 0.0
+    model_passes.add_springs(s, 0, s[r.SPRINGS])
+    return -1.0
 
 
 @routine("iiii", "d")
@@ -88,20 +76,17 @@ def factorise(part, system, solver, calls):
         reals(b[r.ROWS]),
         reals(b[r.STEP]),
     )
-    if b[r.PARTS] == 1:
-        return -_factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
-    return -_factor_part(call[r.FACTOR_PART], part, unknown, half, reach, rows, space)
+    return -_factor(call[r.FACTOR_BOTH], unknown, half, reach, rows, space)
 
 
 @inlined
-def _turn_vectors(b, call, own, sense):
-    first = own[r.FIRST_PAIR]
-    table = at(wholes(b[r.PAIR_TABLE]), 3 * first)
-    _turn_pairs(call[r.TURN_PAIRS], own[r.END_PAIR] - first, sense, table, reals(b[r.TURNS]), reals(b[r.RIGHT]))
+def _turn_vectors(b, call, sense):
+    pairs, table = b[r.PAIRS], wholes(b[r.PAIR_TABLE])
+    _turn_pairs(call[r.TURN_PAIRS], pairs, sense, table, reals(b[r.TURNS]), reals(b[r.RIGHT]))
 
 
 @inlined
-def _fill(s, b, first, end):
+def fill_right(s, b, first, end):
     """Fill the right-hand side with the residual of unknown coordinates, negative."""
     residual, right = reals(s[r.RESIDUAL]), reals(b[r.RIGHT])
     if b[r.FIRST_FREE] >= 0:
@@ -122,85 +107,27 @@ def solve(part, system, solver, calls):
     """Solve for the correction with the kept tangent, rotated with the sections; it replaces the right-hand side."""
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    own, unknown, rollers, right = bounds_of(b, part), b[r.UNKNOWN], b[r.ROLLERS], reals(b[r.RIGHT])
+    unknown, rollers, right = b[r.UNKNOWN], b[r.ROLLERS], reals(b[r.RIGHT])
     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
-    _fill(s, b, 0, unknown)
+    fill_right(s, b, 0, unknown)
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    _turn_vectors(b, call, own, -1.0)
+    _turn_vectors(b, call, -1.0)
     _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
-    _turn_vectors(b, call, own, 1.0)
+    _turn_vectors(b, call, 1.0)
     if rollers > 0:
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
     return 0.0
 
 
-@routine("iiii", "d")
-def fill_right(part, system, solver, calls):
-    """Fill the right-hand side, rotated back with the sections; x and y of a vector are neighbours along a chain."""
-    s, b, call = wholes(system), wholes(solver), wholes(calls)
-    own, pairs, turns, right = bounds_of(b, part), wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS]), reals(b[r.RIGHT])
-    filled = own[r.FIRST_UNKNOWN]
-    for pair in range(own[r.FIRST_PAIR], own[r.END_PAIR], _STRIP):
-        count = min(_STRIP, own[r.END_PAIR] - pair)
-        end = pairs[3 * (pair + count - 1) + 1] + 1
-        _fill(s, b, filled, end)
-        _turn_pairs(call[r.TURN_PAIRS], count, -1.0, at(pairs, 3 * pair), turns, right)
-        filled = end
-    _fill(s, b, filled, own[r.END_UNKNOWN])
-    return 0.0
-
-
-@routine("iiii", "d")
-def solve_down(part, system, solver, calls):
-    """Eliminate with the lower triangle from both ends, and solve for what is between."""
-    b = wholes(solver)
-    address = wholes(calls)[r.LOWER_PART]
-    _solve_part(address, part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
-    return 0.0
-
-
-@routine("iiii", "d")
-def solve_up(part, system, solver, calls):
-    """Solve for the rest with the upper triangle, from what is between to both ends."""
-    b = wholes(solver)
-    address = wholes(calls)[r.UPPER_PART]
-    _solve_part(address, part, b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
-    return 0.0
-
-
-@routine("iiii", "d")
-def turn_back(part, system, solver, calls):
-    """Turn the solution with the sections."""
-    b = wholes(solver)
-    _turn_vectors(b, wholes(calls), bounds_of(b, part), 1.0)
-    return 0.0
-
-
-@routine("iiii", "d")
-def solve_in_two(part, system, solver, calls):
-    """Do what `solve` does in stages of two parts."""
-    b, call = wholes(solver), wholes(calls)
-    _in_two(call[r.IN_TWO], call[r.FILL_RIGHT], system, solver, calls)
-    if wholes(call[r.JOB])[r.JOB_SERVED] != 0:
-        _in_two(call[r.IN_TWO], call[r.SOLVE_DOWN], system, solver, calls)
-        _in_two(call[r.IN_TWO], call[r.SOLVE_UP], system, solver, calls)
-    else:  # one thread advances both ends in turns, so that their latencies overlap
-        _solve(call[r.SOLVE_BOTH], b[r.UNKNOWN], b[r.HALF], reals(b[r.ROWS]), reals(b[r.RIGHT]))
-    _in_two(call[r.IN_TWO], call[r.TURN_BACK], system, solver, calls)
-    return 0.0
-
-
-@routine("iiii", "d", fastmath=FAST)
-def correct(part, system, solver, calls):
-    """Add corrections to the state; return the largest, relative to its scale."""
-    s, b = wholes(system), wholes(solver)
-    own = bounds_of(b, part)
+@inlined
+def correct_range(s, b, own):
+    """Add corrections to the state; own (4,): the range of coordinates, and that of the unknowns among them."""
     return motion_steps.correct_part(
-        own[r.FIRST_COORDINATE],
-        own[r.END_COORDINATE],
-        own[r.FIRST_UNKNOWN],
-        own[r.END_UNKNOWN],
+        own[0],
+        own[1],
+        own[2],
+        own[3],
         s[r.SIZE],
         b[r.FIRST_FREE],
         reals(b[r.STATE]),
@@ -210,6 +137,13 @@ def correct(part, system, solver, calls):
         reals(s[r.FACTORS]),
         reals(b[r.CHANGE]),
     )
+
+
+@routine("iiii", "d", fastmath=FAST)
+def correct(part, system, solver, calls):
+    """Add corrections to the state; return the largest, relative to its scale."""
+    s, b = wholes(system), wholes(solver)
+    return correct_range(s, b, at(bounds_of(b, part), r.FIRST_COORDINATE))
 
 
 @routine("iiii", "d", fastmath=FAST)
@@ -237,6 +171,6 @@ def complete(part, system, solver, calls):
         rule,
         known,
     )
-    if own[r.END_GROUP] == s[r.GROUPS]:
+    if part == b[r.PARTS] - 1:
         motion_steps.best_order(b[r.PARTS], n, state, before, differences, scale, rule, known)
     return change

@@ -36,7 +36,7 @@ def difference_rows(n: int, parts: int = 1) -> int:
 
 
 @inlined
-def _larger_of(a, b):
+def larger_of(a, b):
     """Return the larger of two non-negative numbers; NaN counts as larger than any number."""
     return b if not b <= a and a == a else a
 
@@ -125,11 +125,11 @@ def correct_part(
         rows[2 * n + i] += to_acceleration * by
     for i in range(whole, end):
         last = source[i - offset]
-        rest = _larger_of(rest, abs(last * inverse_scale[i]))
+        rest = larger_of(rest, abs(last * inverse_scale[i]))
         state[i] += last
         state[n + i] += to_velocity * last
         state[2 * n + i] += to_acceleration * last
-    return _larger_of(largest(size), rest)
+    return larger_of(largest(size), rest)
 
 
 @routine("iiirrnrrr", "d", fastmath=FAST)
@@ -204,7 +204,7 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
-        rest = _larger_of(rest, abs(difference * inverse_scale[i]))
+        rest = larger_of(rest, abs(difference * inverse_scale[i]))
         for k in range(top + 1):
             error = difference * inverse_scale[i]
             differences[errors + k * WIDTH + i - whole] += error * error
@@ -215,7 +215,7 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     for i in range(prescribed):
         if first <= dofs[i] and dofs[i] < end:
             state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
-    return _larger_of(largest(largest_change), rest)
+    return larger_of(largest(largest_change), rest)
 
 
 @inlined

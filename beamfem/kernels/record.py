@@ -205,10 +205,26 @@ BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
 TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
 REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
-SOLVER_FIELDS = 49
+TILES = 49  # address (tiles, tile fields)
+ROWS_DOWN = 50  # rows eliminated downwards from the top, see `band_halves`
+STEP_WANTED = 51  # whether corrections are needed before they are added to the state
+SOLVER_FIELDS = 52
 
-FIRST_GROUP, END_GROUP, FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN, FIRST_PAIR, END_PAIR = range(8)
-BOUND_FIELDS = 8
+FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
+FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them
+BOUND_FIELDS = 6
+
+# ------------------------------------------------------------------ a tile: a group of a long chain
+TILE_GROUP = 0
+TILE_NODE = 1  # number of its first node in the storage order of the chain
+# what no tile before has
+NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
+# what no later tile has, so that it is complete with this one
+DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_PAIR, END_DONE_PAIR = range(6, 12)
+DONE_SPRING, END_DONE_SPRING = range(12, 14)
+# rows, from the end of the part, that can be eliminated before this tile and with it, see `band_halves.whole_blocks`
+ROWS_BEFORE, ROWS_WITH = range(14, 16)
+TILE_FIELDS = 16
 
 # ------------------------------------------------------------------ the job of the second of two threads
 JOB_STATE = 0  # alone in its cache line, which both threads poll
@@ -247,12 +263,10 @@ JOB_FIELDS = 16
     # long chains
     IN_TWO,
     JOB,  # address of the job of the second thread
-    FILL_RIGHT,
-    SOLVE_DOWN,
-    SOLVE_UP,
-    TURN_BACK,
+    LOWER_REST,
+    SUBSTITUTE,
     FACTOR_PART,
     LOWER_PART,
     UPPER_PART,
-) = range(30)
-SOLVER_ROUTINES = 30
+) = range(28)
+SOLVER_ROUTINES = 28

@@ -46,8 +46,8 @@ def _two_sided(w: int) -> TwoSided:
         end = n - m
         for i in range(m, end):
             original[i] = abs(ab[i * width + w])
-        worst = _down(end, m, w, 0, reach, ab, ab, original)
-        worst = min(worst, _up(end, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(original, end)))
+        worst = _down(end, m, 0, m, w, 0, reach, ab, ab, original)
+        worst = min(worst, _up(end, m, 0, m, w, 0, at(reach, 2 * n - 1), at(ab, n * width - 1), ab, at(original, end)))
         for k in range(m, end):
             pivot = at(ab, k * width + w - k)
             if pivot[k] == 0.0 or original[k] == 0.0:

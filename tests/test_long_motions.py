@@ -11,10 +11,11 @@ from section_laws import RambergOsgood
 import beamfem as bf
 from beamfem.assembly import tiles
 from beamfem.assembly.system import system_of
-from beamfem.kernels import two_threads
+from beamfem.kernels import record, two_threads
 from beamfem.kernels.band import KNOWN
 from beamfem.solve.motion import second_thread
 from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.march import initial_acceleration
 from beamfem.solve.newton import cut_chain
 
 RUBBER = bf.Material(5e6, 0.3, 1000.0)
@@ -73,6 +74,13 @@ def thrown(element):
     return bf.Model([own], [], [bf.PointForce(own.end, (2.0, 1.0)), GRAVITY])
 
 
+def tapered(element):
+    """On an arc, in three stretches of constant height, so that tiles have one class of elements, or two, or many."""
+    heights = lambda s: bf.Rectangle(0.02, 0.02 - 0.004 * np.floor(3.0 * s))  # noqa: E731
+    own = beam(element, curve=bf.Arc((0.0, 0.0), 2.0, 0.0, 0.5), section=heights)
+    return bf.Model([own], [bf.Pin(own.start)], [GRAVITY, bf.PointForce(own.end, (3.0, 1.0))])
+
+
 def law(element):
     own = beam(element, section=RambergOsgood(2e3, 700.0, 0.065, 0.4, 1e-5, knee=0.03))
     return bf.Model([own], [bf.Clamp(own.start)], [GRAVITY])
@@ -85,6 +93,7 @@ CASES = {
     "shaken": shaken,
     "actuated": actuated,
     "thrown": thrown,
+    "tapered": tapered,
 }
 
 
@@ -206,6 +215,35 @@ def test_a_thread_that_cannot_be_started_is_done_without(long, monkeypatch):
     expected = moved(model, 1, monkeypatch)
     monkeypatch.setattr(second_thread.Thread, "start", refused)
     np.testing.assert_array_equal(moved(model, 2, monkeypatch).p, expected.p)
+
+
+def test_tiles_share_tables_and_have_only_their_own_classes(long):
+    """Each had those of all elements once: the memory of a tapered chain grew with the square of its length."""
+    straight = tiles.tiles_of(system_of(pendulum(ELEMENTS[1]), static=False)).assembler.works
+    assert len({int(work.table[record.DOF]) for work in straight}) < 0.5 * len(straight)
+    section = lambda s: bf.Rectangle(0.02, 0.02 - 0.01 * s)  # noqa: E731
+    found = tiles.tiles_of(system_of(pendulum(ELEMENTS[1], section=section), static=False))
+    rows = [int(work.table[record.TABLE_ROWS]) for work in found.assembler.works]
+    sizes = [
+        next(len(kept) for kept in work.sheet.kept if kept.ndim == 2 and kept.shape[1] == row)
+        for work, row in zip(found.assembler.works, rows, strict=True)
+    ]
+    assert sum(sizes) == 300
+
+
+def test_the_first_acceleration_of_a_long_chain_is_that_of_a_short_one(long, monkeypatch):
+    """Of a chain that is held, shaken and thrown, in a state that is not at rest."""
+    for made in (loaded, shaken, thrown):
+        model = made(ELEMENTS[1])
+        system = system_of(model, static=False)
+        state = np.zeros((4, model.size))
+        state[0] = moved(model, 1, monkeypatch, steps=3).p[-1]
+        state[2, system.prescribed_dofs] = 1.5
+        found = initial_acceleration(system, state, 0.002)
+        monkeypatch.setattr(tiles, "LONG", 10**9)
+        expected = initial_acceleration(system, state, 0.002)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
+        monkeypatch.setattr(tiles, "LONG", 200)
 
 
 def test_a_closed_job_ends_at_once():

@@ -87,7 +87,7 @@ class Assembler:
                 "table": (record.SYSTEM_FIELDS,),
                 "groups": (count,),
                 "values": (count,),
-                "filled": (count, 2),
+                "filled": (count, 3),
                 **dict.fromkeys(range(count), (record.BLOCK_FIELDS,)),
             },
             np.int64,
@@ -114,7 +114,7 @@ class Assembler:
                 rows[:] = sheet.constant
             table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", own], place
             table[record.SHARED] = int(spaces is not None)
-            table[record.FILLED] = whole.addresses["filled"] + 16 * first[own]
+            table[record.FILLED] = whole.addresses["filled"] + 24 * first[own]
             self.works.append(Work(sheet, table, whole.addresses[number], rows, stress))
         self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
         whole.arrays["groups"][:] = [work.address for work in self.works]

@@ -14,7 +14,7 @@ from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 _FEW = 2000  # elements; results for larger blocks are not cached
-_PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
+PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
 
 
 def build_block(
@@ -28,11 +28,11 @@ def build_block(
     own = [mesh for _, mesh in meshes]
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
-    parts: dict[str, list[np.ndarray]] = {name: [] for name in _PER_CLASS}
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in PER_CLASS}
     kinds = []
     for mesh, like in zip(own, likenesses(own), strict=True):
         if like not in known:
-            for name in _PER_CLASS:
+            for name in PER_CLASS:
                 parts[name].append(getattr(mesh.classes, name))
             known[like] = mesh.classes.kind + first_kind if first_kind else mesh.classes.kind
             first_kind += len(mesh.classes.scale)
@@ -57,7 +57,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     node = _joined([mesh.node for mesh in own])
     if len(own) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
-    home = _homes(node, int(nodes.sum())) if len(node) > _FEW else _homes_of_few(node.tobytes(), node.shape)
+    home = homes(node, int(nodes.sum())) if len(node) > _FEW else _homes_of_few(node.tobytes(), node.shape)
     width = max(mesh.carried.dof.shape[1] for mesh in own)
     return {
         "node": node,
@@ -69,7 +69,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     }
 
 
-def _homes(node: np.ndarray, nodes: int) -> np.ndarray:
+def homes(node: np.ndarray, nodes: int) -> np.ndarray:
     """Return for each node an element that contains it, and its local number there (nodes, 2)."""
     home = np.empty((nodes, 2), dtype=np.int64)
     for place, there in enumerate(node.T):
@@ -81,7 +81,7 @@ def _homes(node: np.ndarray, nodes: int) -> np.ndarray:
 @lru_cache(maxsize=64)
 def _homes_of_few(node: bytes, shape: tuple[int, int]) -> np.ndarray:
     own = np.frombuffer(node, dtype=np.int64).reshape(shape)
-    return _homes(own, int(own.max()) + 1)
+    return homes(own, int(own.max()) + 1)
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.assembly.blocks import PER_CLASS, homes
 from beamfem.kernels.block import Block, PointLoads
 
 if TYPE_CHECKING:
@@ -21,14 +22,19 @@ def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:
     """Return some elements of a chain as a block, whose coordinates are numbered from `first_dof`."""
     node = whole.node[elements]
     nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
-    dof = whole.dof[nodes]
+    dof, node = whole.dof[nodes], node - nodes.start
+    used, kind = np.unique(whole.kind[elements], return_inverse=True)
+    classes = {} if len(used) == len(whole.scale) else {name: getattr(whole, name)[used] for name in PER_CLASS}
     return whole._replace(
+        **classes,
+        kind=kind,
+        home=homes(node, len(dof)),
         imposed=None if whole.imposed is None else whole.imposed.of(elements),
         history=whole.history_of(elements),
-        node=node - nodes.start,
+        node=node,
         dof=np.where(dof >= 0, dof - first_dof, -1),
-        **{name: getattr(whole, name)[elements] for name in ("kind", "beam")},
-        **{name: getattr(whole, name)[nodes] for name in ("node_kind", "frame", "home")},
+        beam=whole.beam[elements],
+        **{name: getattr(whole, name)[nodes] for name in ("node_kind", "frame")},
     )
 
 

@@ -12,7 +12,7 @@ from beamfem.kernels import record
 from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
-_KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a motion
+_KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 _NONE = np.empty(0, dtype=np.int64)
 _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 
@@ -30,10 +30,10 @@ class MotionSpace:
         tiles = tiles_of(system)
         self.assembler = system.assembler() if tiles is None else tiles.assembler
         self.loads = None if tiles is None else tiles.loads
-        self._turning = system.turning if tiles is None else tiles.turning
         self.in_two = tiles is not None
         self._bounds = _whole(system) if tiles is None else tiles.bounds
         self._tiles = _NONE if tiles is None else tiles.table
+        self._kept = system.turning, tiles  # what the tables point to
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
         in_place = system.solver_table.first_free >= 0
         room = Arena(
@@ -55,12 +55,14 @@ class MotionSpace:
         self.arrays, places = room.arrays, room.addresses
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self.residual, self.rows = places.pop("residual"), places[record.ROWS]
+        first = system.solver_table.first_free
         if in_place:  # unknowns in a row are solved for where the residual is
-            places[record.RIGHT] = self.residual + 8 * system.solver_table.first_free
+            places[record.RIGHT] = self.residual + 8 * first
+            self.arrays[record.RIGHT] = self.arrays["residual"][first : first + unknown]
         self.solver = system.solver_table.filled(places)
         self._prescribed = system.prescribed_dofs
         for field, values in (
-            (record.PAIR_TABLE, self._turning),
+            (record.PAIR_TABLE, system.turning),
             (record.PRESCRIBED_DOFS, self._prescribed),
             (record.BOUNDS, self._bounds),
             (record.TILES, self._tiles),
@@ -68,7 +70,7 @@ class MotionSpace:
             self.solver[field] = address_of(values)
         self.solver[record.PARTS] = len(self._bounds)
         self.solver[record.ROWS_DOWN] = 0 if tiles is None else tiles.rows_down
-        self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(self._turning), len(self._prescribed)
+        self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(system.turning), len(self._prescribed)
 
 
 def _whole(system: System) -> np.ndarray:

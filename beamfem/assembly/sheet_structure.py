@@ -25,7 +25,7 @@ from beamfem.kernels.record import LANES, ROW
 
 _CACHE = 400  # workspace rows times elements of a batch, in units of `LANES`, that fit into the cache of a core
 _SMALLEST = 16
-_FEW = 2000  # elements; the structure of larger groups is not cached
+_FEW = 2048  # elements; the structure of larger groups is not cached
 
 Needs = dict[str, tuple[tuple[str, ...], tuple[int, ...]]]
 

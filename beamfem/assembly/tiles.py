@@ -10,13 +10,14 @@ import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
-from beamfem.assembly.sheet import Sheet, make_sheet
+from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.sheet_structure import storage_order
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
 from beamfem.kernels.band_halves import whole_blocks
-from beamfem.kernels.block import Block, Springs
+from beamfem.kernels.block import Block, Layout, PointLoads, Springs
+from beamfem.kernels.pointers import address_of
 
 LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
 _NODES = 2048  # of a tile: about 400 kB, and half as much again for tables
@@ -27,22 +28,27 @@ class Tiles:
     """The groups of a long chain.
 
     assembler: its equations, with a workspace for each half; loads: indices of the loads of each group among those of
-    the chain; turning (np, 3): see `System.turning`, with nodes in the storage order of the groups; bounds (3, fields):
-    of both halves and of the element between them; table (tiles, fields): of the tiles of all three, each in the order
-    from its end of the chain, see `kernels.record`; rows_down: equations eliminated from the start of the chain.
+    the chain; bounds (3, fields): of both halves and of the element between them; table (tiles, fields): of the tiles
+    of all three, each in the order from its end of the chain, see `kernels.record`; pairs: tables to which it points;
+    rows_down: equations eliminated from the start of the chain.
     """
 
     assembler: Assembler
     loads: tuple[np.ndarray, ...]
-    turning: np.ndarray
     bounds: np.ndarray
     table: np.ndarray
+    pairs: tuple[np.ndarray, ...]
     rows_down: int
+
+
+def is_long(system: System) -> bool:
+    """Return whether a model is a chain whose motion is worth dividing into tiles."""
+    return is_chain(system) and len(system.blocks[0].node) >= LONG
 
 
 def tiles_of(system: System) -> Tiles | None:
     """Return the tiles of a model, None unless it is a long chain with a compiled band width."""
-    if not is_chain(system) or len(system.blocks[0].node) < LONG:
+    if not is_long(system):
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
     middle = _middle(block, system.free_dofs)
@@ -50,28 +56,58 @@ def tiles_of(system: System) -> Tiles | None:
         return None
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
-    sheets: list[Sheet] = []
-    loaded, coordinates, place, stored = [], [], np.empty(len(block.dof), dtype=np.int64), [0]
-    for own in (*halves[0], *halves[1], slice(middle - 1, middle)):
-        part, (points, which) = block_of(block, own), loads_of(loads, own)
-        sheets.append(make_sheet(part, layout, points))
-        loaded.append(which)
-        coordinates.append((part.dof[part.dof >= 0].min(), part.dof.max() + 1))
-        order, nodes = sheets[-1].order, len(part.dof)
-        first = int(block.node[own.start, 0])
-        place[first + (np.arange(nodes) if order is None else order)] = stored[-1] + np.arange(nodes)
-        stored.append(stored[-1] + nodes)
+    slices = (*halves[0], *halves[1], slice(middle - 1, middle))
+    groups = [_Group(block, own, layout, loads) for own in slices]
+    first = len(halves[0])
+    place, stored = np.empty(len(block.dof), dtype=np.int64), np.cumsum([0, *(len(own.nodes) for own in groups)])
+    # of nodes that two groups share, the one that completes their equations comes last
+    for number in (*range(first), *range(len(groups) - 2, first - 1, -1), len(groups) - 1):
+        place[groups[number].nodes] = stored[number] + np.arange(len(groups[number].nodes))
     springs = Springs(*(values[np.argsort(system.springs.dof, kind="stable")] for values in system.springs))
     spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
+    sheets = [own.sheet for own in groups]
     assembler = Assembler(Equations(sheets, springs, system.model.size), spaces=spaces)
     turning, order = system.turning.copy(), storage_order(block.node, len(block.node_kind))
     turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
-    ranges = _nested(np.array(coordinates), len(halves[0]))
+    ranges = _nested(np.array([own.range for own in groups]), first)
     # what one half needs to solve for its unknowns, the other must not have rotated: half of it lies between them
     rows_down = int(np.searchsorted(system.free_dofs, ranges[-1]).sum()) // 2 - layout.half_width
-    bounds, table = _tables(system, turning[:, 0], springs.dof, ranges, len(halves[0]), rows_down)
-    table[:, record.TILE_NODE] = np.array(stored)[table[:, record.TILE_GROUP]]
-    return Tiles(assembler, tuple(loaded), turning, bounds, table, rows_down)
+    bounds, table = _tables(system, springs.dof, ranges, first, rows_down)
+    table[:, record.TILE_NODE] = stored[table[:, record.TILE_GROUP]]
+    pairs = _pairs(turning, table)
+    return Tiles(assembler, tuple(own.loaded for own in groups), bounds, table, pairs, rows_down)
+
+
+class _Group:
+    """Some elements of a chain: their sheet, nodes in storage order, range of coordinates, and indices of loads.
+
+    Coordinates and equations are counted from its first ones, so that groups of like elements share their tables.
+    """
+
+    def __init__(self, block: Block, elements: slice, layout: Layout, loads: PointLoads) -> None:
+        nodes = np.arange(int(block.node[elements.start, 0]), int(block.node[elements.stop - 1, -1]) + 1)
+        dof = block.dof[nodes]
+        begin, end = int(dof[dof >= 0].min()), int(dof.max()) + 1
+        free = layout.free[begin:end]
+        number = int(free[free >= 0].min(initial=len(layout.free)))
+        points, self.loaded = loads_of(loads, elements)
+        own = layout._replace(free=np.where(free >= 0, free - number, -1))
+        self.sheet, self.range = make_sheet(block_of(block, elements, begin), own, points), (begin, end)
+        self.sheet.table[record.FIRST_OF_STATE] = begin
+        self.sheet.table[record.FIRST_OF_MATRIX] = number * (2 * layout.half_width + 1)
+        self.nodes = nodes if self.sheet.order is None else nodes[self.sheet.order]
+
+
+def _pairs(turning: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Fill the pairs of vectors that rotate into the table of tiles, and return their tables, which tiles share."""
+    known: dict[bytes, np.ndarray] = {}
+    for tile in table:
+        unknown, end, node = tile[[record.DONE_UNKNOWN, record.END_DONE_UNKNOWN, record.TILE_NODE]]
+        first, last = np.searchsorted(turning[:, 0], (unknown, end))
+        own = np.ascontiguousarray(turning[first:last] - [unknown, unknown, node])
+        own = known.setdefault(own.tobytes(), own)
+        tile[record.TILE_PAIRS], tile[record.TILE_PAIR_TABLE] = len(own), address_of(own)
+    return tuple(known.values())
 
 
 def _nested(ranges: np.ndarray, first: int) -> np.ndarray:
@@ -83,12 +119,11 @@ def _nested(ranges: np.ndarray, first: int) -> np.ndarray:
 
 
 def _tables(
-    system: System, pairs: np.ndarray, springs: np.ndarray, ranges: np.ndarray, first: int, rows_down: int
+    system: System, springs: np.ndarray, ranges: np.ndarray, first: int, rows_down: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the bounds (3, fields) of the parts, and the table (tiles, fields) of their tiles.
 
-    pairs: equation number of the first component of each vector that rotates; springs: coordinates; ranges (tiles, 2)
-    of the coordinates of each group; first: number of groups of the first half.
+    springs: coordinates; ranges (tiles, 2) of the coordinates of each group; first: number of groups of the first half.
     """
     free, size, half = system.free_dofs, system.model.size, system.layouts[0].half_width
     groups, (begin, end), middle = len(ranges), ranges[-1], int(ranges[first, 0])
@@ -106,7 +141,6 @@ def _tables(
             (record.NEW_UNKNOWN, np.searchsorted(free, new[part])),
             (record.DONE_COORDINATE, done[part]),
             (record.DONE_UNKNOWN, known),
-            (record.DONE_PAIR, np.searchsorted(pairs, known)),
             (record.DONE_SPRING, np.searchsorted(springs, done[part])),
         ):
             table[:, field : field + 2] = _ranges(limits)

@@ -11,9 +11,10 @@ from typing import NamedTuple
 
 from beamfem.kernels.band import FAST, elimination, push
 from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.pointers import at, room
+from beamfem.kernels.pointers import at, fetch, room
 
 BLOCK = 256  # rows
+AHEAD = 256
 
 
 class BandHalves(NamedTuple):
@@ -66,6 +67,7 @@ def band_halves(w: int) -> BandHalves:
             begin, step = block * BLOCK, width if (block + 1) * BLOCK > rows else w
             for i in range(begin, min(begin + BLOCK, stop)):
                 row, total = at(first, way * (begin * width + (i - begin) * step)), x[way * i]
+                fetch(row, way * AHEAD)
                 for j in range(w):
                     total -= row[way * j] * last[j]
                 push(last, w, total)
@@ -82,6 +84,7 @@ def band_halves(w: int) -> BandHalves:
                 lower, step = w, width
             for i in range(min(begin + BLOCK, stop) - 1, begin - 1, -1):
                 row = at(first, way * (begin * width + lower + (i - begin) * step))
+                fetch(row, -way * AHEAD)
                 total = x[way * i] * row[0]
                 for j in range(w):
                     total -= row[way * (w - j)] * last[j]

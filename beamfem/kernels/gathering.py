@@ -63,11 +63,11 @@ def _fill_tables(b, first, count, part):
     for i in range(1, count):
         if own[i] != own[0]:
             uniform = False
-    # identifies a class, or a range of elements; groups that share a workspace share the array of classes as well
-    filled, known = own[0] if uniform else -1 - b[r.CLASS] - 8 * first, wholes(b[r.FILLED])
-    if known[0] == filled and known[1] >= count:
+    # a class, or a range of elements; groups that share a workspace have different tables
+    filled, known = own[0] if uniform else -1 - first, wholes(b[r.FILLED])
+    if known[0] == b[r.TABLES] and known[1] == filled and known[2] >= count:
         return
-    known[0], known[1] = filled, count
+    known[0], known[1], known[2] = b[r.TABLES], filled, count
     if uniform:
         table = at(reals(b[r.TABLES]), own[0] * rows)
         lanes = as_rows(t)

@@ -49,6 +49,20 @@ def _is_inside_out(s, call, system):
     return not smallest > 0.0
 
 
+@routine("iii", "d")
+def solve_once(system, solver, calls):
+    """Solve the equations in a state with a tangent formed there; return the smallest pivot ratio.
+
+    `RIGHT`: the correction, which is not added to the state.
+    """
+    s, b, call = wholes(system), wholes(solver), wholes(calls)
+    s[r.TANGENT], s[r.PREDICTED], b[r.TURNS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
+    pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
+    pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
+    _stage(call[r.SOLVE], 0, system, solver, calls)
+    return -pivots
+
+
 @routine("iii", "i")
 def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.

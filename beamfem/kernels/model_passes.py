@@ -101,7 +101,7 @@ def rate_nodes(group, system, row):
             b[r.TURNING],
             b[r.NODES],
             wholes(b[r.DOF]),
-            reals(s[r.COORDINATES_V]),
+            at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
             at(chunk, b[r.TRANSFORM] * ROW),
             at(chunk, row * ROW),
         )

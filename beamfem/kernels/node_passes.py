@@ -42,7 +42,11 @@ def place_nodes(group, system, moving):
         reals(b[r.CHUNKS]),
         reals(b[r.SPACE]),
     )
-    p, v, a = reals(s[r.COORDINATES_P]), reals(s[r.COORDINATES_V]), reals(s[r.COORDINATES_A])
+    p, v, a = (
+        at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
+        at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
+        at(reals(s[r.COORDINATES_A]), b[r.FIRST_OF_STATE]),
+    )
     turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
     _clear_forces(b, chunks)
     for run in range(b[r.RUN_COUNT]):
@@ -122,8 +126,8 @@ def finish_nodes(group, system):
         reals(b[r.SPACE]),
     )
     p, residual, turned, turning = (
-        reals(s[r.COORDINATES_P]),
-        reals(s[r.RESIDUAL]),
+        at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
+        at(reals(s[r.RESIDUAL]), b[r.FIRST_OF_STATE]),
         b[r.TURNED],
         b[r.TURNING],
     )
@@ -196,7 +200,7 @@ def finish_nodes(group, system):
                 b[r.HALF_WIDTH],
                 slots(b[r.SLOT]),
                 chunk,
-                reals(s[r.MATRIX]),
+                at(reals(s[r.MATRIX]), b[r.FIRST_OF_MATRIX]),
                 factor,
             )
             first += count

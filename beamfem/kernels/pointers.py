@@ -16,11 +16,24 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
+_FETCH = "llvm.prefetch.p0i8"
+
 
 @operation
 def at(build: Build, pointer: Value, count: Value) -> Value:
     """Return the pointer advanced by `count` entries."""
     return Value(pointer.kind, build.builder.gep(pointer.llvm, [count.llvm], inbounds=True))
+
+
+@operation
+def fetch(build: Build, pointer: Value, count: Value) -> None:
+    """Ask for the memory `count` entries ahead, so that it is in the cache when needed; any address is allowed."""
+    place = build.builder.gep(pointer.llvm, [count.llvm])
+    module, byte, number = build.builder.module, ir.IntType(8).as_pointer(), ir.IntType(32)
+    kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+    own = module.globals.get(_FETCH) or ir.Function(module, kind, _FETCH)
+    constants = [ir.Constant(number, value) for value in (0, 3, 1)]  # to read, keep in all caches, data
+    build.builder.call(own, [build.builder.bitcast(place, byte), *constants])
 
 
 @operation

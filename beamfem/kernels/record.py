@@ -68,7 +68,7 @@ SPRING = 50  # (2, loads)
 ANCHOR = 51  # (2, loads)
 LOAD_PLACE = 52  # (nodes of an element, loads)
 LOAD_NUMBER = 53  # (nodes * coordinates, loads)
-FILLED = 54  # address (2,): class or elements whose tables are in the workspace, and the number of elements
+FILLED = 54  # address (3,): tables, class or elements that are in the workspace, and the number of elements
 ROUTINES = 55  # address of a table of compiled functions
 COUNTED = 56  # address (elements,): 0, 1, 2, ...
 SHARED = 57  # whether other groups use the same chunks and workspace
@@ -81,7 +81,9 @@ ORDERED = 63  # whether each node of an element has a greater number than the sa
 SOURCE = 64  # address (coordinates of a node, nodes), padded: as DOF with 0 for -1, so that lanes can be read blindly
 HISTORY = 65  # address (elements, points, k): coordinates that are history variables of a law
 VARIABLES = 66  # k
-BLOCK_FIELDS = 67
+FIRST_OF_STATE = 67  # number of the coordinate from which those of the group are counted
+FIRST_OF_MATRIX = 68  # number of the entry of a band from which its entries are counted
+BLOCK_FIELDS = 69
 
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
@@ -220,8 +222,8 @@ TILE_NODE = 1  # number of its first node in the storage order of the chain
 # what no tile before has
 NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
 # what no later tile has, so that it is complete with this one
-DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_PAIR, END_DONE_PAIR = range(6, 12)
-DONE_SPRING, END_DONE_SPRING = range(12, 14)
+DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_SPRING, END_DONE_SPRING = range(6, 12)
+TILE_PAIRS, TILE_PAIR_TABLE = range(12, 14)  # of its unknowns: as `PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
 # rows, from the end of the part, that can be eliminated before this tile and with it, see `band_halves.whole_blocks`
 ROWS_BEFORE, ROWS_WITH = range(14, 16)
 TILE_FIELDS = 16

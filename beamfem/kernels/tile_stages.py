@@ -32,9 +32,8 @@ def _solve_rows(b, address, part, start, stop):
 
 @inlined
 def _turn_vectors(b, call, tile, sense):
-    first, count = tile[r.DONE_PAIR], tile[r.END_DONE_PAIR] - tile[r.DONE_PAIR]
-    table = at(wholes(b[r.PAIR_TABLE]), 3 * first)
-    _turn_pairs(call[r.TURN_PAIRS], count, sense, table, reals(b[r.TURNS]), reals(b[r.RIGHT]))
+    turns, right = at(reals(b[r.TURNS]), 2 * tile[r.TILE_NODE]), at(reals(b[r.RIGHT]), tile[r.DONE_UNKNOWN])
+    _turn_pairs(call[r.TURN_PAIRS], tile[r.TILE_PAIRS], sense, wholes(tile[r.TILE_PAIR_TABLE]), turns, right)
 
 
 @routine("iiii", "d")

@@ -5,10 +5,12 @@ import numpy as np
 from beamfem.assembly.motion_space import MotionSpace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
-from beamfem.kernels.march import march
+from beamfem.kernels.march import march, solve_once
 from beamfem.kernels.pointers import address_of
+from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.motion.second_thread import routines
 
+_INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -77,6 +79,25 @@ class BandMotion:
             done = int(march(assembler.address, solver, calls))
         assembler.raise_errors()
         return done
+
+
+def acceleration(system: System, space: MotionSpace, motion: np.ndarray, time: float) -> np.ndarray | None:
+    """Return p'' (nu,) of the unknowns of a long chain in a state, None if a pivot is tiny.
+
+    motion (3, n): p, p', and p'' of the prescribed coordinates, zero for the others. Tangent and solution take the
+    place of those of the motion, which would otherwise need as much memory again.
+    """
+    assembler, solver, loads = space.assembler, space.solver, system.loads_at(time)
+    assembler.load(loads.body, [loads.points[0][own] for own in space.loads or ()], loads.imposing)
+    assembler.weigh(_INERTIA)
+    assembler.require("tangent")
+    place, row = address_of(motion), 8 * motion.shape[1]
+    states = place, place + row, place + 2 * row
+    assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
+    with routines(system, space.in_two) as calls:
+        ratio = solve_once(assembler.address, solver, calls)
+    assembler.raise_errors()
+    return np.array(space.arrays[record.RIGHT]) if ratio > SMALLEST_PIVOT else None
 
 
 def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...], np.ndarray]:

@@ -12,10 +12,11 @@ from beamfem.assembly.connector import Motion
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.motion_space import motion_space
 from beamfem.assembly.system import System
+from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
-from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.band_motion import BandMotion, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.own_steps import Integrator, OwnSteps
@@ -196,6 +197,12 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
+    if is_long(system) and not step > 0.0:
+        with motion_space(system) as space:
+            found = acceleration(system, space, np.array([p, v, a]), time) if space.in_two else None
+        if found is not None:
+            a[free] = found
+            return a
     unbalanced, mass = residual(system, p, v, a, time), _mass(system, (p, v, a), time, step)
     if len(multipliers):
         a[free] = constrained_acceleration(system, (p, v, a), unbalanced, mass, time)

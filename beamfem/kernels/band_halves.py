@@ -14,7 +14,7 @@ from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.pointers import at, fetch, room
 
 BLOCK = 256  # rows
-AHEAD = 256
+_AHEAD = 256  # numbers that are fetched ahead: one stream of factors alone does not fill the memory's bandwidth
 
 
 class BandHalves(NamedTuple):
@@ -67,7 +67,7 @@ def band_halves(w: int) -> BandHalves:
             begin, step = block * BLOCK, width if (block + 1) * BLOCK > rows else w
             for i in range(begin, min(begin + BLOCK, stop)):
                 row, total = at(first, way * (begin * width + (i - begin) * step)), x[way * i]
-                fetch(row, way * AHEAD)
+                fetch(row, way * _AHEAD)
                 for j in range(w):
                     total -= row[way * j] * last[j]
                 push(last, w, total)
@@ -84,7 +84,7 @@ def band_halves(w: int) -> BandHalves:
                 lower, step = w, width
             for i in range(min(begin + BLOCK, stop) - 1, begin - 1, -1):
                 row = at(first, way * (begin * width + lower + (i - begin) * step))
-                fetch(row, -way * AHEAD)
+                fetch(row, -way * _AHEAD)
                 total = x[way * i] * row[0]
                 for j in range(w):
                     total -= row[way * (w - j)] * last[j]

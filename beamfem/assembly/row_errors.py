@@ -25,20 +25,19 @@ def residual_errors(
     """
     result = np.zeros((2, size))
     for block, names, loads in zip(blocks, vectors, points, strict=True):
-        errors = np.array([_of_slots(block, names, part) for part in (True, False)])
-        nodes = _of_nodes(block, errors)
-        for element, position, spring in zip(loads.element, loads.position, loads.spring, strict=True):
-            own = block.node[element]
-            nodes[0][own] += spring.max() * np.abs(position).reshape(len(own), -1)
-        for node_kind in np.unique(block.node_kind).tolist():
-            here = np.flatnonzero(block.node_kind == node_kind)
-            for column, label in enumerate(labels(node_kind, names)):
-                slots = [_slot(label, names)]
-                if label == "theta" and node_kind in (STRETCH, SHEAR_RIGID):
-                    slots.append(1)
-                # contributions of nodes that share a coordinate add up
-                for part, values in zip(result, nodes, strict=True):
-                    part += np.bincount(block.dof[here, column], values[here][:, slots].sum(axis=1), size)
+        nodes = _of_nodes(block, _of_slots(block, names))
+        for i in loads.spring.any(axis=1).nonzero()[0]:
+            own = block.node[loads.element[i]]
+            nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
+        for node_kind in np.bincount(block.node_kind).nonzero()[0].tolist():
+            here, columns = np.flatnonzero(block.node_kind == node_kind), labels(node_kind, names)
+            values = nodes[:, here][:, :, [_slot(label, names) for label in columns]]
+            if node_kind in (STRETCH, SHEAR_RIGID):  # the angle turns r_x as well
+                values[:, :, columns.index("theta")] += nodes[:, here, 1]
+            dofs = block.dof[here, : len(columns)].ravel()
+            # contributions of nodes that share a coordinate add up
+            for part, own in zip(result, values, strict=True):
+                part += np.bincount(dofs, own.ravel(), size)
     np.add.at(result[0], springs.dof, springs.stiffness)
     return result
 
@@ -50,37 +49,46 @@ def _slot(label: str, names: tuple[str, ...]) -> int:
     return 1 if label == "s" else names.index(label.split("^")[0])
 
 
-def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the stress resultants (nc, nq, ns) for unit errors of positions, or of all other vectors."""
-    per_node = len(names)
-    slot = np.arange(block.scale.shape[1]) % per_node
-    erring = slot == 0 if positions else (slot > 0) & (slot < per_node - 1)
-    across, slope = slot == per_node - 1, np.abs(block.slope)
-    of_r = slope[:, :, erring].sum(axis=2)
-    of_d = np.zeros_like(of_r) if positions else np.abs(block.director).sum(axis=1) + np.zeros_like(of_r)
-    of_e = np.zeros_like(of_r) if positions else slope[:, :, across].sum(axis=2)
-    if block.measures == ELASTIC_LINE:
-        of_e = np.abs(block.second)[:, :, erring].sum(axis=2)
-    strain = np.zeros(block.reference.shape)
-    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
-        strain[:, :, measure] = error
-    return np.einsum("cqij,cqj->cqi", np.abs(block.stiffness), strain)
+def stress_errors(block: Block, names: tuple[str, ...]) -> np.ndarray:
+    """Return the stress resultants (2, nc, nq, ns) for unit errors of positions, and of all other vectors."""
+    slope, last = _by_vector(block.slope, names), len(names) - 1
+    erring = _by_vector(block.second, names) if block.measures == ELASTIC_LINE else None
+    strain = np.zeros((2, *block.reference.shape))
+    for part, own in enumerate((slice(0, 1), slice(1, last))):
+        of_r = _sum(slope[:, :, :, own])
+        of_d = np.abs(block.director).sum(axis=1) + np.zeros_like(of_r) if part else np.zeros_like(of_r)
+        if erring is not None:
+            of_e = _sum(erring[:, :, :, own])
+        else:
+            of_e = _sum(slope[:, :, :, last:]) if part else np.zeros_like(of_r)
+        for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
+            strain[part, :, :, measure] = error
+    return np.einsum("cqij,pcqj->pcqi", np.abs(block.stiffness), strain)
 
 
-def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the force (nc, nv) on nodal vectors for unit errors of positions, or of all other vectors."""
-    per_node = len(names)
-    slot = np.arange(block.scale.shape[1]) % per_node
-    along, across = np.flatnonzero(slot < per_node - 1), np.flatnonzero(slot == per_node - 1)
-    slope, stress = np.abs(block.slope), np.moveaxis(stress_errors(block, names, positions), 2, 0)
+def _by_vector(table: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """Return the sizes of a table (nc, nq, nv) by node and nodal vector (nc, nq, nn, vpn)."""
+    return np.abs(table).reshape(*table.shape[:2], -1, len(names))
+
+
+def _sum(values: np.ndarray) -> np.ndarray:
+    """Return the sums (nc, nq) over nodes and nodal vectors."""
+    return values.reshape(*values.shape[:2], -1).sum(axis=2)
+
+
+def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
+    """Return the force (2, nc, nv) on nodal vectors for unit errors of positions, and of all other vectors."""
+    per_node, slot = len(names), np.arange(block.scale.shape[1])
+    along, across = slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
+    slope, stress = np.abs(block.slope), stress_errors(block, names).transpose(3, 0, 1, 2)
     on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
-    result = np.zeros(block.scale.shape)
-    result[:, along] = np.einsum("cq,cqi->ci", on_r, slope[:, :, along])
+    result = np.zeros((2, *block.scale.shape))
+    result[:, :, along] = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
     if block.measures == ELASTIC_LINE:
-        result[:, along] += np.einsum("cq,cqi->ci", on_e, np.abs(block.second)[:, :, along])
+        result[:, :, along] += np.einsum("pcq,cqi->pci", on_e, np.abs(block.second)[:, :, along])
     else:
-        result[:, across] = np.einsum("cq,cqi->ci", on_e, slope[:, :, across])
-    result[:, across] += np.einsum("cq,qi->ci", on_d, np.abs(block.director))
+        result[:, :, across] = np.einsum("pcq,cqi->pci", on_e, slope[:, :, across])
+    result[:, :, across] += np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
     return result
 
 

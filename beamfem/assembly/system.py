@@ -123,10 +123,7 @@ class System:
     def stress_errors(self) -> tuple[np.ndarray, ...]:
         """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
-        return tuple(
-            np.array([stress_errors(block, names, part) for part in (True, False)])
-            for block, names in zip(self.blocks, vectors, strict=True)
-        )
+        return tuple(stress_errors(*own) for own in zip(self.blocks, vectors, strict=True))
 
     @cached_property
     def positions(self) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from beamfem.assembly.connector_conditions import require_workless
 from beamfem.model.contribution import remembered
 from beamfem.model.load import factor
 from beamfem.model.model import Model
+from beamfem.once import cached_property
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")

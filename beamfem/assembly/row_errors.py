@@ -26,7 +26,7 @@ def residual_errors(
     result = np.zeros((2, size))
     for block, names, loads in zip(blocks, vectors, points, strict=True):
         nodes = _of_nodes(block, _of_slots(block, names))
-        for i in loads.spring.any(axis=1).nonzero()[0]:
+        for i in np.flatnonzero(loads.spring.any(axis=1)):
             own = block.node[loads.element[i]]
             nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
         for node_kind in np.bincount(block.node_kind).nonzero()[0].tolist():

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,6 +37,7 @@ from beamfem.kernels.block import (
 from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.model.returned import forces_of
+from beamfem.once import cached_property
 from beamfem.validation import shown
 
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +9,7 @@ from skfem import MeshLine
 
 from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
+from beamfem.once import cached_property
 
 _INSIDE = 1e-8  # of the length: distance from an element end at a jump at which the section is evaluated
 _MOVED = 0.005  # of the two elements at an end: largest distance by which the end is moved

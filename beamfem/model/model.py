@@ -2,7 +2,6 @@
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cached_property
 from math import prod
 from typing import Any
 
@@ -29,6 +28,7 @@ from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
+from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
 from beamfem.validation import convert, items, shown

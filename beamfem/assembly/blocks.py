@@ -14,7 +14,7 @@ from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 _FEW = 2000  # elements; results for larger blocks are not cached
-_PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
+_PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 
 
 def build_block(
@@ -53,7 +53,7 @@ def build_block(
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     """Return the fields of `kernels.block.Block` that differ by element or node, for beams (number, mesh)."""
     own = [mesh for _, mesh in meshes]
-    elements, nodes = np.array([(mesh.elements, mesh.nodes) for mesh in own]).T
+    elements, nodes = [mesh.elements for mesh in own], np.array([mesh.nodes for mesh in own])
     node = _joined([mesh.node for mesh in own])
     if len(own) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
@@ -61,7 +61,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     width = max(mesh.carried.dof.shape[1] for mesh in own)
     return {
         "node": node,
-        "beam": np.repeat([number for number, _ in meshes], elements),
+        "beam": np.array([number for number, _ in meshes]).repeat(elements),
         "node_kind": _joined([mesh.carried.node_kind for mesh in own]),
         "frame": _joined([mesh.carried.frame for mesh in own]),
         "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),

@@ -22,6 +22,7 @@ from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
+_PADDING = np.zeros(WIDTH)  # vectors of lanes read beyond the last node
 _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}
 
 
@@ -91,13 +92,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     arrays = {
         record.TABLES: np.concatenate(parts, axis=1),
         record.DIRECTOR: block.director,
-        record.FRAME: np.append(frame.T, np.zeros(WIDTH)),  # padded, since vectors of lanes read beyond the last node
-        record.POSITION: loads.position.T,
-        record.DIRECTION: loads.direction.T,
-        record.FOLLOWS: loads.follows.T,
-        record.STRETCHES: loads.stretches,
-        record.SPRING: loads.spring.T,
-        record.ANCHOR: loads.anchor.T,
+        record.FRAME: np.concatenate((frame.T.ravel(), _PADDING)),
     }
     slot, history = np.ascontiguousarray(layout.slot, dtype=np.int32), np.ascontiguousarray(block.history)
     kept = [*structure.kept, slot, own.addresses, history]
@@ -106,12 +101,32 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     for field, values in arrays.items():
         kept.append(np.ascontiguousarray(values, dtype=float))
         table[field] = address_of(kept[-1])
+    if len(loads.element):
+        kept.append(_add_loads(table, loads))
     turned, kinds, constant = structure.turned, structure.kinds, None
     if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds:
         constant = _constant(stored(block, order), structure.chunks, 2 * vectors, turned, structure.turning)
     space = structure.used * ROW
     needs, law = structure.needs, block.law
     return Sheet(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
+
+
+def _add_loads(table: np.ndarray, loads: PointLoads) -> np.ndarray:
+    """Set the addresses of the tables of point loads; return the memory that they share."""
+    arrays = {
+        record.POSITION: loads.position,
+        record.DIRECTION: loads.direction,
+        record.FOLLOWS: loads.follows,
+        record.STRETCHES: loads.stretches,
+        record.SPRING: loads.spring,
+        record.ANCHOR: loads.anchor,
+    }
+    memory = np.concatenate([values.T.ravel() for values in arrays.values()], dtype=float)
+    address = address_of(memory)
+    for field, values in arrays.items():
+        table[field] = address
+        address += memory.itemsize * values.size
+    return memory
 
 
 def _routines(block: Block) -> Routines:

@@ -18,11 +18,13 @@ def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
         position, tangent, speed = (
             np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
         )
-        values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
+        values = {"r": position}
         for label, nodes, dofs in columns_of(block.node_kind, block.dof, element.field.vectors):
             if label == "s":
                 p[dofs] = speed[nodes]
             elif label != "theta":
                 name, axis = label.split("^")
+                if name not in values:
+                    values[name] = tangent * speed[:, None] if name == "r_x" else across(tangent)
                 p[dofs] = values[name][nodes, "xy".index(axis)]
     return p

@@ -241,7 +241,7 @@ class System:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
-        known = np.append(self.prescribed_dofs, self.history.numbers)
+        known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         return order_unknowns(self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist())
 
     @cached_property

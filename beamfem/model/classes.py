@@ -18,7 +18,7 @@ from beamfem.model.grid import Grid
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
-    inertia_points,
+    inertia_at,
     jacobians,
     length_points,
     length_rule,
@@ -29,8 +29,7 @@ _FEW = 2000  # elements; the classes of larger grids are not cached
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
 
 
-@dataclass(frozen=True)
-class Classes:
+class Classes(NamedTuple):
     """Data of nc classes; kind (ne,) is the class of each element, the rest as in `kernels.block.Block`."""
 
     kind: np.ndarray
@@ -74,8 +73,8 @@ class _Like:
 @lru_cache(maxsize=64)
 def _classes_of_like(like: _Like) -> Classes:
     found = _classes(like.grid)
-    for name in Classes.__dataclass_fields__:
-        getattr(found, name).setflags(write=False)
+    for values in found:
+        values.setflags(write=False)
     return found
 
 
@@ -164,8 +163,8 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return mass (nc, nv, nv), load of a uniform acceleration (nc, nv) and load of a uniform force (nc, nv)."""
     tables = _tables(grid.beam.element)
-    _, _, inertia = inertia_points(grid, chosen)
-    _, _, weight = length_points(grid, chosen)
+    where, at, weight = length_points(grid, chosen)
+    inertia = inertia_at(grid, where, at, weight)
     count, points = len(chosen), len(tables.r)
     mass, first, rotary = inertia.reshape(count, points, 3).transpose(2, 0, 1)
     matrix, gravity = mass @ tables.rr + rotary @ tables.dd, mass @ tables.r

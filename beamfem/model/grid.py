@@ -55,7 +55,7 @@ class Grid:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
-        return self.rate * np.diff(self.parameter)
+        return self.rate * (self.parameter[1:] - self.parameter[:-1])
 
     @property
     def nodes(self) -> int:

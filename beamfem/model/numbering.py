@@ -45,7 +45,7 @@ def number_nodes(
     pairs = tuple(map(tuple, moving.tolist())), tuple(map(tuple, turning.tolist()))
     number = _number if sum(kind.nodes for kind in kinds) > _FEW else _number_few
     numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
-    frame = _frames(grids, numbered.node_kind, numbered.turns_with)
+    frame = _frames(grids, numbered)
     nodes = [
         Nodes(numbered.node_kind[begin:end], numbered.dof[begin:end, :columns], frame[begin:end])
         for begin, end, columns in numbered.parts
@@ -71,12 +71,13 @@ class NodeKinds:
 class Numbered:
     """Nodes of all grids: kind (total,), coordinates (total, npn), and the node (total,) that each rotates with.
 
-    parts: begin and end of the nodes of each grid, and its number of columns; size: number of coordinates.
+    turned (k,): the nodes whose r_y is that of another one, rotated by the angle between them; parts: begin and end of the nodes of each grid, and its number of columns; size: number of coordinates.
     """
 
     node_kind: np.ndarray
     dof: np.ndarray
     turns_with: np.ndarray
+    turned: np.ndarray
     parts: tuple[tuple[int, int, int], ...]
     size: int
 
@@ -131,7 +132,8 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     parts = tuple((*ends, columns) for ends, columns in zip(pairwise(first.tolist()), widest, strict=True))
     for values in (node_kind, dof, leader_turns):
         values.setflags(write=False)  # models with the same numbering share them
-    return Numbered(node_kind, dof, leader_turns, parts, int(own.sum()))
+    turned_nodes = np.flatnonzero(node_kind == TURNED_GRADIENTS)
+    return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(own.sum()))
 
 
 _number_few = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
@@ -171,16 +173,16 @@ def _ownership(
     return own, last, turn_size
 
 
-def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
+def _frames(grids: Sequence[Grid], numbered: Numbered) -> np.ndarray:
     """Return cosine and sine of the reference angle, and |r_x|, of each node (total, 3).
 
     For rotated gradients, the angle is relative to that of the node whose r_y they share.
     """
-    frame = np.empty((len(node_kind), 3))
+    turned, leader = numbered.turned, numbered.turns_with
+    frame = np.empty((len(leader), 3))
     frame[:, :2] = np.concatenate([grid.tangent for grid in grids])
     frame[:, 2] = np.concatenate([grid.speed for grid in grids])
-    turned = node_kind == TURNED_GRADIENTS
-    if not turned.any():
+    if not len(turned):
         return frame
     angle = np.concatenate([reference_angle(grid) for grid in grids])
     between = angle[turned] - angle[leader[turned]]

@@ -16,7 +16,6 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
-
 _unused = np.zeros(1)
 _NOTHING = int(_unused.__array_interface__["data"][0])
 

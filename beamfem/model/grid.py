@@ -74,8 +74,11 @@ class Grid:
         start, end = self.parameter[element : element + 2].tolist()
         return element, min(max((along - start) / (end - start), 0.0), 1.0)
 
-    def node_of(self, element: int, xi: float) -> int | None:
-        """Return the node at xi in an element, None if there is none."""
+    def node_near(self, fraction: float) -> int | None:
+        """Return the node at a fraction [-], None if there is none."""
+        if fraction in (0.0, 1.0) and self.beam.elements != "knots":
+            return self.node_at(fraction)
+        element, xi = self.locate(fraction)
         here = self.beam.element.field.nodes.tolist()
         return int(self.node[element, here.index(xi)]) if xi in here else None
 

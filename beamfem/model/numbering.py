@@ -71,7 +71,8 @@ class NodeKinds:
 class Numbered:
     """Nodes of all grids: kind (total,), coordinates (total, npn), and the node (total,) that each rotates with.
 
-    turned (k,): the nodes whose r_y is that of another one, rotated by the angle between them; parts: begin and end of the nodes of each grid, and its number of columns; size: number of coordinates.
+    turned (k,): the nodes whose r_y is that of another one, rotated by the angle between them; parts: begin and end of
+    the nodes of each grid, and its number of columns; size: number of coordinates.
     """
 
     node_kind: np.ndarray

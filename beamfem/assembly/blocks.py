@@ -24,7 +24,6 @@ def build_block(
 
     imposing: loads that impose strains, each with the number of its beam.
     """
-    xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
@@ -42,12 +41,20 @@ def build_block(
     law = own[0].beam.law
     return Block(
         measures=element.forces.code,
-        director=np.ascontiguousarray(element.field.director(xi)),
+        director=_director(element),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
         history=_joined([mesh.history for mesh in own]) if own[0].history.size else NO_HISTORY,
         **joined,
     )
+
+
+@lru_cache(maxsize=64)
+def _director(element: Element) -> np.ndarray:
+    """Return the shape functions (nq, nn) of d at the points of the energy, read-only."""
+    found = np.ascontiguousarray(element.field.director(element.energy_points()[0]))
+    found.setflags(write=False)
+    return found
 
 
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:

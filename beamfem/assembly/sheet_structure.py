@@ -91,8 +91,7 @@ def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
         layout.half_width,
     )
     numbers = Numbers(
-        *(np.ascontiguousarray(getattr(block, name), dtype=np.int64) for name in Numbers._fields[:6]),
-        *(np.ascontiguousarray(values, dtype=np.int64) for values in (layout.free, loads.element)),
+        block.node, block.kind, block.beam, block.node_kind, block.dof, block.home, layout.free, loads.element
     )
     if len(block.node) > _FEW or len(layout.free) > 10 * _FEW:
         return _structure(numbers, sizes)

@@ -191,7 +191,7 @@ class System:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
-        following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
+        following = any(loads.follows.any() and loads.follows[~loads.stretches].any() for loads in self.point_loads)
         directed = [dof for dof, _ in self.inclined]
         fixed = {*self.prescribed_dofs.tolist(), *directed}
         return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)
@@ -208,7 +208,7 @@ class System:
     def prescribed_values(self, time: float) -> np.ndarray:
         """Return the values of the prescribed coordinates at a time, in statics at a load factor."""
         start = self._prescribed_reference
-        return start + self.prescribed_changes(time) if self._moved else start
+        return start + self.prescribed_changes(time) if self.moved else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
@@ -219,7 +219,7 @@ class System:
         return self.reference[self.prescribed_dofs]
 
     @cached_property
-    def _moved(self) -> bool:
+    def moved(self) -> bool:
         """Whether a prescribed value may differ from the reference."""
         return any(callable(item.value) or item.value != 0.0 for item in self.prescribed)
 

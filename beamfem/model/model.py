@@ -31,7 +31,7 @@ from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
-from beamfem.validation import convert, items, shown
+from beamfem.validation import items, shown
 
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
@@ -99,9 +99,9 @@ class Model(ModelOutputs):
     def __post_init__(self) -> None:
         _ = self._units
         for name, kinds in _KINDS.items():
-            convert(self, items, name)
-            object.__setattr__(self, name, tuple(getattr(self, name)))
-            for item in getattr(self, name):
+            given = tuple(items(f"{name} of {type(self).__name__}", getattr(self, name)))
+            object.__setattr__(self, name, given)
+            for item in given:
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
                 kind: Any = type(item)

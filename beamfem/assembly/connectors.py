@@ -110,6 +110,8 @@ class Connectors:
     def errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         result = np.zeros((2, self.model.size))
+        if not self.items:
+            return result
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             turns = np.arange(len(item.all)) % 3 == 2
             turns[len(item.dofs) :] = True

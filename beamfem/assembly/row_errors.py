@@ -5,11 +5,15 @@ unit vector or an angle has an error eps, whatever the size of the model.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.element.coordinates import labels
 from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, STRUCTURAL, Block, PointLoads, Springs
+
+_FEW = 2000  # nodes; the entries of larger blocks are not cached
 
 
 def residual_errors(
@@ -26,20 +30,55 @@ def residual_errors(
     result = np.zeros((2, size))
     for block, names, loads in zip(blocks, vectors, points, strict=True):
         nodes = _of_nodes(block, _of_slots(block, names))
-        for i in np.flatnonzero(loads.spring.any(axis=1)):
-            own = block.node[loads.element[i]]
-            nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
-        for node_kind in np.bincount(block.node_kind).nonzero()[0].tolist():
-            here, columns = np.flatnonzero(block.node_kind == node_kind), labels(node_kind, names)
-            values = nodes[:, here][:, :, [_slot(label, names) for label in columns]]
-            if node_kind in (STRETCH, SHEAR_RIGID):  # the angle turns r_x as well
-                values[:, :, columns.index("theta")] += nodes[:, here, 1]
-            dofs = block.dof[here, : len(columns)].ravel()
+        if loads.spring.any():
+            for i in np.flatnonzero(loads.spring.any(axis=1)):
+                own = block.node[loads.element[i]]
+                nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
+        for entries in _entries(block, names):
+            values = nodes[:, entries.nodes, entries.slots]
+            if len(entries.turning):  # the angle turns r_x as well
+                values[:, entries.turning] += nodes[:, entries.nodes[entries.turning], 1]
             # contributions of nodes that share a coordinate add up
             for part, own in zip(result, values, strict=True):
-                part += np.bincount(dofs, own.ravel(), size)
-    np.add.at(result[0], springs.dof, springs.stiffness)
+                part += np.bincount(entries.dofs, own, size)
+    if len(springs.dof):
+        np.add.at(result[0], springs.dof, springs.stiffness)
     return result
+
+
+class Entries(NamedTuple):
+    """Coordinates dofs (k,) of all nodes of one kind: node, and nodal vector that each changes.
+
+    turning (m,): those among them that change r_x as well.
+    """
+
+    dofs: np.ndarray
+    nodes: np.ndarray
+    slots: np.ndarray
+    turning: np.ndarray
+
+
+def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
+    if len(block.node_kind) > _FEW:
+        return _entries_of(block.node_kind, block.dof, names)
+    return _entries_of_few(block.node_kind.tobytes(), block.dof.tobytes(), names)
+
+
+def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) -> list[Entries]:
+    found = []
+    for kind in np.unique(node_kind).tolist():
+        here, columns = np.flatnonzero(node_kind == kind), labels(kind, names)
+        slots = np.tile([_slot(label, names) for label in columns], len(here))
+        turns = [kind in (STRETCH, SHEAR_RIGID) and label == "theta" for label in columns]
+        dofs = dof[here, : len(columns)].ravel()
+        found.append(Entries(dofs, here.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(here)))))
+    return found
+
+
+@lru_cache(maxsize=64)
+def _entries_of_few(node_kind: bytes, dof: bytes, names: tuple[str, ...]) -> list[Entries]:
+    kinds = np.frombuffer(node_kind, dtype=np.int64)
+    return _entries_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), names)
 
 
 def _slot(label: str, names: tuple[str, ...]) -> int:
@@ -51,45 +90,46 @@ def _slot(label: str, names: tuple[str, ...]) -> int:
 
 def stress_errors(block: Block, names: tuple[str, ...]) -> np.ndarray:
     """Return the stress resultants (2, nc, nq, ns) for unit errors of positions, and of all other vectors."""
-    slope, last = _by_vector(block.slope, names), len(names) - 1
-    erring = _by_vector(block.second, names) if block.measures == ELASTIC_LINE else None
+    slope, last = _sums(block.slope, names), len(names) - 1
+    of_r, of_d, of_e = np.zeros((3, 2, *block.weight.shape))
+    of_r[:last], of_d[1] = slope[:last], np.abs(block.director).sum(axis=1)
+    if block.measures == ELASTIC_LINE:
+        of_e[:last] = _sums(block.second, names)[:last]
+    else:
+        of_e[1] = slope[last]
     strain = np.zeros((2, *block.reference.shape))
-    for part, own in enumerate((slice(0, 1), slice(1, last))):
-        of_r = _sum(slope[:, :, :, own])
-        of_d = np.abs(block.director).sum(axis=1) + np.zeros_like(of_r) if part else np.zeros_like(of_r)
-        if erring is not None:
-            of_e = _sum(erring[:, :, :, own])
-        else:
-            of_e = _sum(slope[:, :, :, last:]) if part else np.zeros_like(of_r)
-        for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
-            strain[part, :, :, measure] = error
+    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
+        strain[..., measure] = error
     return np.einsum("cqij,pcqj->pcqi", np.abs(block.stiffness), strain)
 
 
-def _by_vector(table: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Return the sizes of a table (nc, nq, nv) by node and nodal vector (nc, nq, nn, vpn)."""
-    return np.abs(table).reshape(*table.shape[:2], -1, len(names))
-
-
-def _sum(values: np.ndarray) -> np.ndarray:
-    """Return the sums (nc, nq) over nodes and nodal vectors."""
-    return values.reshape(*values.shape[:2], -1).sum(axis=2)
+def _sums(table: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """Return the sums of sizes (vpn, nc, nq) of a table (nc, nq, nv) for each nodal vector."""
+    sizes = np.abs(table).reshape(*table.shape[:2], -1, len(names))
+    return np.ascontiguousarray(sizes.transpose(3, 0, 1, 2)).sum(axis=3)
 
 
 def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
     """Return the force (2, nc, nv) on nodal vectors for unit errors of positions, and of all other vectors."""
-    per_node, slot = len(names), np.arange(block.scale.shape[1])
-    along, across = slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
+    along, across = _along_and_across(block.scale.shape[1], len(names))
     slope, stress = np.abs(block.slope), stress_errors(block, names).transpose(3, 0, 1, 2)
     on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
-    result = np.zeros((2, *block.scale.shape))
-    result[:, :, along] = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
+    result = np.empty((2, *block.scale.shape))
+    on_along = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
+    on_across = np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
     if block.measures == ELASTIC_LINE:
-        result[:, :, along] += np.einsum("pcq,cqi->pci", on_e, np.abs(block.second)[:, :, along])
+        on_along += np.einsum("pcq,cqi->pci", on_e, np.abs(block.second)[:, :, along])
     else:
-        result[:, :, across] = np.einsum("pcq,cqi->pci", on_e, slope[:, :, across])
-    result[:, :, across] += np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
+        on_across += np.einsum("pcq,cqi->pci", on_e, slope[:, :, across])
+    result[:, :, along], result[:, :, across] = on_along, on_across
     return result
+
+
+@lru_cache(maxsize=64)
+def _along_and_across(count: int, per_node: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the nodal vectors that interpolate r0, and of those that interpolate d, among all."""
+    slot = np.arange(count)
+    return slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
 
 
 def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:

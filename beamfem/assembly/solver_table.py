@@ -33,8 +33,7 @@ class SolverTable:
             self._table[field] = address_of(values)
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width
         self._table[record.ROLLERS] = len(rotated[0])
-        in_a_row = len(free_dofs) > 0 and (free_dofs[1:] - free_dofs[:-1] == 1).all()
-        self._table[record.FIRST_FREE] = free_dofs[0] if in_a_row else -1
+        self._table[record.FIRST_FREE] = unknowns.first
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
         """Return a copy of the table with further addresses."""

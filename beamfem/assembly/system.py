@@ -173,6 +173,11 @@ class System:
         return any(load.amplitude is not None for load in self.model.loads)
 
     @cached_property
+    def proportional(self) -> bool:
+        """Whether all loads are proportional to the load factor of statics."""
+        return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
+
+    @cached_property
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""
         return grounded_springs(self.model, self.unknowns, self.reference)

@@ -85,8 +85,7 @@ def _classes(grid: Grid) -> Classes:
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
-    damping = np.empty(count)
-    damping[:] = retardation_time(grid.beam.section_at(0.0), grid.beam.material)
+    damping = np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material))
 
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
@@ -129,11 +128,12 @@ def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     if not (grid.straight and grid.beam.prismatic):
         every = np.arange(grid.elements)
         return every, every
-    longest = grid.lengths.max()
-    if grid.lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
+    lengths = grid.lengths
+    longest = lengths.max()
+    if lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
         return np.zeros(1, dtype=np.int64), np.zeros(grid.elements, dtype=np.int64)
-    lengths = np.round(grid.lengths / (_ALIKE * longest))
-    _, first, kind = np.unique(lengths, return_index=True, return_inverse=True)
+    rounded = np.round(lengths / (_ALIKE * longest))
+    _, first, kind = np.unique(rounded, return_index=True, return_inverse=True)
     return first, kind.astype(np.int64)
 
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, lru_cache
 from operator import index
 from typing import Any
 
@@ -206,8 +206,14 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 
 def fulfils(item: object, protocol: type) -> bool:
     """Return whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
-    kind = type(item)
-    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in members(protocol))
+    kind: Any = type(item)
+    return kind is not type and (_has_all(kind, protocol) or all(hasattr(item, name) for name in members(protocol)))
+
+
+@lru_cache(maxsize=256)
+def _has_all(kind: type, protocol: type) -> bool:
+    """Return whether a class has all members of a protocol; an object may have the others."""
+    return all(hasattr(kind, name) for name in members(protocol))
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -52,30 +51,21 @@ def element_classes(grid: Grid) -> Classes:
     # studies repeatedly make identical beams
     if few and grid.straight and lasting(beam.element, beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
-        like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
-        return _classes_of_like(like)
+        known = _known(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y)
+        if not known:
+            known.append(_classes(grid))
+            for values in known[0]:
+                values.setflags(write=False)
+        return known[0]
     return _classes(grid)
 
 
-@dataclass(frozen=True)
-class _Like:
-    """Key that determines the classes of a straight prismatic beam; grid: any grid with this key."""
-
-    element: Element
-    section: Hashable
-    material: Material | None
-    lengths: bytes
-    x: float
-    y: float
-    grid: Grid = field(compare=False)
-
-
 @lru_cache(maxsize=64)
-def _classes_of_like(like: _Like) -> Classes:
-    found = _classes(like.grid)
-    for values in found:
-        values.setflags(write=False)
-    return found
+def _known(
+    element: Element, section: Hashable, material: Material | None, lengths: bytes, x: float, y: float
+) -> list[Classes]:
+    """Return a list for the classes of straight prismatic beams that are alike in all this, empty at first."""
+    return []
 
 
 def _classes(grid: Grid) -> Classes:

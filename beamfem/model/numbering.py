@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -18,8 +19,7 @@ Pairs = Sequence[tuple[int, ...]]
 _FEW = 2000  # nodes; the numbering of larger models is not cached
 
 
-@dataclass(frozen=True)
-class Nodes:
+class Nodes(NamedTuple):
     """Nodes of a beam: kind (nodes,), coordinates (nodes, npn), -1 where there is none, and frame (nodes, 3).
 
     frame: cosine and sine of the reference angle, and |r_x|; see `kernels.block.Block`.
@@ -53,8 +53,7 @@ def number_nodes(
     return nodes, numbered.size
 
 
-@dataclass(frozen=True)
-class NodeKinds:
+class NodeKinds(NamedTuple):
     """Data of a grid that determine its numbering.
 
     code: kind of the nodal coordinates; follows_slope: whether sections rotate with r_x; vectors: names of the nodal

@@ -1,12 +1,10 @@
 """How much memory this computer has, to refuse what cannot fit before it is begun."""
 
 import os
-from functools import cache
 
 SHARE = 0.8  # of the memory of this computer that a model or a motion may take
 
 
-@cache
 def installed_memory() -> int | None:
     """Return the memory of this computer [bytes], None if the system does not tell."""
     try:

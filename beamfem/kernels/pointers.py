@@ -16,8 +16,7 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import RESULTS, operation
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
-_unused = np.zeros(1)
-_NOTHING = int(_unused.__array_interface__["data"][0])
+_PLACE = c_char * 0  # an array may be empty
 
 
 @operation
@@ -69,9 +68,7 @@ def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
 
 
 def address_of(values: np.ndarray) -> int:
-    """Return the address of the first number of an array, or that of an unused one where it has none."""
-    if not values.size:
-        return _NOTHING
+    """Return the address of the first number of an array."""
     if values.flags.writeable and values.flags.c_contiguous:
-        return addressof(c_char.from_buffer(values.data))
+        return addressof(_PLACE.from_buffer(values.data))
     return int(values.__array_interface__["data"][0])  # works for all arrays, but takes twice as long

@@ -181,11 +181,9 @@ class Model(ModelOutputs):
             require_body(grid, self.unit)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
-        block_of = {kind: number for number, kind in enumerate(self._kinds)}
         meshes = []
         behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
-        for grid, carried in zip(grids, nodes, strict=True):
-            block = block_of[block_key(grid.beam)]
+        for grid, carried, block in zip(grids, nodes, self._kinds[1], strict=True):
             parts = {name: getattr(grid, name) for name in _GRID}
             history = _history(grid, behind)
             meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
@@ -234,11 +232,14 @@ class Model(ModelOutputs):
     @cached_property
     def groups(self) -> tuple[Element, ...]:
         """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
-        return tuple(element for element, *_ in self._kinds)
+        return tuple(element for element, *_ in self._kinds[0])
 
     @cached_property
-    def _kinds(self) -> tuple[tuple[Element, Hashable], ...]:
-        return tuple(dict.fromkeys(block_key(beam) for beam in self.beams))
+    def _kinds(self) -> tuple[tuple[tuple[Element, Hashable], ...], tuple[int, ...]]:
+        """The key of each block of beams, and the number of the block of each beam."""
+        found: dict[tuple[Element, Hashable], int] = {}
+        numbers = tuple(found.setdefault(block_key(beam), len(found)) for beam in self.beams)
+        return tuple(found), numbers
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.

@@ -154,12 +154,13 @@ def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
     """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv): forces by class of elements."""
     count, nodes = block.node.shape[1], len(block.node_kind)
     own = errors.reshape(len(errors), errors.shape[1], count, -1)
+    if own.shape[1] == 1:  # all elements are of one class
+        places = (block.node + nodes * np.arange(count)).ravel()
+        times = np.bincount(places, minlength=count * nodes).reshape(count, nodes)
+        return np.einsum("jn,pjv->pnv", times, own[:, 0])
     result = np.zeros((len(errors), nodes, own.shape[3]))
     for place in range(count):
         here, found = block.node[:, place], own[:, :, place]
-        if found.shape[1] == 1:  # all elements are of one class
-            result += np.bincount(here, minlength=nodes)[:, None] * found
-            continue
         for part, values in zip(result, found, strict=True):
             spread = values[block.kind]
             for slot in range(own.shape[3]):

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from importlib.util import find_spec
 
@@ -24,14 +24,19 @@ def no_progress() -> Iterator[None]:
         _held.reset(token)
 
 
-@contextmanager
-def progress(label: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Yield a function that takes how much of `total` is done."""
+def progress(label: str, total: float) -> AbstractContextManager[Callable[[float], None]]:
+    """Return a context with a function that takes how much of `total` is done."""
     # rich moves a bar of a notebook by ipywidgets
     moves = (in_notebook() and find_spec("ipywidgets") is not None) or sys.stderr.isatty()
-    if _held.get() or not moves:
-        yield lambda done: None
-        return
+    return nullcontext(_silent) if _held.get() or not moves else _bar(label, total)
+
+
+def _silent(done: float) -> None:
+    """Show nothing."""
+
+
+@contextmanager
+def _bar(label: str, total: float) -> Iterator[Callable[[float], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, lru_cache
 from operator import index
 from typing import Any
 
@@ -18,6 +18,7 @@ SMALLEST, LARGEST = math.sqrt(np.finfo(float).tiny), math.sqrt(np.finfo(float).m
 _MOST = 2**53  # from here on, floating-point numbers cannot count
 _SHOWN = 200  # characters of a value in a message
 _ENTRIES = 6  # of an array in a message
+_TRUTH = bool, np.bool_
 
 
 def shown(value: Any) -> str:
@@ -81,7 +82,7 @@ def number_below(name: str, value: Any, size: int, lowest: int = 0) -> int:
 
 def whole(name: str, value: Any) -> int:
     """Return an int of what is one whole number, also in an array without dimensions, or raise InputError naming it."""
-    if not isinstance(value, bool | np.bool_):
+    if not isinstance(value, _TRUTH):
         with suppress(TypeError):
             return index(value)
     raise InputError(f"{name} must be a whole number, got {shown(value)}")
@@ -149,12 +150,12 @@ def holds_truth_values(values: Any) -> bool:
     """Return whether there is True or False in nested lists or arrays, which NumPy takes for 1 and 0 beside numbers."""
     if isinstance(values, list | tuple):
         return any(map(holds_truth_values, values))
-    return isinstance(values, bool | np.bool_) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
+    return isinstance(values, _TRUTH) or (isinstance(values, np.ndarray) and values.dtype.kind == "b")
 
 
 def flag(name: str, value: Any) -> bool:
     """Return `value` as True or False, or raise InputError naming it: text and numbers count as neither."""
-    if not isinstance(value, bool | np.bool_):
+    if not isinstance(value, _TRUTH):
         raise InputError(f"{name} must be True or False, got {shown(value)}")
     return bool(value)
 
@@ -206,8 +207,14 @@ def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float
 
 def fulfils(item: object, protocol: type) -> bool:
     """Return whether `item` has all members of a protocol; `isinstance` does, in 40 us on Python 3.11."""
-    kind = type(item)
-    return kind is not type and all(hasattr(kind, name) or hasattr(item, name) for name in members(protocol))
+    kind: Any = type(item)
+    return kind is not type and (_has_all(kind, protocol) or all(hasattr(item, name) for name in members(protocol)))
+
+
+@lru_cache(maxsize=256)
+def _has_all(kind: type, protocol: type) -> bool:
+    """Return whether a class has all members of a protocol; an object may have the others."""
+    return all(hasattr(kind, name) for name in members(protocol))
 
 
 @cache

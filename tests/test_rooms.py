@@ -53,6 +53,7 @@ ROOMS = (
     "keywords",
     "units",
     "validation",
+    "once",
     "extras",
     "errors",
 )

@@ -72,7 +72,7 @@ def build_actions(model: Model, block: int) -> Actions:
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
-    mesh = model.mesh_of(beam.start)
+    mesh = model.meshes[model.number_of(beam)]
     return mesh if mesh.block == block else None
 
 
@@ -142,9 +142,9 @@ def _part(
         "spring": spring,
         "anchor": mesh.position[mesh.node[element, 0]] + reference.r,
         "unit": unit,
-        "source": np.repeat(source, count),
+        "source": np.full(count, source),
         "xi": xi,
-        "rule": np.repeat(rule, count),
+        "rule": np.full(count, rule),
     }
 
 

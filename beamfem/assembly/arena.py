@@ -22,11 +22,12 @@ class Arena:
         self.arrays: dict[Any, np.ndarray] = {}
         self.addresses: dict[Any, int] = {}
         sizes = [prod(shape) for shape in shapes.values()]
-        lines = [-(-size // WIDTH) for size in sizes]
-        memory: np.ndarray = np.zeros(WIDTH * (sum(lines) + 1), dtype=dtype)
+        memory: np.ndarray = np.zeros(sum(sizes) + WIDTH * (len(sizes) + 1), dtype=dtype)
         address = address_of(memory)
-        first = -address // _ITEM % WIDTH
-        for (name, shape), size, count in zip(shapes.items(), sizes, lines, strict=True):
-            self.arrays[name] = memory[first : first + size].reshape(shape)
+        first = 0
+        for (name, shape), size in zip(shapes.items(), sizes, strict=True):
+            first += -(address // _ITEM + first) % WIDTH
+            own = memory[first : first + size]
+            self.arrays[name] = own if len(shape) == 1 else own.reshape(shape)
             self.addresses[name] = address + _ITEM * first
-            first += WIDTH * count
+            first += size

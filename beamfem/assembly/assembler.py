@@ -82,16 +82,9 @@ class Assembler:
         count = len(sheets)
         which = [_space(sheet, number, spaces) for number, sheet in enumerate(sheets)]
         first = {own: number for number, own in reversed(list(enumerate(which)))}
-        whole = Arena(
-            {
-                "table": (record.SYSTEM_FIELDS,),
-                "groups": (count,),
-                "values": (count,),
-                "filled": (count, 3),
-                **dict.fromkeys(range(count), (record.BLOCK_FIELDS,)),
-            },
-            np.int64,
-        )
+        tables, lists = np.array([sheet.table for sheet in sheets]), np.zeros((5, count), dtype=np.int64)
+        groups, self._values, self._filled = lists[0], lists[1], lists[2:].reshape(count, 3)
+        size, at_tables, at_lists = lists.itemsize, address_of(tables), address_of(lists)
         shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
         self._spaces: dict[object, int] = {}
         for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
@@ -102,8 +95,8 @@ class Assembler:
         room = Arena(shapes)
         self.works: list[Work] = []
         for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
-            table = whole.arrays[number]
-            table[:] = sheet.table
+            table = tables[number]
+            groups[number] = at_tables + size * record.BLOCK_FIELDS * number
             if stresses is None:
                 stress, place = room.arrays["stress", number], room.addresses["stress", number]
             else:
@@ -114,23 +107,19 @@ class Assembler:
                 rows[:] = sheet.constant
             table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", own], place
             table[record.SHARED] = int(spaces is not None)
-            table[record.FILLED] = whole.addresses["filled"] + 24 * first[own]
-            self.works.append(Work(sheet, table, whole.addresses[number], rows, stress))
-        self.table, self.address, self._values = whole.arrays["table"], whole.addresses["table"], whole.arrays["values"]
-        whole.arrays["groups"][:] = [work.address for work in self.works]
-        self._which, self._filled = which, whole.arrays["filled"]
+            table[record.FILLED] = at_lists + size * (2 * count + 3 * first[own])
+            self.works.append(Work(sheet, table, int(groups[number]), rows, stress))
+        self._which = which
         self.scratch = sum(WIDTH + size for size in self._spaces.values())
         self.numbers = self.scratch + sum(array.size for array in room.arrays.values())
         self._room, self._factors, self._acting = room, room.arrays["factors"], (np.empty(0),)
         self._natural: tuple[np.ndarray, ...] = ()
         self._taken: LoadsAt | None = None
-        self.table[:] = equations.table
-        self.table[record.GROUP_RECORDS], self.table[record.VALUES] = (
-            whole.addresses["groups"],
-            whole.addresses["values"],
-        )
+        self.table = equations.table.copy()
+        self.address = address_of(self.table)
+        self.table[record.GROUP_RECORDS], self.table[record.VALUES] = at_lists, at_lists + size * count
         self.table[record.FACTORS] = room.addresses["factors"]
-        self._tables = tuple(whole.arrays.values())
+        self._tables = self.table, tables, lists
         self._scratch = _NONE
         if not lent:
             self.work_in(new(self.scratch))

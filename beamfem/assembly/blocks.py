@@ -14,7 +14,7 @@ from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 _FEW = 2000  # elements; results for larger blocks are not cached
-PER_CLASS = tuple(name for name in Classes.__dataclass_fields__ if name != "kind")
+PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
 
 
 def build_block(
@@ -24,7 +24,6 @@ def build_block(
 
     imposing: loads that impose strains, each with the number of its beam.
     """
-    xi, _ = element.energy_points()
     own = [mesh for _, mesh in meshes]
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
@@ -42,7 +41,7 @@ def build_block(
     law = own[0].beam.law
     return Block(
         measures=element.forces.code,
-        director=np.ascontiguousarray(element.field.director(xi)),
+        director=_director(element),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
         history=_joined([mesh.history for mesh in own]) if own[0].history.size else NO_HISTORY,
@@ -50,10 +49,18 @@ def build_block(
     )
 
 
+@lru_cache(maxsize=64)
+def _director(element: Element) -> np.ndarray:
+    """Return the shape functions (nq, nn) of d at the points of the energy, read-only."""
+    found = np.ascontiguousarray(element.field.director(element.energy_points()[0]))
+    found.setflags(write=False)
+    return found
+
+
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     """Return the fields of `kernels.block.Block` that differ by element or node, for beams (number, mesh)."""
     own = [mesh for _, mesh in meshes]
-    elements, nodes = np.array([(mesh.elements, mesh.nodes) for mesh in own]).T
+    elements, nodes = [mesh.elements for mesh in own], np.array([mesh.nodes for mesh in own])
     node = _joined([mesh.node for mesh in own])
     if len(own) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
@@ -61,7 +68,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     width = max(mesh.carried.dof.shape[1] for mesh in own)
     return {
         "node": node,
-        "beam": np.repeat([number for number, _ in meshes], elements),
+        "beam": np.array([number for number, _ in meshes]).repeat(elements),
         "node_kind": _joined([mesh.carried.node_kind for mesh in own]),
         "frame": _joined([mesh.carried.frame for mesh in own]),
         "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),

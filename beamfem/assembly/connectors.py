@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from beamfem.assembly.connector_conditions import require_workless
 from beamfem.model.contribution import remembered
 from beamfem.model.load import factor
 from beamfem.model.model import Model
+from beamfem.once import cached_property
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
@@ -110,6 +110,8 @@ class Connectors:
     def errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         result = np.zeros((2, self.model.size))
+        if not self.items:
+            return result
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             turns = np.arange(len(item.all)) % 3 == 2
             turns[len(item.dofs) :] = True

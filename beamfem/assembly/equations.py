@@ -157,10 +157,10 @@ def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarr
 
 def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], at least the size of the model, and the largest other coordinate, at least 1."""
-    reach = max(float(np.max(np.abs(p[system.positions]), initial=0.0)), system.extent)
-    others = ~system.positions
+    size, others = np.abs(p), ~system.positions
     others[system.history.numbers] = False
-    return reach, max(float(np.max(np.abs(p[others]), initial=0.0)), 1.0)
+    reach, turn = (float(size.max(where=own, initial=0.0)) for own in (system.positions, others))
+    return max(reach, system.extent), max(turn, 1.0)
 
 
 def predicted_stresses(

@@ -7,6 +7,8 @@ from beamfem.assembly.prescribed import COORDINATES
 from beamfem.kernels.block import Springs
 from beamfem.model.model import Model
 
+_NONE = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
+
 
 def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) -> Springs:
     """Return the springs of a model, which are unstressed at the coordinates `reference` (n,)."""
@@ -18,6 +20,8 @@ def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) ->
             for direction, value in springs.items():
                 dofs.append(known[COORDINATES[direction]])
                 stiffness.append(value)
+    if not dofs:
+        return _NONE
     where = np.array(dofs, dtype=np.int64)
     free = unknowns.free[where]
     place = free.copy()

@@ -1,7 +1,6 @@
 """Committed history: history variables of connectors and section laws after an accepted step, as part of a state."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from beamfem.assembly.connectors import Connectors
 from beamfem.assembly.points import free_sheet, resultants
 from beamfem.assembly.sheet import Sheet
 from beamfem.kernels.block import Block
+from beamfem.once import cached_property
 from beamfem.section.law import ConstitutiveLaw
 
 

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import laplacian, reverse_cuthill_mckee
 from scipy.sparse.linalg import spilu
 
 from beamfem.kernels.block import Block, Layout
+from beamfem.once import cached_property
 
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
@@ -42,6 +43,12 @@ class Unknowns:
     pattern: csc_array | None
     coupled: tuple[np.ndarray, ...] = ()
     reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
+
+    @cached_property
+    def first(self) -> int:
+        """The first of the unknown coordinates if they follow one another, else -1."""
+        in_a_row = len(self.dofs) > 0 and (self.dofs[1:] - self.dofs[:-1] == 1).all()
+        return int(self.dofs[0]) if in_a_row else -1
 
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:
         """Return the positions of the diagonal entries of unknowns (k,) in the matrix data."""

@@ -1,9 +1,10 @@
 """Loads of a model at a time."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
+
+from beamfem.once import cached_property
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,6 @@ mixed formulations.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
@@ -19,6 +18,7 @@ from beamfem.assembly.system import System
 from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
+from beamfem.once import cached_property
 
 _REFINEMENTS = 2  # make each equation accurate relative to its own terms, however large others are (Skeel 1980)
 

@@ -35,7 +35,8 @@ class MotionSpace:
         self._tiles = _NONE if tiles is None else tiles.table
         self._kept = system.turning, tiles  # what the tables point to
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
-        in_place = system.solver_table.first_free >= 0
+        first = system.unknowns.first
+        in_place = first >= 0
         room = Arena(
             {
                 "residual": (size,),
@@ -55,7 +56,6 @@ class MotionSpace:
         self.arrays, places = room.arrays, room.addresses
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self.residual, self.rows = places.pop("residual"), places[record.ROWS]
-        first = system.solver_table.first_free
         if in_place:  # unknowns in a row are solved for where the residual is
             places[record.RIGHT] = self.residual + 8 * first
             self.arrays[record.RIGHT] = self.arrays["residual"][first : first + unknown]

@@ -1,6 +1,6 @@
 """Coordinates that are prescribed by supports."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,8 +13,7 @@ from beamfem.validation import function_value
 COORDINATES = {"ux": "r^x", "uy": "r^y", "rotation": "theta"}  # nodal coordinate by direction of a support
 
 
-@dataclass(frozen=True)
-class PrescribedCoordinate:
+class PrescribedCoordinate(NamedTuple):
     """A coordinate that a support prescribes.
 
     value: its change from the reference, a number or a function of time; rotation: whether it is a rotation; point:

@@ -1,6 +1,5 @@
 """Compiled functions of a group of elements by their numbers, each compiled or loaded when it is first needed."""
 
-from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
@@ -99,15 +98,16 @@ class Routines:
     def __init__(self, measures: int, sizes: Sizes, law: int = 0) -> None:
         self._sizes = dict(sizes)
         self.addresses = np.zeros(record.ROUTINE_COUNT, dtype=np.int64)
-        self._measures, self._law, self._ready = measures, law, set[tuple[str, int]]()
+        self._measures, self._law, self._ready = measures, law, set[tuple[tuple[str, ...], tuple[int, ...]]]()
 
-    def require(self, tasks: Iterable[str], kinds: Iterable[int]) -> None:
+    def require(self, tasks: tuple[str, ...], kinds: tuple[int, ...]) -> None:
         """Compile or load the routines of tasks; kinds: nodes with an angle, indices in `physics.kinematics.KINDS`."""
+        if (tasks, kinds) in self._ready:
+            return
         for task in tasks:
             for kind in (-1, *kinds):
-                if (task, kind) not in self._ready:
-                    self._fill(task, kind)
-                    self._ready.add((task, kind))
+                self._fill(task, kind)
+        self._ready.add((tasks, kinds))
 
     def _fill(self, task: str, kind: int) -> None:
         own = MEASURE_PASSES[self._measures]

@@ -5,11 +5,15 @@ unit vector or an angle has an error eps, whatever the size of the model.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.element.coordinates import labels
 from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, STRUCTURAL, Block, PointLoads, Springs
+
+_FEW = 2000  # nodes; the entries of larger blocks are not cached
 
 
 def residual_errors(
@@ -25,22 +29,56 @@ def residual_errors(
     """
     result = np.zeros((2, size))
     for block, names, loads in zip(blocks, vectors, points, strict=True):
-        errors = np.array([_of_slots(block, names, part) for part in (True, False)])
-        nodes = _of_nodes(block, errors)
-        for element, position, spring in zip(loads.element, loads.position, loads.spring, strict=True):
-            own = block.node[element]
-            nodes[0][own] += spring.max() * np.abs(position).reshape(len(own), -1)
-        for node_kind in np.unique(block.node_kind).tolist():
-            here = np.flatnonzero(block.node_kind == node_kind)
-            for column, label in enumerate(labels(node_kind, names)):
-                slots = [_slot(label, names)]
-                if label == "theta" and node_kind in (STRETCH, SHEAR_RIGID):
-                    slots.append(1)
-                # contributions of nodes that share a coordinate add up
-                for part, values in zip(result, nodes, strict=True):
-                    part += np.bincount(block.dof[here, column], values[here][:, slots].sum(axis=1), size)
-    np.add.at(result[0], springs.dof, springs.stiffness)
+        nodes = _of_nodes(block, _of_slots(block, names))
+        if loads.spring.any():
+            for i in np.flatnonzero(loads.spring.any(axis=1)):
+                own = block.node[loads.element[i]]
+                nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
+        for entries in _entries(block, names):
+            values = nodes[:, entries.nodes, entries.slots]
+            if len(entries.turning):  # the angle turns r_x as well
+                values[:, entries.turning] += nodes[:, entries.nodes[entries.turning], 1]
+            # contributions of nodes that share a coordinate add up
+            for part, own in zip(result, values, strict=True):
+                part += np.bincount(entries.dofs, own, size)
+    if len(springs.dof):
+        np.add.at(result[0], springs.dof, springs.stiffness)
     return result
+
+
+class Entries(NamedTuple):
+    """Coordinates dofs (k,) of all nodes of one kind: node, and nodal vector that each changes.
+
+    turning (m,): those among them that change r_x as well.
+    """
+
+    dofs: np.ndarray
+    nodes: np.ndarray
+    slots: np.ndarray
+    turning: np.ndarray
+
+
+def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
+    if len(block.node_kind) > _FEW:
+        return _entries_of(block.node_kind, block.dof, names)
+    return _entries_of_few(block.node_kind.tobytes(), block.dof.tobytes(), names)
+
+
+def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) -> list[Entries]:
+    found = []
+    for kind in np.unique(node_kind).tolist():
+        here, columns = np.flatnonzero(node_kind == kind), labels(kind, names)
+        slots = np.tile([_slot(label, names) for label in columns], len(here))
+        turns = [kind in (STRETCH, SHEAR_RIGID) and label == "theta" for label in columns]
+        dofs = dof[here, : len(columns)].ravel()
+        found.append(Entries(dofs, here.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(here)))))
+    return found
+
+
+@lru_cache(maxsize=64)
+def _entries_of_few(node_kind: bytes, dof: bytes, names: tuple[str, ...]) -> list[Entries]:
+    kinds = np.frombuffer(node_kind, dtype=np.int64)
+    return _entries_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), names)
 
 
 def _slot(label: str, names: tuple[str, ...]) -> int:
@@ -50,38 +88,48 @@ def _slot(label: str, names: tuple[str, ...]) -> int:
     return 1 if label == "s" else names.index(label.split("^")[0])
 
 
-def stress_errors(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the stress resultants (nc, nq, ns) for unit errors of positions, or of all other vectors."""
-    per_node = len(names)
-    slot = np.arange(block.scale.shape[1]) % per_node
-    erring = slot == 0 if positions else (slot > 0) & (slot < per_node - 1)
-    across, slope = slot == per_node - 1, np.abs(block.slope)
-    of_r = slope[:, :, erring].sum(axis=2)
-    of_d = np.zeros_like(of_r) if positions else np.abs(block.director).sum(axis=1) + np.zeros_like(of_r)
-    of_e = np.zeros_like(of_r) if positions else slope[:, :, across].sum(axis=2)
+def stress_errors(block: Block, names: tuple[str, ...]) -> np.ndarray:
+    """Return the stress resultants (2, nc, nq, ns) for unit errors of positions, and of all other vectors."""
+    slope, last = _sums(block.slope, names), len(names) - 1
+    of_r, of_d, of_e = np.zeros((3, 2, *block.weight.shape))
+    of_r[:last], of_d[1] = slope[:last], np.abs(block.director).sum(axis=1)
     if block.measures == ELASTIC_LINE:
-        of_e = np.abs(block.second)[:, :, erring].sum(axis=2)
-    strain = np.zeros(block.reference.shape)
-    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
-        strain[:, :, measure] = error
-    return np.einsum("cqij,cqj->cqi", np.abs(block.stiffness), strain)
-
-
-def _of_slots(block: Block, names: tuple[str, ...], positions: bool) -> np.ndarray:
-    """Return the force (nc, nv) on nodal vectors for unit errors of positions, or of all other vectors."""
-    per_node = len(names)
-    slot = np.arange(block.scale.shape[1]) % per_node
-    along, across = np.flatnonzero(slot < per_node - 1), np.flatnonzero(slot == per_node - 1)
-    slope, stress = np.abs(block.slope), np.moveaxis(stress_errors(block, names, positions), 2, 0)
-    on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
-    result = np.zeros(block.scale.shape)
-    result[:, along] = np.einsum("cq,cqi->ci", on_r, slope[:, :, along])
-    if block.measures == ELASTIC_LINE:
-        result[:, along] += np.einsum("cq,cqi->ci", on_e, np.abs(block.second)[:, :, along])
+        of_e[:last] = _sums(block.second, names)[:last]
     else:
-        result[:, across] = np.einsum("cq,cqi->ci", on_e, slope[:, :, across])
-    result[:, across] += np.einsum("cq,qi->ci", on_d, np.abs(block.director))
+        of_e[1] = slope[last]
+    strain = np.zeros((2, *block.reference.shape))
+    for measure, error in enumerate(_strain_errors(block.measures, of_r, of_d, of_e)):
+        strain[..., measure] = error
+    return np.einsum("cqij,pcqj->pcqi", np.abs(block.stiffness), strain)
+
+
+def _sums(table: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """Return the sums of sizes (vpn, nc, nq) of a table (nc, nq, nv) for each nodal vector."""
+    sizes = np.abs(table).reshape(*table.shape[:2], -1, len(names))
+    return np.ascontiguousarray(sizes.transpose(3, 0, 1, 2)).sum(axis=3)
+
+
+def _of_slots(block: Block, names: tuple[str, ...]) -> np.ndarray:
+    """Return the force (2, nc, nv) on nodal vectors for unit errors of positions, and of all other vectors."""
+    along, across = _along_and_across(block.scale.shape[1], len(names))
+    slope, stress = np.abs(block.slope), stress_errors(block, names).transpose(3, 0, 1, 2)
+    on_r, on_d, on_e = (block.weight * force for force in _forces(block.measures, stress))
+    result = np.empty((2, *block.scale.shape))
+    on_along = np.einsum("pcq,cqi->pci", on_r, slope[:, :, along])
+    on_across = np.einsum("pcq,qi->pci", on_d, np.abs(block.director))
+    if block.measures == ELASTIC_LINE:
+        on_along += np.einsum("pcq,cqi->pci", on_e, np.abs(block.second)[:, :, along])
+    else:
+        on_across += np.einsum("pcq,cqi->pci", on_e, slope[:, :, across])
+    result[:, :, along], result[:, :, across] = on_along, on_across
     return result
+
+
+@lru_cache(maxsize=64)
+def _along_and_across(count: int, per_node: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the nodal vectors that interpolate r0, and of those that interpolate d, among all."""
+    slot = np.arange(count)
+    return slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
 
 
 def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -106,12 +154,13 @@ def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
     """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv): forces by class of elements."""
     count, nodes = block.node.shape[1], len(block.node_kind)
     own = errors.reshape(len(errors), errors.shape[1], count, -1)
+    if own.shape[1] == 1:  # all elements are of one class
+        places = (block.node + nodes * np.arange(count)).ravel()
+        times = np.bincount(places, minlength=count * nodes).reshape(count, nodes)
+        return np.einsum("jn,pjv->pnv", times, own[:, 0])
     result = np.zeros((len(errors), nodes, own.shape[3]))
     for place in range(count):
         here, found = block.node[:, place], own[:, :, place]
-        if found.shape[1] == 1:  # all elements are of one class
-            result += np.bincount(here, minlength=nodes)[:, None] * found
-            continue
         for part, values in zip(result, found, strict=True):
             spread = values[block.kind]
             for slot in range(own.shape[3]):

@@ -5,13 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.routines import Routines, routines
-from beamfem.assembly.sheet_structure import Needs, structure_of
+from beamfem.assembly.sheet_structure import Needs, Structure, structure_of
 from beamfem.kernels import record
 from beamfem.kernels.block import (
     ELASTIC_LINE,
-    GRADIENTS,
-    ROTATION,
-    TURNED_GRADIENTS,
     Block,
     Imposed,
     Law,
@@ -22,6 +19,7 @@ from beamfem.kernels.lanes import WIDTH
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import LANES, ROW
 
+_PADDING = np.zeros(WIDTH)  # vectors of lanes read beyond the last node
 _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for measures in (4, 6)}
 
 
@@ -91,13 +89,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     arrays = {
         record.TABLES: np.concatenate(parts, axis=1),
         record.DIRECTOR: block.director,
-        record.FRAME: np.append(frame.T, np.zeros(WIDTH)),  # padded, since vectors of lanes read beyond the last node
-        record.POSITION: loads.position.T,
-        record.DIRECTION: loads.direction.T,
-        record.FOLLOWS: loads.follows.T,
-        record.STRETCHES: loads.stretches,
-        record.SPRING: loads.spring.T,
-        record.ANCHOR: loads.anchor.T,
+        record.FRAME: np.concatenate((frame.T.ravel(), _PADDING)),
     }
     slot, history = np.ascontiguousarray(layout.slot, dtype=np.int32), np.ascontiguousarray(block.history)
     kept = [*structure.kept, slot, own.addresses, history]
@@ -106,12 +98,29 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
     for field, values in arrays.items():
         kept.append(np.ascontiguousarray(values, dtype=float))
         table[field] = address_of(kept[-1])
-    turned, kinds, constant = structure.turned, structure.kinds, None
-    if (turned and len(kinds) > 1) or TURNED_GRADIENTS in kinds:
-        constant = _constant(stored(block, order), structure.chunks, 2 * vectors, turned, structure.turning)
-    space = structure.used * ROW
+    if len(loads.element):
+        kept.append(_add_loads(table, loads))
+    constant, space = _constant(structure, 2 * vectors, frame), structure.used * ROW
     needs, law = structure.needs, block.law
     return Sheet(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
+
+
+def _add_loads(table: np.ndarray, loads: PointLoads) -> np.ndarray:
+    """Set the addresses of the tables of point loads; return the memory that they share."""
+    arrays = {
+        record.POSITION: loads.position,
+        record.DIRECTION: loads.direction,
+        record.FOLLOWS: loads.follows,
+        record.STRETCHES: loads.stretches,
+        record.SPRING: loads.spring,
+        record.ANCHOR: loads.anchor,
+    }
+    memory = np.concatenate([values.T.ravel() for values in arrays.values()], dtype=float)
+    address = address_of(memory)
+    for field, values in arrays.items():
+        table[field] = address
+        address += memory.itemsize * values.size
+    return memory
 
 
 def _routines(block: Block) -> Routines:
@@ -121,20 +130,13 @@ def _routines(block: Block) -> Routines:
     return routines(block.measures, sizes) if block.law is None else Routines(block.measures, sizes, block.law.address)
 
 
-def _constant(block: Block, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
-    """Return node data with the entries that never change: B of nodes whose coordinates are nodal vectors."""
-    chunks = np.zeros(shape)
-    whole = np.zeros((shape[0] * LANES, turned, turning))
-    node_kind, linear = block.node_kind, size - turned
-    own = np.arange(len(node_kind))
-    for part in range(turned):
-        straight = node_kind == GRADIENTS
-        straight |= np.isin(node_kind, (ROTATION, TURNED_GRADIENTS)) & (linear + part < size - 2)
-        whole[own[straight], part, part if part < turning else 0] = 1.0
-    turns = own[node_kind == TURNED_GRADIENTS]
-    c, s = block.frame[turns, 0], block.frame[turns, 1]
+def _constant(structure: Structure, size: int, frame: np.ndarray) -> np.ndarray | None:
+    """Return node data with the entries that never change; frame (N, 3): of nodes in storage order."""
+    turns, turned, turning = structure.turns, structure.turned, structure.turning
+    if structure.constant is None or not len(turns):
+        return structure.constant
+    chunks = structure.constant.copy()
+    c, s = frame[turns, 0], frame[turns, 1]
     for part, column, value in ((2, 2, c), (2, 1, -s), (1, 2, s), (1, 1, c)):
-        whole[turns, turned - part, turning - column] = value
-    rows = whole.reshape(shape[0], LANES, turned * turning).transpose(0, 2, 1)
-    chunks[:, 2 * size : 2 * size + turned * turning, :LANES] = rows
+        chunks[turns // LANES, 2 * size + (turned - part) * turning + turning - column, turns % LANES] = value
     return chunks

@@ -59,16 +59,19 @@ class Numbers(NamedTuple):
 class Structure:
     """The part of a sheet that identical groups share: see `sheet.Sheet`.
 
-    table: see `kernels.record`; kept: the arrays that it points to; kinds: kinds of the nodes; turned, turning: numbers
-    of components of nodal vectors that rotate, and of the coordinates that rotate them; used: rows of workspace.
+    table: see `kernels.record`; kept: the arrays that it points to; turned, turning: numbers of components of nodal
+    vectors that rotate, and of the coordinates that rotate them; constant: node data with the entries that never change
+    in any such group, None if there are none; turns (k,): nodes with `TURNED_GRADIENTS`, in storage order; used: rows
+    of workspace.
     """
 
     table: np.ndarray
     kept: tuple[np.ndarray, ...]
     order: np.ndarray | None
-    kinds: tuple[int, ...]
     turned: int
     turning: int
+    constant: np.ndarray | None
+    turns: np.ndarray
     chunks: tuple[int, int, int]
     used: int
     needs: Needs
@@ -88,8 +91,7 @@ def structure_of(block: Block, layout: Layout, loads: PointLoads) -> Structure:
         layout.half_width,
     )
     numbers = Numbers(
-        *(np.ascontiguousarray(getattr(block, name), dtype=np.int64) for name in Numbers._fields[:6]),
-        *(np.ascontiguousarray(values, dtype=np.int64) for values in (layout.free, loads.element)),
+        block.node, block.kind, block.beam, block.node_kind, block.dof, block.home, layout.free, loads.element
     )
     if len(block.node) > _FEW or len(layout.free) > 10 * _FEW:
         return _structure(numbers, sizes)
@@ -175,7 +177,22 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     table[record.LOADS] = len(given.element)
     needs = _needs(kinds, sizes, bool(len(given.element)))
     chunks = -(-count // LANES), chunk_rows, ROW
-    return Structure(table, tuple(kept), order, kinds, turned, turning, chunks, used, needs)
+    turns, constant = np.flatnonzero(given.node_kind == TURNED_GRADIENTS), None
+    if (turned and len(kinds) > 1) or len(turns):
+        constant = _constant(given.node_kind, chunks, size, turned, turning)
+    return Structure(table, tuple(kept), order, turned, turning, constant, turns, chunks, used, needs)
+
+
+def _constant(node_kind: np.ndarray, shape: tuple[int, int, int], size: int, turned: int, turning: int) -> np.ndarray:
+    """Return node data with the entries that never change: B of nodes whose coordinates are nodal vectors."""
+    chunks = np.zeros(shape)
+    for part in range(turned):
+        straight = node_kind == GRADIENTS
+        if part < turned - 2:
+            straight |= (node_kind == ROTATION) | (node_kind == TURNED_GRADIENTS)
+        nodes = np.flatnonzero(straight)
+        chunks[nodes // LANES, 2 * size + part * turning + (part if part < turning else 0), nodes % LANES] = 1.0
+    return chunks
 
 
 def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:

@@ -26,8 +26,7 @@ from beamfem.kernels.two_sided import SHORT, TwoSided, two_sided
 class SolverTable:
     """The constant part of a table for `kernels.newton` and `kernels.march`: the unknowns of a band matrix.
 
-    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates;
-    first_free: number of the first unknown coordinate if all have consecutive numbers, else -1.
+    rotated: equation numbers (nt,) and normals (nt, 2) of inclined rollers; scale (n,): scale of the coordinates.
     """
 
     def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
@@ -43,9 +42,7 @@ class SolverTable:
             self._table[field] = address_of(values)
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width
         self._table[record.ROLLERS] = len(rotated[0])
-        in_a_row = len(free_dofs) > 0 and (free_dofs[1:] - free_dofs[:-1] == 1).all()
-        self.first_free = int(free_dofs[0]) if in_a_row else -1
-        self._table[record.FIRST_FREE] = self.first_free
+        self._table[record.FIRST_FREE] = unknowns.first
 
     def filled(self, addresses: Mapping[int, int]) -> np.ndarray:
         """Return a copy of the table with further addresses."""

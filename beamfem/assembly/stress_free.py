@@ -1,6 +1,7 @@
 """The coordinates of the stress-free state of a model."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -8,6 +9,10 @@ from beamfem.assembly.columns import columns_of
 from beamfem.element.coordinates import across
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
+
+Places = tuple[np.ndarray, np.ndarray, np.ndarray]
+_FEW = 2000  # nodes; the places of larger blocks are not cached
+_SOURCES = ("r^x", "r^y", "r_x^x", "r_x^y", "r_y^x", "r_y^y", "s")
 
 
 def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
@@ -18,11 +23,27 @@ def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
         position, tangent, speed = (
             np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
         )
-        values = {"r": position, "r_x": tangent * speed[:, None], "r_y": across(tangent)}
-        for label, nodes, dofs in columns_of(block.node_kind, block.dof, element.field.vectors):
-            if label == "s":
-                p[dofs] = speed[nodes]
-            elif label != "theta":
-                name, axis = label.split("^")
-                p[dofs] = values[name][nodes, "xy".index(axis)]
+        speed = speed[:, None]
+        table = np.concatenate((position, tangent * speed, across(tangent), speed), axis=1)
+        dofs, nodes, sources = _places(block, element.field.vectors)
+        p[dofs] = table[nodes, sources]
     return p
+
+
+def _places(block: Block, vectors: tuple[str, ...]) -> Places:
+    """Return the coordinates (k,) that are not angles, with the node and the number in `_SOURCES` of each."""
+    if len(block.node_kind) > _FEW:
+        return _places_of(block.node_kind, block.dof, vectors)
+    return _places_of_few(block.node_kind.tobytes(), block.dof.tobytes(), vectors)
+
+
+def _places_of(node_kind: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]) -> Places:
+    found = [own for own in columns_of(node_kind, dof, vectors) if own[0] != "theta"]
+    sources = [np.full(len(nodes), _SOURCES.index(label)) for label, nodes, _ in found]
+    return np.concatenate([own[2] for own in found]), np.concatenate([own[1] for own in found]), np.concatenate(sources)
+
+
+@lru_cache(maxsize=64)
+def _places_of_few(node_kind: bytes, dof: bytes, vectors: tuple[str, ...]) -> Places:
+    kinds = np.frombuffer(node_kind, dtype=np.int64)
+    return _places_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), vectors)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,6 +37,7 @@ from beamfem.kernels.block import (
 from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.model.returned import forces_of
+from beamfem.once import cached_property
 from beamfem.validation import shown
 
 _GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
@@ -123,10 +123,7 @@ class System:
     def stress_errors(self) -> tuple[np.ndarray, ...]:
         """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
-        return tuple(
-            np.array([stress_errors(block, names, part) for part in (True, False)])
-            for block, names in zip(self.blocks, vectors, strict=True)
-        )
+        return tuple(stress_errors(*own) for own in zip(self.blocks, vectors, strict=True))
 
     @cached_property
     def positions(self) -> np.ndarray:
@@ -176,6 +173,11 @@ class System:
         return any(load.amplitude is not None for load in self.model.loads)
 
     @cached_property
+    def proportional(self) -> bool:
+        """Whether all loads are proportional to the load factor of statics."""
+        return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
+
+    @cached_property
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""
         return grounded_springs(self.model, self.unknowns, self.reference)
@@ -194,7 +196,7 @@ class System:
     @cached_property
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
-        following = any(np.any(loads.follows[~loads.stretches]) for loads in self.point_loads)
+        following = any(loads.follows.any() and loads.follows[~loads.stretches].any() for loads in self.point_loads)
         directed = [dof for dof, _ in self.inclined]
         fixed = {*self.prescribed_dofs.tolist(), *directed}
         return not following and self.connectors.conservative and pressures_have_potential(self.model, fixed)
@@ -211,7 +213,7 @@ class System:
     def prescribed_values(self, time: float) -> np.ndarray:
         """Return the values of the prescribed coordinates at a time, in statics at a load factor."""
         start = self._prescribed_reference
-        return start + self.prescribed_changes(time) if self._moved else start
+        return start + self.prescribed_changes(time) if self.moved else start
 
     def prescribed_changes(self, time: float) -> np.ndarray:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
@@ -222,7 +224,7 @@ class System:
         return self.reference[self.prescribed_dofs]
 
     @cached_property
-    def _moved(self) -> bool:
+    def moved(self) -> bool:
         """Whether a prescribed value may differ from the reference."""
         return any(callable(item.value) or item.value != 0.0 for item in self.prescribed)
 
@@ -244,7 +246,7 @@ class System:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
-        known = np.append(self.prescribed_dofs, self.history.numbers)
+        known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         return order_unknowns(self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist())
 
     @cached_property

@@ -1,7 +1,6 @@
 """An axis along a B-spline, rational (NURBS) or not."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from beamfem.brief import brief
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.curve import numbers, points, turned, unit
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 from beamfem.validation import convert, count, optional
 
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from beamfem.brief import brief
 from beamfem.curves.curve import GAP, Curve, turned
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 from beamfem.validation import fulfils, items, shown
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 from beamfem.validation import called, convert, finite, shown, vector
 
 PlaneFunction = Callable[[Any], Any]

@@ -1,13 +1,13 @@
 """An axis of straight segments."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from beamfem.brief import brief
 from beamfem.curves.curve import points, turned, unit
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,11 @@
 """The beam axis at points: the vectors that strain measures depend on."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 
-@dataclass(frozen=True)
-class Axis:
+class Axis(NamedTuple):
     """r0, r0', r0'', d and d' (..., 2) at points of the axis; primes are by arc length of the reference."""
 
     r: np.ndarray

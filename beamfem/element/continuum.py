@@ -182,10 +182,7 @@ def _over_section(section: CrossSection, material: Material | None, reference: A
     if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:
         total = np.zeros((6, 6))
         for part, moments in section.moments(material):
-            stiffness = law(part)
-            for m, left in _POWERS.items():
-                for n, right in _POWERS.items():
-                    total += moments[m + n] * left.T @ stiffness @ right
+            total += moments[_MOMENT] * law(part)[_COMPONENT[:, None], _COMPONENT]
         return np.broadcast_to(total, (*reference.r_s.shape[:-1], 6, 6))
     result = np.zeros((*reference.r_s.shape[:-1], 6, 6))
     for part, heights, weights in section.strips(material):
@@ -209,6 +206,9 @@ def _table(places: list[tuple[int, int]]) -> np.ndarray:
 
 # (exx, eyy, 2 exy) = sum over n of y^n times a table (3, 6) of (a, b, c, eyy, g0, g1)
 _POWERS = {0: _table([(0, 0), (1, 3), (2, 4)]), 1: _table([(0, 1), (2, 5)]), 2: _table([(0, 2)])}
+# each of (a, b, c, eyy, g0, g1) is one of (exx, eyy, 2 exy), with one power of y; moments for products of two of them
+_COMPONENT = np.array([0, 0, 0, 1, 2, 2])
+_MOMENT = np.add.outer((0, 1, 2, 0, 0, 1), (0, 1, 2, 0, 0, 1))
 
 
 def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:

@@ -44,12 +44,12 @@ class Structural:
         beside it; the last E A is zero if the nodes keep the length of d.
         """
         rigidity = section.rigidity(material)
-        matrix = np.zeros((4, 4))
-        matrix[0, 0], matrix[1, 1], matrix[2, 2] = rigidity.axial, rigidity.shear, rigidity.bending
-        matrix[0, 2] = matrix[2, 0] = rigidity.coupling
+        matrix = np.zeros((*reference.r_s.shape[:-1], 4, 4))
+        matrix[..., 0, 0], matrix[..., 1, 1], matrix[..., 2, 2] = rigidity.axial, rigidity.shear, rigidity.bending
+        matrix[..., 0, 2] = matrix[..., 2, 0] = rigidity.coupling
         if isinstance(coordinates, Gradients):
-            matrix[3, 3] = rigidity.axial
-        return np.broadcast_to(matrix, (*reference.r_s.shape[:-1], 4, 4))
+            matrix[..., 3, 3] = rigidity.axial
+        return matrix
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
         """Return the strain measures of free strains (m, n, 4): stretch, shear, curvature [1/m] and thickness stretch.

@@ -1,6 +1,5 @@
 """Supports, loads and connectors in ParaView files: a vertex for each place, with what acts on the beam there."""
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +8,7 @@ from beamfem.io.cells import VERTEX, Content, by_precision, legend_of_beams
 from beamfem.io.vertices import ROLES, vertices
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
+from beamfem.once import cached_property
 from beamfem.results import postprocess
 
 if TYPE_CHECKING:

@@ -1,6 +1,5 @@
 """Points of bodies and centrelines in the cells of ParaView files, and the fields there."""
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from beamfem.material import Material
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
+from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
 from beamfem.results.self_stress import self_stress

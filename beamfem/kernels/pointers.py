@@ -17,6 +17,7 @@ from beamfem.kernels.compiler.callables import RESULTS, operation
 from beamfem.kernels.compiler.kinds import KINDS, REALS, SLOTS, WHOLES, Kind, Value
 
 _FETCH = "llvm.prefetch.p0i8"
+_PLACE = c_char * 0  # an array may be empty
 
 
 @operation
@@ -80,6 +81,6 @@ def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
 
 def address_of(values: np.ndarray) -> int:
     """Return the address of the first number of an array."""
-    if values.size and values.flags.writeable and values.flags.c_contiguous:
-        return addressof(c_char.from_buffer(values.data))
+    if values.flags.writeable and values.flags.c_contiguous:
+        return addressof(_PLACE.from_buffer(values.data))
     return int(values.__array_interface__["data"][0])  # works for all arrays, but takes twice as long

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal, cast
 
 import numpy as np
@@ -17,6 +16,7 @@ from beamfem.model.damping import retardation_time
 from beamfem.model.jumps import find_jumps
 from beamfem.model.law_fits import require_law_fits
 from beamfem.model.magnitudes import require_magnitudes
+from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.section.law import ConstitutiveLaw, law_of
 from beamfem.section.protocol import CrossSection

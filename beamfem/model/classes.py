@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -18,7 +17,7 @@ from beamfem.model.grid import Grid
 from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
-    inertia_points,
+    inertia_at,
     jacobians,
     length_points,
     length_rule,
@@ -29,8 +28,7 @@ _FEW = 2000  # elements; the classes of larger grids are not cached
 _ALIKE = 1e-9  # of the longest element: elements whose lengths differ by less are in one class
 
 
-@dataclass(frozen=True)
-class Classes:
+class Classes(NamedTuple):
     """Data of nc classes; kind (ne,) is the class of each element, the rest as in `kernels.block.Block`."""
 
     kind: np.ndarray
@@ -53,30 +51,21 @@ def element_classes(grid: Grid) -> Classes:
     # studies repeatedly make identical beams
     if few and grid.straight and lasting(beam.element, beam.section, beam.material):
         x, y = grid.tangent[0].tolist()
-        like = _Like(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y, grid)
-        return _classes_of_like(like)
+        known = _known(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y)
+        if not known:
+            known.append(_classes(grid))
+            for values in known[0]:
+                values.setflags(write=False)
+        return known[0]
     return _classes(grid)
 
 
-@dataclass(frozen=True)
-class _Like:
-    """Key that determines the classes of a straight prismatic beam; grid: any grid with this key."""
-
-    element: Element
-    section: Hashable
-    material: Material | None
-    lengths: bytes
-    x: float
-    y: float
-    grid: Grid = field(compare=False)
-
-
 @lru_cache(maxsize=64)
-def _classes_of_like(like: _Like) -> Classes:
-    found = _classes(like.grid)
-    for name in Classes.__dataclass_fields__:
-        getattr(found, name).setflags(write=False)
-    return found
+def _known(
+    element: Element, section: Hashable, material: Material | None, lengths: bytes, x: float, y: float
+) -> list[Classes]:
+    """Return a list for the classes of straight prismatic beams that are alike in all this, empty at first."""
+    return []
 
 
 def _classes(grid: Grid) -> Classes:
@@ -86,8 +75,7 @@ def _classes(grid: Grid) -> Classes:
     stiffness, reference = energy_stiffness_at(grid, element, xi)
     scale = scales(grid.beam.element, grid.lengths[first])
     mass, gravity, length = _inertia(grid, first, scale)
-    damping = np.empty(count)
-    damping[:] = retardation_time(grid.beam.section_at(0.0), grid.beam.material)
+    damping = np.full(count, retardation_time(grid.beam.section_at(0.0), grid.beam.material))
 
     def by_class(values: np.ndarray) -> np.ndarray:
         return values.reshape(count, size, *values.shape[1:])
@@ -130,11 +118,12 @@ def _likes(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     if not (grid.straight and grid.beam.prismatic):
         every = np.arange(grid.elements)
         return every, every
-    longest = grid.lengths.max()
-    if grid.lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
+    lengths = grid.lengths
+    longest = lengths.max()
+    if lengths.min() >= (1.0 - 0.5 * _ALIKE) * longest:
         return np.zeros(1, dtype=np.int64), np.zeros(grid.elements, dtype=np.int64)
-    lengths = np.round(grid.lengths / (_ALIKE * longest))
-    _, first, kind = np.unique(lengths, return_index=True, return_inverse=True)
+    rounded = np.round(lengths / (_ALIKE * longest))
+    _, first, kind = np.unique(rounded, return_index=True, return_inverse=True)
     return first, kind.astype(np.int64)
 
 
@@ -164,8 +153,8 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return mass (nc, nv, nv), load of a uniform acceleration (nc, nv) and load of a uniform force (nc, nv)."""
     tables = _tables(grid.beam.element)
-    _, _, inertia = inertia_points(grid, chosen)
-    _, _, weight = length_points(grid, chosen)
+    where, at, weight = length_points(grid, chosen)
+    inertia = inertia_at(grid, where, at, weight)
     count, points = len(chosen), len(tables.r)
     mass, first, rotary = inertia.reshape(count, points, 3).transpose(2, 0, 1)
     matrix, gravity = mass @ tables.rr + rotary @ tables.dd, mass @ tables.r

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +9,7 @@ from skfem import MeshLine
 
 from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
+from beamfem.once import cached_property
 
 _INSIDE = 1e-8  # of the length: distance from an element end at a jump at which the section is evaluated
 _MOVED = 0.005  # of the two elements at an end: largest distance by which the end is moved
@@ -55,7 +55,7 @@ class Grid:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
-        return self.rate * np.diff(self.parameter)
+        return self.rate * (self.parameter[1:] - self.parameter[:-1])
 
     @property
     def nodes(self) -> int:
@@ -74,8 +74,11 @@ class Grid:
         start, end = self.parameter[element : element + 2].tolist()
         return element, min(max((along - start) / (end - start), 0.0), 1.0)
 
-    def node_of(self, element: int, xi: float) -> int | None:
-        """Return the node at xi in an element, None if there is none."""
+    def node_near(self, fraction: float) -> int | None:
+        """Return the node at a fraction [-], None if there is none."""
+        if fraction in (0.0, 1.0) and self.beam.elements != "knots":
+            return self.node_at(fraction)
+        element, xi = self.locate(fraction)
         here = self.beam.element.field.nodes.tolist()
         return int(self.node[element, here.index(xi)]) if xi in here else None
 

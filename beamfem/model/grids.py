@@ -63,10 +63,10 @@ class _Divided(NamedTuple):
 def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divided:
     """Return straight lines divided into equal elements with nodes (nn,) at these xi in [0, 1]."""
     length = np.array([line.length for line in lines])[:, None]
-    start, end = (np.array([getattr(line, name) for line in lines])[:, None] for name in ("start", "end"))
+    start, end = np.array([line.start for line in lines])[:, None], np.array([line.end for line in lines])[:, None]
     last = len(nodes) - 1
-    vertices = np.linspace(0.0, 1.0, elements + 1) * length
-    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
+    fractions, node, speed = (_divisions_of if elements > _FEW else _divisions_of_few)(elements, last)
+    vertices = fractions * length
     arc = np.empty((len(lines), elements * last + 1))
     sizes = vertices[:, 1:] - vertices[:, :-1]
     arc[:, :-1] = (vertices[:, :-1, None] + sizes[:, :, None] * nodes[:-1]).reshape(len(lines), -1)
@@ -74,7 +74,19 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     fraction = (arc / length)[:, :, None]
     position, tangent = (1.0 - fraction) * start + fraction * end, np.empty((*arc.shape, 2))
     tangent[:] = (end - start) / length[:, :, None]
-    return _Divided(vertices, node, arc, position, tangent, np.ones(arc.shape[1]))
+    return _Divided(vertices, node, arc, position, tangent, speed)
+
+
+def _divisions_of(elements: int, last: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return ends of equal elements on [0, 1], their nodes (ne, last + 1) and |r_x| of each node, read-only."""
+    node = last * np.arange(elements)[:, None] + np.arange(last + 1)
+    found = np.linspace(0.0, 1.0, elements + 1), node, np.ones(elements * last + 1)
+    for values in found:
+        values.setflags(write=False)
+    return found
+
+
+_divisions_of_few = lru_cache(maxsize=64)(_divisions_of)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly divide a line in the same way

@@ -1,7 +1,6 @@
 """The numbered mesh of one beam: its grid, and the coordinates of the model at its nodes."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from beamfem.element.coordinates import labels
 from beamfem.model.classes import Classes, element_classes
 from beamfem.model.grid import Grid
 from beamfem.model.numbering import Nodes
+from beamfem.once import cached_property
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,6 @@
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cached_property
 from math import prod
 from typing import Any
 
@@ -29,9 +28,10 @@ from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
+from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
-from beamfem.validation import convert, items, shown
+from beamfem.validation import items, shown
 
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
@@ -99,9 +99,9 @@ class Model(ModelOutputs):
     def __post_init__(self) -> None:
         _ = self._units
         for name, kinds in _KINDS.items():
-            convert(self, items, name)
-            object.__setattr__(self, name, tuple(getattr(self, name)))
-            for item in getattr(self, name):
+            given = tuple(items(f"{name} of {type(self).__name__}", getattr(self, name)))
+            object.__setattr__(self, name, given)
+            for item in given:
                 if not isinstance(item, kinds):
                     raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
                 kind: Any = type(item)
@@ -181,11 +181,9 @@ class Model(ModelOutputs):
             require_body(grid, self.unit)
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
-        block_of = {kind: number for number, kind in enumerate(self._kinds)}
         meshes = []
         behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
-        for grid, carried in zip(grids, nodes, strict=True):
-            block = block_of[block_key(grid.beam)]
+        for grid, carried, block in zip(grids, nodes, self._kinds[1], strict=True):
             parts = {name: getattr(grid, name) for name in _GRID}
             history = _history(grid, behind)
             meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
@@ -234,11 +232,14 @@ class Model(ModelOutputs):
     @cached_property
     def groups(self) -> tuple[Element, ...]:
         """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
-        return tuple(element for element, *_ in self._kinds)
+        return tuple(element for element, *_ in self._kinds[0])
 
     @cached_property
-    def _kinds(self) -> tuple[tuple[Element, Hashable], ...]:
-        return tuple(dict.fromkeys(block_key(beam) for beam in self.beams))
+    def _kinds(self) -> tuple[tuple[tuple[Element, Hashable], ...], tuple[int, ...]]:
+        """The key of each block of beams, and the number of the block of each beam."""
+        found: dict[tuple[Element, Hashable], int] = {}
+        numbers = tuple(found.setdefault(block_key(beam), len(found)) for beam in self.beams)
+        return tuple(found), numbers
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.

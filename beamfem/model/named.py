@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 def require_different_names(beams: Sequence["Beam"]) -> None:
     """Raise InputError for a name of two beams, or for the number of a beam without a name as the name of another."""
-    counted = Counter(beam.name for beam in beams if beam.name is not None)
+    given = [beam.name for beam in beams if beam.name is not None]
+    if not given:
+        return
+    counted = Counter(given)
     for name, number in counted.items():
         if number > 1:
             raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")

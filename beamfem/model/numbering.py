@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -18,8 +19,7 @@ Pairs = Sequence[tuple[int, ...]]
 _FEW = 2000  # nodes; the numbering of larger models is not cached
 
 
-@dataclass(frozen=True)
-class Nodes:
+class Nodes(NamedTuple):
     """Nodes of a beam: kind (nodes,), coordinates (nodes, npn), -1 where there is none, and frame (nodes, 3).
 
     frame: cosine and sine of the reference angle, and |r_x|; see `kernels.block.Block`.
@@ -45,7 +45,7 @@ def number_nodes(
     pairs = tuple(map(tuple, moving.tolist())), tuple(map(tuple, turning.tolist()))
     number = _number if sum(kind.nodes for kind in kinds) > _FEW else _number_few
     numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
-    frame = _frames(grids, numbered.node_kind, numbered.turns_with)
+    frame = _frames(grids, numbered)
     nodes = [
         Nodes(numbered.node_kind[begin:end], numbered.dof[begin:end, :columns], frame[begin:end])
         for begin, end, columns in numbered.parts
@@ -53,8 +53,7 @@ def number_nodes(
     return nodes, numbered.size
 
 
-@dataclass(frozen=True)
-class NodeKinds:
+class NodeKinds(NamedTuple):
     """Data of a grid that determine its numbering.
 
     code: kind of the nodal coordinates; follows_slope: whether sections rotate with r_x; vectors: names of the nodal
@@ -71,12 +70,14 @@ class NodeKinds:
 class Numbered:
     """Nodes of all grids: kind (total,), coordinates (total, npn), and the node (total,) that each rotates with.
 
-    parts: begin and end of the nodes of each grid, and its number of columns; size: number of coordinates.
+    turned (k,): the nodes whose r_y is that of another one, rotated by the angle between them; parts: begin and end of
+    the nodes of each grid, and its number of columns; size: number of coordinates.
     """
 
     node_kind: np.ndarray
     dof: np.ndarray
     turns_with: np.ndarray
+    turned: np.ndarray
     parts: tuple[tuple[int, int, int], ...]
     size: int
 
@@ -131,7 +132,8 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     parts = tuple((*ends, columns) for ends, columns in zip(pairwise(first.tolist()), widest, strict=True))
     for values in (node_kind, dof, leader_turns):
         values.setflags(write=False)  # models with the same numbering share them
-    return Numbered(node_kind, dof, leader_turns, parts, int(own.sum()))
+    turned_nodes = np.flatnonzero(node_kind == TURNED_GRADIENTS)
+    return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(own.sum()))
 
 
 _number_few = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
@@ -171,16 +173,16 @@ def _ownership(
     return own, last, turn_size
 
 
-def _frames(grids: Sequence[Grid], node_kind: np.ndarray, leader: np.ndarray) -> np.ndarray:
+def _frames(grids: Sequence[Grid], numbered: Numbered) -> np.ndarray:
     """Return cosine and sine of the reference angle, and |r_x|, of each node (total, 3).
 
     For rotated gradients, the angle is relative to that of the node whose r_y they share.
     """
-    frame = np.empty((len(node_kind), 3))
+    turned, leader = numbered.turned, numbered.turns_with
+    frame = np.empty((len(leader), 3))
     frame[:, :2] = np.concatenate([grid.tangent for grid in grids])
     frame[:, 2] = np.concatenate([grid.speed for grid in grids])
-    turned = node_kind == TURNED_GRADIENTS
-    if not turned.any():
+    if not len(turned):
         return frame
     angle = np.concatenate([reference_angle(grid) for grid in grids])
     between = angle[turned] - angle[leader[turned]]

@@ -45,7 +45,7 @@ def jacobians(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarr
     """Return ds/dxi and its derivative by xi (n,) [m] of the reference at points (element, xi)."""
     if grid.straight:
         lengths = grid.lengths[element]
-        return lengths, np.zeros_like(lengths)
+        return lengths, np.zeros(lengths.shape)
     field = grid.beam.element.field
     local = reference_vectors(grid, element) * scales(grid.beam.element, grid.lengths[element])[:, :, None]
     r = local[:, r_slots(field)]
@@ -86,10 +86,10 @@ def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Return the reference axis (n, 2) at points (element, xi), with positions relative to the element's first node."""
     if grid.straight:
         along = grid.tangent[grid.node[element, 0]]
-        none = np.zeros_like(along)
+        none = np.zeros(along.shape)
         return Axis((xi * grid.lengths[element])[:, None] * along, along, none, across(along), none)
     found = interpolate(grid, reference_vectors(grid, element)[None], element, xi)
-    return Axis(*(getattr(found, name)[0] for name in Axis.__dataclass_fields__))
+    return Axis(*(getattr(found, name)[0] for name in Axis._fields))
 
 
 def reference_position(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
@@ -145,7 +145,7 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
         return forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at), strains
     parts = []
     for i, arc in enumerate(grid.section_arc_length(element, xi)):
-        here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis.__dataclass_fields__))
+        here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
         parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, here))
     return np.concatenate(parts), strains
 
@@ -183,8 +183,13 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
 
     inertia: mass [kg], its first moment [kg m] and its second [kg m^2] over y, quadrature weight included.
     """
-    beam = grid.beam
     where, at, weight = length_points(grid, element)
+    return where, at, inertia_at(grid, where, at, weight)
+
+
+def inertia_at(grid: Grid, where: np.ndarray, at: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Return the inertia (n, 3) at points (where, at) with weights (n,) [m], see `inertia_points`."""
+    beam = grid.beam
     if beam.prismatic:
         own = beam.section_at(0.0).inertia(beam.material)
         inertia = np.array([[own.mass, own.first_moment, own.rotary]])
@@ -198,7 +203,7 @@ def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nd
         size = np.linalg.norm(reference.d, axis=-1)
         alpha, beta = dot(reference.r_s, along) * size, dot(reference.d_s, along) * size
         inertia = alpha[:, None] * inertia + beta[:, None] * _raised(grid, where, at)
-    return where, at, inertia * weight[:, None]
+    return inertia * weight[:, None]
 
 
 def _raised(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
@@ -222,7 +227,7 @@ def _points(
     grid: Grid, element: np.ndarray | None, xi: np.ndarray, weights: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     chosen = np.arange(grid.elements) if element is None else element
-    where, at = np.repeat(chosen, len(xi)), np.broadcast_to(xi, (len(chosen), len(xi))).ravel()
+    where, at = chosen.repeat(len(xi)), xi[None].repeat(len(chosen), axis=0).ravel()
     if grid.straight:
         return where, at, (grid.lengths[chosen][:, None] * weights).ravel()
     return where, at, np.tile(weights, len(chosen)) * jacobians(grid, where, at)[0]

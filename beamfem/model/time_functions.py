@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from beamfem.brief import brief
 from beamfem.curves.curve import numbers, points
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 from beamfem.validation import function_of_one
 
 

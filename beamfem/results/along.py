@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from beamfem.model.beam import Beam
 from beamfem.model.distributions import Distributions, distributions, layers
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import reference_axis
+from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import stress_at
 from beamfem.results.free_bodies import Cuts

@@ -1,13 +1,13 @@
 """An equilibrium path: its states, its limit points and its bifurcations."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, overload
 
 import numpy as np
 
 from beamfem.brief import brief
 from beamfem.model.beam import Beam, Point
+from beamfem.once import cached_property
 from beamfem.results.fitting import require_crossing
 from beamfem.results.postprocess import Components, Fields, SectionForces
 from beamfem.results.solution import Solution, State

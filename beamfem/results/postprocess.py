@@ -150,19 +150,19 @@ def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarra
 
 def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
     """Return the position (steps, 2) [m] of a point of the axis; at a node without interpolation."""
-    element, xi = mesh.locate(fraction)
-    node = mesh.node_of(element, xi)
+    node = mesh.node_near(fraction)
     if node is not None:
         return np.asarray(p[:, mesh.carried.dof[node, :2]])
+    element, xi = mesh.locate(fraction)
     return axis(mesh, nodal_vectors(mesh, p), np.array([element]), np.array([xi])).r[:, 0]
 
 
 def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
     """Return the position (2,) [m] of a point of the axis in the reference configuration; at a node likewise."""
-    element, xi = mesh.locate(fraction)
-    node = mesh.node_of(element, xi)
+    node = mesh.node_near(fraction)
     if node is not None:
         return np.asarray(mesh.position[node])
+    element, xi = mesh.locate(fraction)
     return reference_position(mesh, np.array([element]), np.array([xi]))[0]
 
 

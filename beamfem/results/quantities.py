@@ -1,12 +1,11 @@
 """What a solution says of beams and of the whole model: forces, stresses, energies, momenta."""
 
-from functools import cached_property
-
 import numpy as np
 
 from beamfem.curves import BSpline, spline_through_hermite, without_removable_knots
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
+from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.beam_stress import BeamStress, Part, Peak, beam_stress, peak_stress
 from beamfem.results.connected import kinetic_of_connectors, momenta_of_connectors

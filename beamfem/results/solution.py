@@ -1,7 +1,6 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from beamfem.brief import brief
 from beamfem.errors import InputError
 from beamfem.model.model import Model
+from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.results.energy_drift import drift_warnings
 from beamfem.results.exports import Exports

@@ -1,7 +1,6 @@
 """The solid body with PyVista: a picture without a window, or a window with a slider over the steps."""
 
 from collections.abc import Sequence
-from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 from beamfem.errors import InputError, warn
 from beamfem.files import path_of, whole
 from beamfem.model.reference import sections_at
+from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints
 from beamfem.results.solution import Solution
 from beamfem.validation import count, items, number_below, shown

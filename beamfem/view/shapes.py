@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from beamfem.errors import InputError
+from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints, Quantity, quantity
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points

@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -13,6 +12,7 @@ from beamfem.assembly.round_off import loses_digits
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
+from beamfem.once import cached_property
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.once import cached_property
 from beamfem.solve.continuation.continuation import Continuation, PathPoint
 from beamfem.solve.newton.convergence import balance_of
 

@@ -3,13 +3,13 @@
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import STATICS, linearise, residual
+from beamfem.once import cached_property
 from beamfem.solve.continuation.condensed import Condensed
 from beamfem.solve.continuation.continuation import Continuation
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError, interpolation_weights

@@ -1,7 +1,6 @@
 """Small vibration about a state: stiffness and mass of the unknown coordinates, counts of eigenvalues."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -11,6 +10,7 @@ from beamfem.assembly.equations import INERTIA, MIXED, STATICS, linearise, resid
 from beamfem.assembly.round_off import LAST_DIGITS, lost_digits
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED, Factorised, Stresses, Tangent
+from beamfem.once import cached_property
 
 _RANGE = 80.0  # logarithm of the largest ratio of eigenvalues
 _AWAY = 0.75  # of a shift: least distance of an eigenvalue from it

@@ -12,6 +12,7 @@ from beamfem.solve.newton.iteration import Newton, Termination
 
 STAGNANT = 1e-6  # corrections below this that no longer decrease are round-off, if the residual agrees
 _SURE = 1e-9  # of the movement: smaller corrections do not change the results
+_EPS = float(np.finfo(float).eps)
 LARGEST = 1e3  # of the model; larger corrections mean divergence
 
 
@@ -98,6 +99,6 @@ def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
         return True
     size, before = correction.size, correction.before
     following = size * min(size / before, 1.0) if correction.number > 1 else size
-    moved = float(np.max(np.abs(p - system.reference) / system.scale, initial=0.0))
-    last_digit = np.finfo(float).eps * float(np.max(np.abs(p) / system.scale, initial=1.0))
+    moved = float((np.abs(p - system.reference) / system.scale).max(initial=0.0))
+    last_digit = _EPS * float((np.abs(p) / system.scale).max(initial=1.0))
     return following <= max(_SURE * moved, last_digit)

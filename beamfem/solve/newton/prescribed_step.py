@@ -1,12 +1,11 @@
 """The step of prescribed coordinates at the beginning of an iteration."""
 
-from functools import cached_property
-
 import numpy as np
 
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.equations import residual
 from beamfem.assembly.system import System
+from beamfem.once import cached_property
 
 
 class PrescribedStep:

@@ -1,12 +1,12 @@
 """A part of a loading path about a critical point, interpolated from points on both sides of it."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.linalg.lapack import eigh, svd
+from beamfem.once import cached_property
 from beamfem.solve.continuation.continuation import PathPoint
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability.loading_path import LoadingPath, Softest

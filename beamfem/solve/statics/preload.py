@@ -34,8 +34,9 @@ def _at_rest(system: System) -> bool:
     """Return whether nothing acts at load factor 0."""
     if _AT_REST not in system.proven:
         # a load below the round-off of stiff rows may still bend the beam
-        moved = system.prescribed_changes(0.0).any()
-        if moved or system.loads_at(0.0).any or not _free_of_force(system):
+        moved = system.moved and system.prescribed_changes(0.0).any()
+        acts = not system.proportional and system.loads_at(0.0).any
+        if moved or acts or not _free_of_force(system):
             return False
         system.proven.add(_AT_REST)
     return True

@@ -225,7 +225,7 @@ def test_tiles_share_tables_and_have_only_their_own_classes(long):
     found = tiles.tiles_of(system_of(pendulum(ELEMENTS[1], section=section), static=False))
     rows = [int(work.table[record.TABLE_ROWS]) for work in found.assembler.works]
     sizes = [
-        next(len(kept) for kept in work.sheet.kept if kept.ndim == 2 and kept.shape[1] == row)
+        next(len(kept) for kept in work.group.kept if kept.ndim == 2 and kept.shape[1] == row)
         for work, row in zip(found.assembler.works, rows, strict=True)
     ]
     assert sum(sizes) == 300

@@ -124,7 +124,7 @@ def _part(
     """Return the rows of the point loads at points (element, xi) of a beam."""
     own, count = mesh.beam.element, len(element)
     scale = scales(own, mesh.lengths[element])
-    position, direction = _tables(own, xi) if count > _FEW else _tables_few(own, xi.tobytes())
+    position, direction = _tables(own, xi) if count > _FEW else _cached_tables(own, xi.tobytes())
     if own.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
     # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
@@ -157,5 +157,5 @@ def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=64)  # loads at the ends of beams need the same tables repeatedly
-def _tables_few(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
+def _cached_tables(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
     return _tables(element, np.frombuffer(xi))

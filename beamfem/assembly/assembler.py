@@ -7,9 +7,9 @@ from math import prod
 import numpy as np
 
 from beamfem.assembly.arena import Arena
+from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.scratch import Scratch, new
-from beamfem.assembly.sheet import Sheet
 from beamfem.kernels import element_passes, model_passes, node_passes, record
 from beamfem.kernels.block import Springs
 from beamfem.kernels.lanes import WIDTH
@@ -23,7 +23,7 @@ _NONE = np.empty(0)
 class Work:
     """A group of elements with a separate workspace, so that solves do not interfere."""
 
-    sheet: Sheet
+    group: ElementGroup
     table: np.ndarray
     address: int
     chunks: np.ndarray
@@ -34,10 +34,10 @@ class Work:
         nodes = int(self.table[record.NODES])
         own = self.chunks[:, first : first + count, : record.LANES]
         found = np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
-        if self.sheet.order is None:
+        if self.group.order is None:
             return found
         result = np.empty_like(found)
-        result[self.sheet.order] = found
+        result[self.group.order] = found
         return result
 
 
@@ -47,14 +47,14 @@ class Equations:
     table: see `kernels.record`; springs: the arrays that the table points to.
     """
 
-    def __init__(self, sheets: Sequence[Sheet], springs: Springs, size: int) -> None:
-        self.sheets, self.size = tuple(sheets), size
+    def __init__(self, groups: Sequence[ElementGroup], springs: Springs, size: int) -> None:
+        self.groups, self.size = tuple(groups), size
         kinds = (np.int64, float, float, np.int64)
         self.springs = tuple(
             np.ascontiguousarray(values, dtype=kind) for values, kind in zip(springs, kinds, strict=True)
         )
         self.table = np.zeros(record.SYSTEM_FIELDS, dtype=np.int64)
-        self.table[record.GROUPS], self.table[record.SIZE] = len(self.sheets), size
+        self.table[record.GROUPS], self.table[record.SIZE] = len(self.groups), size
         self.table[record.SPRINGS] = len(self.springs[0])
         for number, values in enumerate(self.springs):
             self.table[record.SPRING_DOF + number] = address_of(values)
@@ -76,39 +76,39 @@ class Assembler:
         lent: bool = False,
         spaces: Sequence[int] | None = None,
     ) -> None:
-        self.equations, self.size, sheets = equations, equations.size, equations.sheets
-        self._imposes = any(sheet.imposed is not None for sheet in sheets)
-        self._laws = tuple(sheet.law for sheet in sheets if sheet.law is not None)
-        count = len(sheets)
-        which = [_space(sheet, number, spaces) for number, sheet in enumerate(sheets)]
+        self.equations, self.size, groups = equations, equations.size, equations.groups
+        self._imposes = any(group.imposed is not None for group in groups)
+        self._laws = tuple(group.law for group in groups if group.law is not None)
+        count = len(groups)
+        which = [_space(group, number, spaces) for number, group in enumerate(groups)]
         first = {own: number for number, own in reversed(list(enumerate(which)))}
-        tables, lists = np.array([sheet.table for sheet in sheets]), np.zeros((5, count), dtype=np.int64)
-        groups, self._values, self._filled = lists[0], lists[1], lists[2:].reshape(count, 3)
+        tables, lists = np.array([group.table for group in groups]), np.zeros((5, count), dtype=np.int64)
+        addresses, self._values, self._filled = lists[0], lists[1], lists[2:].reshape(count, 3)
         size, at_tables, at_lists = lists.itemsize, address_of(tables), address_of(lists)
         shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
         self._spaces: dict[object, int] = {}
-        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
-            shapes["chunks", own] = (max(prod(sheet.chunks), *shapes.get(("chunks", own), (0,))),)
-            self._spaces[own] = max(sheet.space, self._spaces.get(own, 0))
+        for number, (group, own) in enumerate(zip(groups, which, strict=True)):
+            shapes["chunks", own] = (max(prod(group.chunks), *shapes.get(("chunks", own), (0,))),)
+            self._spaces[own] = max(group.space, self._spaces.get(own, 0))
             if stresses is None:
-                shapes["stress", number] = sheet.points
+                shapes["stress", number] = group.points
         room = Arena(shapes)
         self.works: list[Work] = []
-        for number, (sheet, own) in enumerate(zip(sheets, which, strict=True)):
+        for number, (group, own) in enumerate(zip(groups, which, strict=True)):
             table = tables[number]
-            groups[number] = at_tables + size * record.BLOCK_FIELDS * number
+            addresses[number] = at_tables + size * record.BLOCK_FIELDS * number
             if stresses is None:
                 stress, place = room.arrays["stress", number], room.addresses["stress", number]
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
                 place = address_of(stress)
-            rows = room.arrays["chunks", own][: prod(sheet.chunks)].reshape(sheet.chunks)
-            if sheet.constant is not None:
-                rows[:] = sheet.constant
+            rows = room.arrays["chunks", own][: prod(group.chunks)].reshape(group.chunks)
+            if group.constant is not None:
+                rows[:] = group.constant
             table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", own], place
             table[record.SHARED] = int(spaces is not None)
             table[record.FILLED] = at_lists + size * (2 * count + 3 * first[own])
-            self.works.append(Work(sheet, table, int(groups[number]), rows, stress))
+            self.works.append(Work(group, table, int(addresses[number]), rows, stress))
         self._which = which
         self.scratch = sum(WIDTH + size for size in self._spaces.values())
         self.numbers = self.scratch + sum(array.size for array in room.arrays.values())
@@ -146,7 +146,7 @@ class Assembler:
     @property
     def memory(self) -> tuple[np.ndarray, ...]:
         """The arrays that compiled code reads and writes, except those set by `place`."""
-        kept = [array for sheet in self.equations.sheets for array in sheet.kept]
+        kept = [array for group in self.equations.groups for array in group.kept]
         acting = (self._scratch, *self._acting, *self._natural)
         return (*kept, *self.equations.springs, *self._tables, *self._room.arrays.values(), *acting)
 
@@ -177,7 +177,7 @@ class Assembler:
         self._taken = None
         if not self._imposes:
             return [0] * len(self.works)
-        found = [_imposed(work.sheet, factors) for work in self.works]
+        found = [_imposed(work.group, factors) for work in self.works]
         self._natural = tuple(own for own in found if own is not None)
         places = [0 if own is None else address_of(own) for own in found]
         for work, place in zip(self.works, places, strict=True):
@@ -197,7 +197,7 @@ class Assembler:
         """Compile the routines that compiled drivers will call: forces always; tasks: also "tangent", "prediction"."""
         moving = self.table[record.MOVING] != 0 and "tangent" in tasks
         for work in self.works:
-            work.sheet.require("forces", *tasks, *(("mass",) if moving else ()))
+            work.group.require("forces", *tasks, *(("mass",) if moving else ()))
 
     def place(self, p: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray, matrix: np.ndarray) -> None:
         """Set the arrays (n,) of the state and of the results; the caller must keep them alive."""
@@ -277,20 +277,20 @@ class Assembler:
         return smallest
 
 
-def _space(sheet: Sheet, number: int, spaces: Sequence[int] | None) -> Hashable:
+def _space(group: ElementGroup, number: int, spaces: Sequence[int] | None) -> Hashable:
     """Return the key of the workspace of a group, which is shared if its rows match and none of them is constant."""
-    if spaces is None or sheet.constant is not None:
+    if spaces is None or group.constant is not None:
         return number
-    return spaces[number], int(sheet.table[record.CURVATURE]), int(sheet.table[record.TABLE_ROWS])
+    return spaces[number], int(group.table[record.CURVATURE]), int(group.table[record.TABLE_ROWS])
 
 
-def _imposed(sheet: Sheet, factors: np.ndarray) -> np.ndarray | None:
+def _imposed(group: ElementGroup, factors: np.ndarray) -> np.ndarray | None:
     """Return the strains (..., ne, nq, ns) imposed by loads with factors (..., k), None if there are none."""
-    if sheet.imposed is None or not factors.any():
+    if group.imposed is None or not factors.any():
         return None
     if factors.ndim == 1:
-        return np.ascontiguousarray(sheet.imposed.at(factors))
-    return np.array([sheet.imposed.at(row) for row in factors])
+        return np.ascontiguousarray(group.imposed.at(factors))
+    return np.array([group.imposed.at(row) for row in factors])
 
 
 def _address(values: np.ndarray, size: int | None = None) -> int:

@@ -64,7 +64,7 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     node = _joined([mesh.node for mesh in own])
     if len(own) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
-    home = homes(node, int(nodes.sum())) if len(node) > _FEW else _homes_of_few(node.tobytes(), node.shape)
+    home = homes(node, int(nodes.sum())) if len(node) > _FEW else _cached_homes(node.tobytes(), node.shape)
     width = max(mesh.carried.dof.shape[1] for mesh in own)
     return {
         "node": node,
@@ -86,7 +86,7 @@ def homes(node: np.ndarray, nodes: int) -> np.ndarray:
 
 
 @lru_cache(maxsize=64)
-def _homes_of_few(node: bytes, shape: tuple[int, int]) -> np.ndarray:
+def _cached_homes(node: bytes, shape: tuple[int, int]) -> np.ndarray:
     own = np.frombuffer(node, dtype=np.int64).reshape(shape)
     return homes(own, int(own.max()) + 1)
 

@@ -24,11 +24,11 @@ def columns_of(node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]
     """Return `coordinate_columns` for nodes of the given kinds (N,) with coordinates dof (N, npn)."""
     if len(node_kinds) > _FEW:
         return _columns_of(node_kinds, dof, vectors)
-    return _columns_of_few(node_kinds.tobytes(), dof.tobytes(), vectors)
+    return _cached_columns(node_kinds.tobytes(), dof.tobytes(), vectors)
 
 
 @lru_cache(maxsize=64)
-def _columns_of_few(node_kinds: bytes, dof: bytes, vectors: tuple[str, ...]) -> Columns:
+def _cached_columns(node_kinds: bytes, dof: bytes, vectors: tuple[str, ...]) -> Columns:
     kinds = np.frombuffer(node_kinds, dtype=np.int64)
     return _columns_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), vectors)
 

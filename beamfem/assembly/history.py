@@ -6,8 +6,8 @@ import numpy as np
 
 from beamfem.assembly.connector import Motion
 from beamfem.assembly.connectors import Connectors
-from beamfem.assembly.points import free_sheet, resultants
-from beamfem.assembly.sheet import Sheet
+from beamfem.assembly.element_group import ElementGroup
+from beamfem.assembly.points import free_group, resultants
 from beamfem.kernels.block import Block
 from beamfem.once import cached_property
 from beamfem.section.law import ConstitutiveLaw
@@ -54,8 +54,8 @@ class History:
             return p
         found = p.copy()
         found[self.connectors.memory] = self.connectors.remember(motion, time)
-        for (law, block), sheet in zip(self.laws, self.strains, strict=True):
-            strain = resultants(sheet, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
+        for (law, block), group in zip(self.laws, self.strains, strict=True):
+            strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
             known, past = strain[..., :3].reshape(-1, 3), p[block.history]
             found[block.history] = law.remember(known, past.reshape(len(known), -1), dt).reshape(past.shape)
         return found
@@ -68,8 +68,8 @@ class History:
         return self.committed((p, zeros, zeros), load_factor, imposing)
 
     @cached_property
-    def strains(self) -> tuple[Sheet, ...]:
+    def strains(self) -> tuple[ElementGroup, ...]:
         """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
         unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
         blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]
-        return tuple(free_sheet(block, self.connectors.model.size) for block in blocks)
+        return tuple(free_group(block, self.connectors.model.size) for block in blocks)

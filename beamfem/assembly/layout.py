@@ -75,13 +75,13 @@ def order_unknowns(
     """
     if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
-        return _order_few(node.tobytes(), node.shape, dof.tobytes(), dof.shape, size, prescribed.tobytes())
+        return _cached_order(node.tobytes(), node.shape, dof.tobytes(), dof.shape, size, prescribed.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
     return _order(mesh, size, prescribed, joined, coupled, multipliers)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
-def _order_few(
+def _cached_order(
     node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)

@@ -5,16 +5,16 @@ from collections.abc import Iterable
 import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
-from beamfem.assembly.sheet import Sheet, make_sheet
+from beamfem.assembly.element_group import ElementGroup, make_group
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 
 _NO_SPRINGS = Springs(np.empty(0, dtype=np.int64), np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
 
 
-def free_sheet(block: Block, size: int) -> Sheet:
-    """Return the sheet of a block without loads or matrix, in a model with `size` coordinates."""
+def free_group(block: Block, size: int) -> ElementGroup:
+    """Return the group of a block without loads or matrix, in a model with `size` coordinates."""
     none = np.empty((0, 0, 0), dtype=np.int32)
-    return make_sheet(block, Layout(np.arange(size), 0, none), no_loads(block))
+    return make_group(block, Layout(np.arange(size), 0, none), no_loads(block))
 
 
 def no_loads(block: Block) -> PointLoads:
@@ -23,12 +23,14 @@ def no_loads(block: Block) -> PointLoads:
     return PointLoads(np.empty(0, dtype=np.int64), table, table, pair, np.empty(0, dtype=bool), pair, pair)
 
 
-def resultants(sheet: Sheet, p: np.ndarray, steps: Iterable[np.ndarray], imposing: np.ndarray) -> list[np.ndarray]:
+def resultants(
+    group: ElementGroup, p: np.ndarray, steps: Iterable[np.ndarray], imposing: np.ndarray
+) -> list[np.ndarray]:
     """Return C (eps + (d eps / dp) dp) (ne, nq, ns) at p (n,) for each dp (n,); imposed strains are subtracted.
 
     imposing (k,): factors of the loads that impose strains.
     """
-    assembler, found = Assembler(Equations((sheet,), _NO_SPRINGS, len(p))), []
+    assembler, found = Assembler(Equations((group,), _NO_SPRINGS, len(p))), []
     assembler.impose(imposing)
     for step in steps:
         assembler.predict(p, np.ascontiguousarray(step))
@@ -43,7 +45,7 @@ def elastic_forces(
 
     imposing (steps, k): factors of the loads that impose strains.
     """
-    assembler = Assembler(Equations((free_sheet(block, p.shape[1]),), _NO_SPRINGS, p.shape[1]))
+    assembler = Assembler(Equations((free_group(block, p.shape[1]),), _NO_SPRINGS, p.shape[1]))
     size = 2 * block.scale.shape[1] // block.node.shape[1]
     e, acceleration, force = np.empty((3, len(p), len(block.dof), size))
     for step in range(len(p)):

@@ -61,7 +61,7 @@ class Entries(NamedTuple):
 def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
     if len(block.node_kind) > _FEW:
         return _entries_of(block.node_kind, block.dof, names)
-    return _entries_of_few(block.node_kind.tobytes(), block.dof.tobytes(), names)
+    return _cached_entries(block.node_kind.tobytes(), block.dof.tobytes(), names)
 
 
 def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) -> list[Entries]:
@@ -76,7 +76,7 @@ def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) 
 
 
 @lru_cache(maxsize=64)
-def _entries_of_few(node_kind: bytes, dof: bytes, names: tuple[str, ...]) -> list[Entries]:
+def _cached_entries(node_kind: bytes, dof: bytes, names: tuple[str, ...]) -> list[Entries]:
     kinds = np.frombuffer(node_kind, dtype=np.int64)
     return _entries_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), names)
 

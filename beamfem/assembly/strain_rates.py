@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamfem.assembly.points import free_sheet, resultants
-from beamfem.assembly.sheet import Sheet
+from beamfem.assembly.element_group import ElementGroup
+from beamfem.assembly.points import free_group, resultants
 from beamfem.kernels.block import Block, Law
 
 
@@ -30,7 +30,7 @@ class StrainRates:
     weights times inverse stiffness, at zero strain for a section law; history: see `kernels.block.Block`.
     """
 
-    sheet: Sheet
+    group: ElementGroup
     dof: np.ndarray
     coordinates: int
     resists: np.ndarray
@@ -52,7 +52,7 @@ class StrainRates:
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
         places = np.arange(len(at)) % self.coordinates
         steps = (1.0 * (places == place) for place in range(self.coordinates + 1))
-        *measured, zeros = resultants(self.sheet, at, steps, imposing)
+        *measured, zeros = resultants(self.group, at, steps, imposing)
         strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
         moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
         rates = moved[self.place, self.point] - strain[self.point]
@@ -69,7 +69,7 @@ class StrainRates:
     @property
     def shape(self) -> tuple[int, int, int]:
         """Numbers of elements, points and strain measures of the stress resultants."""
-        return self.sheet.points
+        return self.group.points
 
 
 def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
@@ -98,7 +98,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     number = np.arange(elements * count).reshape(elements, points, len(resists))
     shape = elements, points, len(resists), len(resists)
     return StrainRates(
-        sheet=free_sheet(part, dof.size),
+        group=free_group(part, dof.size),
         dof=dof.ravel(),
         coordinates=nodes * width,
         resists=resists,

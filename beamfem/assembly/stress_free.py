@@ -34,7 +34,7 @@ def _places(block: Block, vectors: tuple[str, ...]) -> Places:
     """Return the coordinates (k,) that are not angles, with the node and the number in `_SOURCES` of each."""
     if len(block.node_kind) > _FEW:
         return _places_of(block.node_kind, block.dof, vectors)
-    return _places_of_few(block.node_kind.tobytes(), block.dof.tobytes(), vectors)
+    return _cached_places(block.node_kind.tobytes(), block.dof.tobytes(), vectors)
 
 
 def _places_of(node_kind: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]) -> Places:
@@ -44,6 +44,6 @@ def _places_of(node_kind: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...])
 
 
 @lru_cache(maxsize=64)
-def _places_of_few(node_kind: bytes, dof: bytes, vectors: tuple[str, ...]) -> Places:
+def _cached_places(node_kind: bytes, dof: bytes, vectors: tuple[str, ...]) -> Places:
     kinds = np.frombuffer(node_kind, dtype=np.int64)
     return _places_of(kinds, np.frombuffer(dof, dtype=np.int64).reshape(len(kinds), -1), vectors)

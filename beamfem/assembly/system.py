@@ -10,15 +10,15 @@ from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.connectors import Connectors, connectors_of
+from beamfem.assembly.element_group import make_group, stored
 from beamfem.assembly.grounded_springs import grounded_springs
+from beamfem.assembly.group_structure import storage_order
 from beamfem.assembly.history import History
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
-from beamfem.assembly.sheet import make_sheet, stored
-from beamfem.assembly.sheet_structure import storage_order
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.assembly.stress_free import stress_free
@@ -100,8 +100,8 @@ class System:
 
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
-        sheets = [make_sheet(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
-        return Equations(sheets, self.springs, self.model.size)
+        groups = [make_group(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
+        return Equations(groups, self.springs, self.model.size)
 
     def assembler(self, lent: bool = False) -> Assembler:
         """Return the equations with a new workspace; lent: see `Assembler`."""

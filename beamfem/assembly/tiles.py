@@ -10,8 +10,8 @@ import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
-from beamfem.assembly.sheet import make_sheet
-from beamfem.assembly.sheet_structure import storage_order
+from beamfem.assembly.element_group import make_group
+from beamfem.assembly.group_structure import storage_order
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
@@ -25,7 +25,7 @@ _NODES = 2048  # of a tile: about 400 kB, and half as much again for tables
 
 @dataclass(frozen=True, eq=False)
 class Tiles:
-    """The groups of a long chain.
+    """The tiles of a long chain.
 
     assembler: its equations, with a workspace for each half; loads: indices of the loads of each group among those of
     the chain; bounds (3, fields): of both halves and of the element between them; table (tiles, fields): of the tiles
@@ -57,31 +57,31 @@ def tiles_of(system: System) -> Tiles | None:
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
     slices = (*halves[0], *halves[1], slice(middle - 1, middle))
-    groups = [_Group(block, own, layout, loads) for own in slices]
+    tiles = [_Tile(block, own, layout, loads) for own in slices]
     first = len(halves[0])
-    place, stored = np.empty(len(block.dof), dtype=np.int64), np.cumsum([0, *(len(own.nodes) for own in groups)])
-    # of nodes that two groups share, the one that completes their equations comes last
-    for number in (*range(first), *range(len(groups) - 2, first - 1, -1), len(groups) - 1):
-        place[groups[number].nodes] = stored[number] + np.arange(len(groups[number].nodes))
+    place, stored = np.empty(len(block.dof), dtype=np.int64), np.cumsum([0, *(len(own.nodes) for own in tiles)])
+    # of nodes that two tiles share, the one that completes their equations comes last
+    for number in (*range(first), *range(len(tiles) - 2, first - 1, -1), len(tiles) - 1):
+        place[tiles[number].nodes] = stored[number] + np.arange(len(tiles[number].nodes))
     springs = Springs(*(values[np.argsort(system.springs.dof, kind="stable")] for values in system.springs))
     spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
-    sheets = [own.sheet for own in groups]
-    assembler = Assembler(Equations(sheets, springs, system.model.size), spaces=spaces)
+    groups = [own.group for own in tiles]
+    assembler = Assembler(Equations(groups, springs, system.model.size), spaces=spaces)
     turning, order = system.turning.copy(), storage_order(block.node, len(block.node_kind))
     turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
-    ranges = _nested(np.array([own.range for own in groups]), first)
+    ranges = _nested(np.array([own.range for own in tiles]), first)
     # what one half needs to solve for its unknowns, the other must not have rotated: half of it lies between them
     rows_down = int(np.searchsorted(system.free_dofs, ranges[-1]).sum()) // 2 - layout.half_width
     bounds, table = _tables(system, springs.dof, ranges, first, rows_down)
     table[:, record.TILE_NODE] = stored[table[:, record.TILE_GROUP]]
     pairs = _pairs(turning, table)
-    return Tiles(assembler, tuple(own.loaded for own in groups), bounds, table, pairs, rows_down)
+    return Tiles(assembler, tuple(own.loaded for own in tiles), bounds, table, pairs, rows_down)
 
 
-class _Group:
-    """Some elements of a chain: their sheet, nodes in storage order, range of coordinates, and indices of loads.
+class _Tile:
+    """Some elements of a chain: their group, nodes in storage order, range of coordinates, and indices of loads.
 
-    Coordinates and equations are counted from its first ones, so that groups of like elements share their tables.
+    Coordinates and equations are counted from its first ones, so that tiles of like elements share their tables.
     """
 
     def __init__(self, block: Block, elements: slice, layout: Layout, loads: PointLoads) -> None:
@@ -92,10 +92,10 @@ class _Group:
         number = int(free[free >= 0].min(initial=len(layout.free)))
         points, self.loaded = loads_of(loads, elements)
         own = layout._replace(free=np.where(free >= 0, free - number, -1))
-        self.sheet, self.range = make_sheet(block_of(block, elements, begin), own, points), (begin, end)
-        self.sheet.table[record.FIRST_OF_STATE] = begin
-        self.sheet.table[record.FIRST_OF_MATRIX] = number * (2 * layout.half_width + 1)
-        self.nodes = nodes if self.sheet.order is None else nodes[self.sheet.order]
+        self.group, self.range = make_group(block_of(block, elements, begin), own, points), (begin, end)
+        self.group.table[record.FIRST_OF_STATE] = begin
+        self.group.table[record.FIRST_OF_MATRIX] = number * (2 * layout.half_width + 1)
+        self.nodes = nodes if self.group.order is None else nodes[self.group.order]
 
 
 def _pairs(turning: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -123,14 +123,14 @@ def _tables(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the bounds (3, fields) of the parts, and the table (tiles, fields) of their tiles.
 
-    springs: coordinates; ranges (tiles, 2) of the coordinates of each group; first: number of groups of the first half.
+    springs: coordinates; ranges (tiles, 2) of the coordinates of each group; first: number of tiles of the first half.
     """
     free, size, half = system.free_dofs, system.model.size, system.layouts[0].half_width
-    groups, (begin, end), middle = len(ranges), ranges[-1], int(ranges[first, 0])
+    tiles, (begin, end), middle = len(ranges), ranges[-1], int(ranges[first, 0])
     # bounds between what one tile has and the next, as coordinates: where it is new, and where it is complete
-    new = [[0, *ranges[: first - 1, 1], middle], [size, *ranges[groups - 2 : first : -1, 0], middle], [middle, middle]]
-    done = [[0, *ranges[1:first, 0], begin], [size, *ranges[groups - 3 : first - 1 : -1, 1], end], [begin, end]]
-    order = [np.arange(first), np.arange(groups - 2, first - 1, -1), np.array([groups - 1])]
+    new = [[0, *ranges[: first - 1, 1], middle], [size, *ranges[tiles - 2 : first : -1, 0], middle], [middle, middle]]
+    done = [[0, *ranges[1:first, 0], begin], [size, *ranges[tiles - 3 : first - 1 : -1, 1], end], [begin, end]]
+    order = [np.arange(first), np.arange(tiles - 2, first - 1, -1), np.array([tiles - 1])]
     parts, bounds, reached = [], np.zeros((3, record.BOUND_FIELDS), dtype=np.int64), 0
     for part in range(3):
         table = np.zeros((len(order[part]), record.TILE_FIELDS), dtype=np.int64)

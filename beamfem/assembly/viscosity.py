@@ -15,8 +15,8 @@ def viscous_tangent(system: System, p: np.ndarray, v: np.ndarray, time: float, s
     For Kelvin and Voigt's law it is step D, with the damping matrix D. None if no section law with history is viscous.
     """
     found, imposing, unknown = None, system.imposing(time), len(system.free_dofs)
-    for (law, block), sheet in zip(system.history.laws, system.history.strains, strict=True):
-        (strain,) = resultants(sheet, p, [step * v], imposing)
+    for (law, block), group in zip(system.history.laws, system.history.strains, strict=True):
+        (strain,) = resultants(group, p, [step * v], imposing)
         past = p[block.history]
         stiffness = viscous_stiffness(law, strain[..., :3].reshape(-1, 3), past.reshape(-1, past.shape[-1]), step)
         if not stiffness.any():

@@ -1,6 +1,6 @@
 """Layout of the tables of integers and addresses that describe a group of like elements, or a model, to compiled code.
 
-Python owns all arrays that addresses point to, and checks them once, when it makes a table (`assembly.sheet`).
+Python owns all arrays that addresses point to, and checks them once, when it makes a table (`assembly.element_group`).
 
 Elements are processed in batches, nodes in chunks, of at most `LANES`. Each quantity of a batch is a row of `ROW`
 numbers, one per element, so that loops along rows use vector instructions. Nodes are stored in chunks of such rows.

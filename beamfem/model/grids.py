@@ -41,7 +41,7 @@ def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[
     if len(lines) > 1 or elements > _FEW:
         found = _divided(lines, elements, nodes)
     else:
-        found = _divided_few(lines[0], elements, nodes.tobytes())
+        found = _cached_division(lines[0], elements, nodes.tobytes())
     parts = zip(beams, found.vertices, found.arc, found.position, found.tangent, strict=True)
     return [
         Grid(beam, ends, ends, 1.0, found.node, arc, position, tangent, found.speed)
@@ -65,7 +65,7 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
     length = np.array([line.length for line in lines])[:, None]
     start, end = np.array([line.start for line in lines])[:, None], np.array([line.end for line in lines])[:, None]
     last = len(nodes) - 1
-    fractions, node, speed = (_divisions_of if elements > _FEW else _divisions_of_few)(elements, last)
+    fractions, node, speed = (_divisions_of if elements > _FEW else _cached_divisions)(elements, last)
     vertices = fractions * length
     arc = np.empty((len(lines), elements * last + 1))
     sizes = vertices[:, 1:] - vertices[:, :-1]
@@ -86,11 +86,11 @@ def _divisions_of(elements: int, last: int) -> tuple[np.ndarray, np.ndarray, np.
     return found
 
 
-_divisions_of_few = lru_cache(maxsize=64)(_divisions_of)
+_cached_divisions = lru_cache(maxsize=64)(_divisions_of)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly divide a line in the same way
-def _divided_few(line: Line, elements: int, nodes: bytes) -> _Divided:
+def _cached_division(line: Line, elements: int, nodes: bytes) -> _Divided:
     found = _divided([line], elements, np.frombuffer(nodes))
     for values in found:
         values.setflags(write=False)

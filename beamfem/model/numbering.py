@@ -43,7 +43,7 @@ def number_nodes(
     """
     kinds = tuple(_node_kinds(grid) for grid in grids)
     pairs = tuple(map(tuple, moving.tolist())), tuple(map(tuple, turning.tolist()))
-    number = _number if sum(kind.nodes for kind in kinds) > _FEW else _number_few
+    number = _number if sum(kind.nodes for kind in kinds) > _FEW else _cached_number
     numbered = number(kinds, tuple(map(tuple, angled.tolist())), *pairs)
     frame = _frames(grids, numbered)
     nodes = [
@@ -136,7 +136,7 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(own.sum()))
 
 
-_number_few = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
+_cached_number = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
 
 
 def groups(total: int, first: np.ndarray, pairs: np.ndarray) -> np.ndarray:

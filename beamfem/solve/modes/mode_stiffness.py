@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from beamfem.assembly.equations import STATICS, linearise, predicted_stresses
-from beamfem.assembly.points import free_sheet, resultants
+from beamfem.assembly.points import free_group, resultants
 from beamfem.assembly.system import System
 from beamfem.linalg.tangent import UNROTATED
 
@@ -29,7 +29,7 @@ def stiffness_of_modes(
     for block in system.blocks:
         classes, points, measures, _ = block.stiffness.shape
         unit = np.broadcast_to(np.eye(measures), (classes, points, measures, measures))
-        plain = free_sheet(block.resisting(unit), len(p))
+        plain = free_group(block.resisting(unit), len(p))
         before, *after = resultants(plain, p, [zeros, *modes], imposing)
         strains = (np.array(after) - before).reshape(count, *before.shape)
         stressed = np.einsum("eq,eqij,meqj->meqi", block.weight[block.kind], block.linearised(before, p), strains)

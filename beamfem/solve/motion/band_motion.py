@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beamfem.assembly.motion_space import MotionSpace
+from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
@@ -22,7 +22,7 @@ class BandMotion:
     """
 
     def __init__(
-        self, system: System, space: MotionSpace, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray
+        self, system: System, space: MotionWorkspace, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray
     ) -> None:
         self._system, self._space, self._statistics = system, space, statistics
         h, alpha_m, alpha_f, gamma, beta = rule
@@ -81,7 +81,7 @@ class BandMotion:
         return done
 
 
-def acceleration(system: System, space: MotionSpace, motion: np.ndarray, time: float) -> np.ndarray | None:
+def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, time: float) -> np.ndarray | None:
     """Return p'' (nu,) of the unknowns of a long chain in a state, None if a pivot is tiny.
 
     motion (3, n): p, p', and p'' of the prescribed coordinates, zero for the others. Tangent and solution take the

@@ -10,7 +10,7 @@ from scipy.sparse import csc_array
 
 from beamfem.assembly.connector import Motion
 from beamfem.assembly.equations import INERTIA, linearise, residual
-from beamfem.assembly.motion_space import motion_space
+from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
@@ -155,7 +155,7 @@ def _steps(
     rule, limits = integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS])
     # many steps in one compiled call commit no history in between
     if system.unknowns.pattern is None and not len(system.history.numbers):
-        with motion_space(system) as space:
+        with motion_workspace(system) as space:
             yield BandMotion(system, space, rule, limits, statistics)
     else:
         yield SparseMotion(system, rule, limits, statistics)
@@ -198,7 +198,7 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
     if is_long(system) and not step > 0.0:
-        with motion_space(system) as space:
+        with motion_workspace(system) as space:
             found = acceleration(system, space, np.array([p, v, a]), time) if space.in_two else None
         if found is not None:
             a[free] = found

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.band_space import band_space
+from beamfem.assembly.band_workspace import band_workspace
 from beamfem.assembly.round_off import load_size
 from beamfem.assembly.system import System
 from beamfem.kernels.newton import count_after_step, iterate
@@ -27,7 +27,7 @@ class BandProblem:
         step: PrescribedStep,
         keep: int | None,
     ) -> None:
-        self.system, self.start, self.space = system, start, band_space(system)
+        self.system, self.start, self.space = system, start, band_workspace(system)
         loads, space = system.loads_at(load_factor), self.space
         self.load = load_size(system, loads)
         space.assembler.take(loads)

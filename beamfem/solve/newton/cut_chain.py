@@ -7,9 +7,9 @@ import numpy as np
 
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
+from beamfem.assembly.element_group import make_group
 from beamfem.assembly.equations import STATICS
 from beamfem.assembly.layout import Mesh, reaches
-from beamfem.assembly.sheet import make_sheet
 from beamfem.assembly.system import System
 from beamfem.kernels.block import Springs
 
@@ -108,7 +108,7 @@ def _half(
     number = free[dof - place.start]
     diagonal = np.where(number >= 0, number * (2 * half_width + 1) + half_width, -1)
     springs = Springs(dof - place.start, stiffness, zeros, diagonal)
-    equations = Assembler(Equations((make_sheet(block, layout._replace(free=free), points),), springs, size))
+    equations = Assembler(Equations((make_group(block, layout._replace(free=free), points),), springs, size))
     equations.load(system.body(load_factor), (values[loaded],), system.imposing(load_factor))
     equations.weigh(STATICS)
     return Substructure(

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.assembly.group_structure import Needs, Structure, structure_of
 from beamfem.assembly.routines import Routines, routines
-from beamfem.assembly.sheet_structure import Needs, Structure, structure_of
 from beamfem.kernels import record
 from beamfem.kernels.block import (
     ELASTIC_LINE,
@@ -24,7 +24,7 @@ _UPPER = {measures: np.flatnonzero(np.triu(np.ones((measures, measures)))) for m
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class ElementGroup:
     """A group of similar elements in the form that compiled code expects.
 
     table: see `kernels.record`, without workspace; kept: the arrays that it points to; chunks: shape of the node data;
@@ -66,8 +66,8 @@ def stored(block: Block, order: np.ndarray | None) -> Block:
     return block._replace(node=number[block.node], **own)
 
 
-def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
-    """Return the sheet of a block."""
+def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
+    """Return the group of a block."""
     structure, own = structure_of(block, layout, loads), _routines(block)
     classes, nodes = len(block.scale), block.node.shape[1]
     vectors, order = block.scale.shape[1] // nodes, structure.order
@@ -102,7 +102,7 @@ def make_sheet(block: Block, layout: Layout, loads: PointLoads) -> Sheet:
         kept.append(_add_loads(table, loads))
     constant, space = _constant(structure, 2 * vectors, frame), structure.used * ROW
     needs, law = structure.needs, block.law
-    return Sheet(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
+    return ElementGroup(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
 
 
 def _add_loads(table: np.ndarray, loads: PointLoads) -> np.ndarray:

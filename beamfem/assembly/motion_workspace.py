@@ -17,7 +17,7 @@ _NONE = np.empty(0, dtype=np.int64)
 _FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
 
 
-class MotionSpace:
+class MotionWorkspace:
     """Workspace for one motion with a band matrix, and the tables that describe it to compiled code.
 
     arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
@@ -79,14 +79,14 @@ def _whole(system: System) -> np.ndarray:
 
 
 @contextmanager
-def motion_space(system: System) -> Iterator[MotionSpace]:
+def motion_workspace(system: System) -> Iterator[MotionWorkspace]:
     """Lend a workspace that no other motion uses, with factors, differences and rotations set to zero."""
     try:
         space = system.spare_motions.pop()
         for field in _FROM_ZERO:
             space.arrays[field][:] = 0.0
     except IndexError:
-        space = MotionSpace(system)
+        space = MotionWorkspace(system)
     yield space
     if space.arrays[record.ROWS].size <= _KEPT:
         system.spare_motions.append(space)

@@ -10,7 +10,7 @@ from beamfem.kernels.pointers import address_of
 _KEPT = 100_000  # entries of the largest tangent for which allocation is a noticeable part of a solve
 
 
-class BandSpace:
+class BandWorkspace:
     """Workspace for one static solve with a band matrix, and the tables that describe it to compiled code.
 
     addresses: tables of the equations, the unknowns and the routines, the arguments of compiled drivers.
@@ -59,11 +59,11 @@ class BandSpace:
         self.assembler.work_in(lent)
 
 
-def band_space(system: System) -> BandSpace:
+def band_workspace(system: System) -> BandWorkspace:
     """Return a workspace that no other solve uses."""
     try:
-        found: BandSpace = system.spare.pop()
+        found: BandWorkspace = system.spare.pop()
     except IndexError:
-        found = BandSpace(system)
+        found = BandWorkspace(system)
     found.take(scratch.lend(found.assembler.scratch))
     return found

@@ -57,7 +57,7 @@ class Numbers(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """The part of a sheet that identical groups share: see `sheet.Sheet`.
+    """The part of a group that identical groups share: see `element_group.ElementGroup`.
 
     table: see `kernels.record`; kept: the arrays that it points to; turned, turning: numbers of components of nodal
     vectors that rotate, and of the coordinates that rotate them; constant: node data with the entries that never change
@@ -118,7 +118,7 @@ def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
 
 
 def _structure(given: Numbers, sizes: Sizes) -> Structure:
-    """Return the structure of a group; see `sheet.Sheet`."""
+    """Return the structure of a group; see `element_group.ElementGroup`."""
     order = storage_order(given.node, len(given.node_kind))
     if order is not None:
         number = np.empty_like(order)

@@ -27,7 +27,7 @@ CUBIC = [bf.ANCF(bf.ElasticLine()), bf.ANCFCRBF(bf.Structural(), integration="lo
 
 @pytest.mark.parametrize("element", CUBIC, ids=lambda element: f"{element.name} {element.forces.name}")
 def test_cubic_elements_see_a_jump_of_the_normal_force_only_at_a_joint(element):
-    """u = N l / EA of the half that carries N: exact with a joint, of order 1 without, as docs/theory/fields.md says."""
+    """u = N l / EA of the half that carries N: exact with a joint, of order 1 without (docs/theory/fields.md)."""
     exact = PULL * 0.5 / STIFF["axial"]
     assert stretched(element, 8, joined=True) == pytest.approx(exact, rel=1e-12)
     coarse, fine = (abs(stretched(element, elements, joined=False) / exact - 1.0) for elements in (32, 64))

@@ -125,7 +125,8 @@ class Pictures:
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
         "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
         at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
-        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers.
+        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
+        acts, a section is that on the side towards the beam's end.
 
         Parameters
         ----------

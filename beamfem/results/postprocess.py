@@ -28,6 +28,8 @@ from beamfem.units import Units
 class Fields:
     """Fields at points of a beam's axis; the leading shape (...) is (steps,) or (steps, points).
 
+    Where two elements meet or a load acts, what jumps is that on the side towards the beam's end.
+
     Parameters
     ----------
     position : array, [m], (..., 2)

@@ -13,6 +13,7 @@ import pytest
 from connectors import PointMass, SpringDamper
 
 import beamfem as bf
+from beamfem.section.stiffness import StiffnessSection
 
 
 @dataclass(frozen=True)
@@ -153,3 +154,45 @@ def test_a_driven_linkage_with_damping_and_a_body():
     arm, link = [1.494112, -9.3219752, -3.9066199], [6.457704, 0.459887, -1.01481701]
     assert found[17:23] == pytest.approx([*arm, *link], rel=1e-6)
     assert found[23:] == pytest.approx([0.1492368238, 0.4587775362], rel=1e-8)
+
+
+@dataclass(frozen=True)
+class Coupled(StiffnessSection):
+    """All strains stiffen or soften each other:
+
+    W = EA e^2 (1 + 1.5 e) / 2 + GA g^2 (1 - 2 e) / 2 + EI k^2 (1 + 0.4 k^2) / 2 + 300 e k^2 + 80 e k.
+    """
+
+    def energy(self, strain, material):
+        e, g, k = strain.T
+        stretched, sheared = self.axial * e**2 * (1 + 1.5 * e) / 2, self.shear * g**2 * (1 - 2 * e) / 2
+        return stretched + sheared + self.bending * k**2 * (1 + 0.4 * k**2) / 2 + 300 * e * k**2 + self.coupling * e * k
+
+    def resultants(self, strain, material):
+        e, g, k = strain.T
+        normal = self.axial * e * (1 + 2.25 * e) - self.shear * g**2 + 300 * k**2 + self.coupling * k
+        moment = self.bending * k * (1 + 0.8 * k**2) + 600 * e * k + self.coupling * e
+        return np.stack([normal, self.shear * g * (1 - 2 * e), moment], axis=-1)
+
+
+def test_an_arc_whose_law_couples_all_strains():
+    """Pinned, on an inclined roller, under a force, weight, a pressure that follows, and imposed strains."""
+    law = Coupled(axial=1e5, shear=3e4, bending=50.0, mass=2.0, rotary_inertia=0.01, coupling=80.0)
+    arc = bf.Beam(bf.Arc((0, 0), 1.0, 0.3, 2.0), 12, bf.CRBF(order=6), law)
+    strains = bf.Actuation(
+        arc, curvature=lambda s: 0.5 * np.cos(s), stretch=lambda s: 0.01 * s, shear=lambda s: 0.01 * (1 - s)
+    )
+    loads = [bf.PointForce(arc.end, (40.0, -60.0)), bf.Pressure(arc, lambda s: 60 * s), bf.Gravity((0, -9.81)), strains]
+    model = bf.Model([arc], [bf.Pin(arc.start), bf.Roller(arc.end, (0.6, 0.8))], loads)
+    solution = bf.solve_static(model, steps=4)
+    end = [*solution.displacement(arc.end)[-1], solution.rotation(arc.end)[-1], solution.rotation(arc.start)[-1]]
+    assert end == pytest.approx([0.4210582012889, -0.3157936509667, 0.714949868468, -0.765288185282], rel=1e-9)
+    assert solution.reaction(arc.start)[-1] == pytest.approx([-110.735055257, 86.744192691, 0.0], rel=1e-9, abs=1e-8)
+    assert solution.reaction(arc.end)[-1] == pytest.approx([51.6060734895, 68.8080979862, 0.0], rel=1e-9, abs=1e-8)
+    assert solution.energy().strain[-1] == pytest.approx(20.4885023714, rel=1e-9)
+    forces = solution.section_forces(arc)
+    middle = np.argmin(np.abs(forces.arc_length - 0.85))
+    found = [part[-1, middle] for part in (forces.normal, forces.shear, forces.moment)]
+    assert found == pytest.approx([-137.12702004, 20.452358138, 62.359203394], rel=1e-7)
+    frequencies = [2.952729248, 10.783921974, 24.959157186, 44.490873359]
+    assert bf.solve_modes(model, count=4, about=solution).frequencies == pytest.approx(frequencies, rel=1e-7)

@@ -1,4 +1,4 @@
-"""What the mass of a beam off its axis does to section forces and energies, against rigid bodies."""
+"""Layers in motion: section forces and energies of mass off the axis, and the stress of stretch and heat."""
 
 import numpy as np
 import pytest
@@ -68,3 +68,37 @@ def test_loads_that_follow_have_no_potential():
         solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [load]))
         assert solution.energy().strain[-1] > 1.0
         assert not solution.energy().potential.any()
+
+
+def test_stress_of_layers_that_are_stretched_and_heated_in_time():
+    """A strip between clamps takes its strain from them: sigma = E (eps + tau eps' - alpha (T + T' y)) in each layer.
+
+    The viscous part resists the whole strain, also that which heat would cause freely.
+    """
+    tau, width, thick = 0.05, 0.02, 0.01
+    moduli, expansion = np.array([2e9, 5e8]), np.array([2e-4, 6e-4])
+    materials = [
+        bf.Material(modulus, 0.3, 1.0, retardation_time=tau, thermal_expansion=alpha)
+        for modulus, alpha in zip(moduli, expansion, strict=True)
+    ]
+    section = bf.Layered([bf.Layer(material, thick) for material in materials], width)
+    strip = bf.Beam(bf.Line((0, 0), (0, 1)), 2, bf.CRBF(2), section)
+    stretch = bf.Prescribed(strip.end, ux=0.0, uy=lambda t: 1e-3 * np.sin(3 * t) ** 4, rotation=0.0)
+    heat = bf.Temperature(strip, change=5.0, gradient=100.0, amplitude=lambda t: np.sin(2 * t) ** 4)
+    motion = bf.simulate(bf.Model([strip], [bf.Clamp(strip.start), stretch], [heat]), duration=0.7, step=2e-3)
+    t = motion.time[-1]
+    strain, rate = 1e-3 * np.sin(3 * t) ** 4, 1e-3 * 12 * np.sin(3 * t) ** 3 * np.cos(3 * t)
+
+    def stress(layer, y):
+        free = expansion[layer] * np.sin(2 * t) ** 4 * (5.0 + 100.0 * y)
+        return moduli[layer] * (strain + tau * rate - free)
+
+    found = motion.stresses(strip)
+    assert found.lower[-1] == pytest.approx(stress(0, -thick), rel=2e-5)
+    assert found.upper[-1] == pytest.approx(stress(1, thick), rel=2e-5)
+    middles = [stress(0, -thick / 2), stress(1, thick / 2)]
+    assert motion.reaction(strip.end)[-1, 1] == pytest.approx(width * thick * sum(middles), rel=2e-5)
+    # in each layer the stress is linear, so its moment is that of its mean and of its slope
+    slopes = -moduli * expansion * np.sin(2 * t) ** 4 * 100.0
+    moment = -width * (thick**2 / 2 * (middles[1] - middles[0]) + thick**3 / 12 * slopes.sum())
+    assert motion.section_forces(strip).moment[-1] == pytest.approx(moment, rel=2e-5)

@@ -31,11 +31,11 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
-    of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-], shear_angle [rad]; stress_lower,
-    stress_upper, stress_shear, stress_von_mises [Pa] where sections have them, see `BeamStress`; of the model (time,):
-    kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor, number of the beam (with the `names` of
-    all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the reference (station,). Adjacent elements
-    each have a station at their common end, where section forces may jump.
+    of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-] (Green strain xx of the axis),
+    shear_angle [rad]; stress_lower, stress_upper, stress_shear, stress_von_mises [Pa] where sections have them, see
+    `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor,
+    number of the beam (with the `names` of all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the
+    reference (station,). Adjacent elements each have a station at their common end, where section forces may jump.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
     points, along_beam = stations(solution.model, beam)

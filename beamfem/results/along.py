@@ -199,7 +199,7 @@ QUANTITIES = {
     "rotation": Quantity("rotation", "rad", rotation),
     "displacement": Quantity("displacement", "m", _displacement),
     "speed": Quantity("speed", "m/s", _speed),
-    "axial_strain": Quantity("axial strain", "-", _axial_strain),
+    "axial_strain": Quantity("axial Green strain", "-", _axial_strain),
     "shear_angle": Quantity("shear angle", "rad", _shear_angle),
 }
 

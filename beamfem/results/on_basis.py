@@ -75,6 +75,8 @@ def field_on_basis(solution: Solution, beam: Beam, body: bool = True, piece: int
         A beam of the model.
     body : bool, default True
         True: quadrature over the length and the section, with weights times width, for integrals over the volume [m^3].
+        The weights are those of a straight body: with a curvature k of the reference, > 0 towards +y, multiply by
+        1 - k y, the determinant of the gradient there.
         False: quadrature over the axis alone, for integrals over the length [m].
     piece : int, optional
         Number of a smooth piece, 0 at the start of the beam, for a beam with corners, where its field has two

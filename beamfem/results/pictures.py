@@ -54,10 +54,10 @@ class Pictures:
             File to write (PNG, SVG, PDF); folders are created.
         colour : str, optional
             By default the time or load factor; or a field along the beams, whose extreme value is marked: "moment"
-            [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-],
-            "shear_angle" [rad]; of the stress of a section [Pa] "stress" or "von_mises" (its largest von Mises stress),
-            "upper", "lower" (faces), "outer" (the larger of both), "tension", "compression", "shear_stress"; or
-            "utilisation" [-] of the strength.
+            [N m], "normal", "shear" [N], "rotation" [rad], "displacement" [m], "speed" [m/s], "axial_strain" [-]
+            (Green strain xx of the axis), "shear_angle" [rad]; of the stress of a section [Pa] "stress" or "von_mises"
+            (its largest von Mises stress), "upper", "lower" (faces), "outer" (the larger of both), "tension",
+            "compression", "shear_stress"; or "utilisation" [-] of the strength.
         shapes : int, optional
             Number of steps, one of them the last; by default the last alone, of motions and paths 9.
         undeformed : bool, default True
@@ -125,7 +125,8 @@ class Pictures:
         A quantity is a pair of a name and a point, such as ("uy", beam.end), with the names "ux", "uy", "x", "y" [m],
         "rotation" [rad], "vx", "vy" [m/s], "normal", "shear" [N], "moment" [N m], those of stresses in `plot` [Pa] and,
         at supports, "fx", "fy" [N] and "m" [N m]; or "load_factor" or "time" [s]; or "kinetic", "strain", "potential"
-        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers.
+        or "total" energy [J]; or a pair of a label and numbers (steps,); or numbers. Where two elements meet or a load
+        acts, a section is that on the side towards the beam's end.
 
         Parameters
         ----------

@@ -28,6 +28,8 @@ from beamfem.units import Units
 class Fields:
     """Fields at points of a beam's axis; the leading shape (...) is (steps,) or (steps, points).
 
+    Where two elements meet or a load acts, what jumps is that on the side towards the beam's end.
+
     Parameters
     ----------
     position : array, [m], (..., 2)
@@ -39,7 +41,7 @@ class Fields:
     rotation : array, [rad], (...)
         Rotation of the section from the reference configuration.
     shear_angle : array, [rad], (...)
-        Angle from r_x to r_y less a right angle.
+        A right angle less the angle from r_x to r_y; it has the sign of the shear strain.
     green_strain : Components, [-]
         Green-Lagrange strain of the field at y = 0.
     stress : Components, [Pa]
@@ -244,7 +246,7 @@ def fields(
 
 
 def shear_angle(now: Axis) -> np.ndarray:
-    """Return the angle [rad] from r_x to r_y less a right angle."""
+    """Return a right angle less the angle [rad] from r_x to r_y, which has the sign of the shear strain."""
     return np.asarray(np.arctan2(dot(now.r_s, now.d), cross(now.r_s, now.d)))
 
 

@@ -56,7 +56,8 @@ def simulate(
         State to start from, such as the last one of a static solution; by default the reference at rest. Supports have
         to hold its points where they are; velocities that they stop are lost at once, as in a plastic impact.
     velocity : RigidVelocity or callable, optional
-        Initial velocity field.
+        Initial velocity: of a rigid motion, or a function of the reference position (2,) [m] of the axis, which returns
+        (vx, vy) [m/s]. With a function, sections do not rotate at first, unless their element ties them to the axis.
     save_every : int, default 1
         Keep every n-th state and the last one.
 

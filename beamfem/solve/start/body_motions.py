@@ -137,5 +137,8 @@ def mechanisms(conditions: Conditions) -> np.ndarray:
 
 
 def _null_space(rows: np.ndarray) -> np.ndarray:
+    if len(rows) > rows.shape[1]:
+        # the same singular values and basis, without a square matrix of all nodes on a foundation
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))
     _, singular, basis = np.linalg.svd(rows)
     return np.asarray(basis[int((singular > NEGLIGIBLE).sum()) :])

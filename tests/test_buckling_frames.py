@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from random_models import random_recipe
+from recipes import View
 from scipy.optimize import brentq
 from scipy.sparse.linalg import ArpackNoConvergence
 
@@ -15,6 +16,7 @@ from beamfem.linalg import eigenpairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability import linearised
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.stability.movement import size_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)
@@ -133,6 +135,29 @@ def test_a_search_that_runs_out_of_points_has_stopped(monkeypatch):
     assert found.status is bf.Status.STOPPED
 
 
+@pytest.mark.parametrize("seed", [61, 168, 174, 189, 197])
+def test_beams_in_two_halves_are_searched_as_far_as_whole_ones(seed):
+    """Curved beams whose search ended after a movement by the length of the longest one, with nothing found."""
+    whole, halves = (bf.solve_buckling(random_recipe(seed).build(View(split=how)).model) for how in (False, True))
+    assert halves.kinds == whole.kinds
+    assert halves.load_factors == pytest.approx(whole.load_factors, rel=1e-7)
+    assert halves.status is whole.status
+    assert (whole.status is bf.Status.STOPPED) == (len(whole) == 0)
+
+
+def test_the_size_of_a_model_does_not_depend_on_how_it_is_divided():
+    """A straight beam is as large as it is long; a semicircle reaches from its centre of mass to its ends."""
+    radius, semicircle = 2.0, 2.0 * 2.0 * np.hypot(1.0, 2.0 / np.pi)
+    for cuts in (1, 2, 5):
+        angles = np.linspace(0.3, 0.3 + np.pi, cuts + 1)
+        curves = [bf.Arc((1.0, 5.0), radius, float(a), float(b)) for a, b in pairwise(angles)]
+        beams = [bf.Beam(curve, 80 // cuts, bf.CRBF(2), STRIP, STEEL) for curve in curves]
+        joints = [bf.Rigid(a.end, b.start) for a, b in pairwise(beams)]
+        system = system_of(bf.Model(beams, [bf.Clamp(beams[0].start)], joints=joints), static=True)
+        assert size_of(system) == pytest.approx(semicircle, rel=1e-4)
+    assert size_of(system_of(pinned_column(30.0), static=True)) == pytest.approx(1.0, rel=1e-12)
+
+
 def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch):
     def lost(path, point):
         raise PathLostError("the tangent is singular")
@@ -227,6 +252,8 @@ def test_a_model_that_no_load_makes_critical_says_so():
     assert len(found) == 0
     assert len(found.linearised) == 1
     assert "no critical point" in repr(found)
+    assert "goes no further than" in found.ended
+    assert found.status is bf.Status.STOPPED
     with pytest.raises(bf.InputError, match="there is no critical point"):
         found.solution()
 

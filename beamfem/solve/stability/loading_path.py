@@ -14,6 +14,7 @@ from beamfem.solve.continuation.steps import longest_step, too_small
 from beamfem.solve.modes.lowest import lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.stability.movement import largest_displacement, size_of
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02
@@ -93,11 +94,9 @@ class LoadingPath:
         result[self.system.free_dofs] = left
         return result
 
-    def moved(self, point: PathPoint) -> float:
-        """Return the largest movement of a node from the start, in lengths of the model."""
-        places = np.concatenate([block.dof[:, :2] for block in self.system.blocks])
-        x, y = (point.y - self.start.y)[places.T]
-        return float(np.hypot(x, y).max() / self.system.extent)
+    def moved(self, p: np.ndarray) -> float:
+        """Return the largest movement of a node from the start to a state p (n,), in sizes of the model."""
+        return largest_displacement(self.system, p - self.start.y[:-1]) / size_of(self.system)
 
     def solution(self) -> Solution:
         """Return the points found before the path was lost, as a solution."""

@@ -169,12 +169,39 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
     assert caught.value.solution.load_factor.tolist() == [0.0]
 
 
-def test_a_path_whose_steps_are_lost_in_round_off_says_so():
-    """A tie pulled with 400,000 times its load: the path turns within a step that its load factor does not show."""
-    tie = random_recipe(582).build().model
-    with pytest.raises(bf.ConvergenceError, match=r"beyond load factor 393242 .* round-off hides them") as caught:
-        bf.solve_buckling(tie)
-    assert caught.value.solution.load_factor[-1] == pytest.approx(393242.0, rel=1e-5)
+@pytest.mark.parametrize(("seed", "points"), [(177, 100), (582, 60)])
+@pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
+def test_a_tie_under_a_large_load_has_the_limit_point_of_its_path(widest_band, seed, points, half_width):
+    """One step went over a pair of limit points 3e-7 apart: its length was all load, and counts were equal behind."""
+    widest_band(half_width)
+    model = random_recipe(seed).build().model
+    path = bf.trace_equilibrium(model, points=points)
+    found = bf.solve_buckling(model, 2)
+    assert found.kinds[-1] == "limit point"
+    assert found.load_factors[-1] == pytest.approx(path.limit_points[0].load_factor, rel=1e-9)
+    assert found.load_factors[:-1] == pytest.approx([point.load_factor for point in path.bifurcations], rel=1e-9)
+
+
+@pytest.mark.parametrize("softer", [0.3, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7])
+@pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
+def test_limit_points_close_together_are_not_stepped_over(widest_band, softer, half_width):
+    """A shallow strut on a spring: P = EA (1 - l/l0) y/l + k (h - y), l^2 = 1 + y^2, is largest at a root in l^3.
+
+    k = (1 - softer) EA (1 - 1/l0): between its limit points the load falls by about softer^1.5.
+    """
+    widest_band(half_width)
+    height, section = 0.1, bf.Rectangle(0.1, 0.2)
+    length = np.hypot(1.0, height)
+    bar = bf.Beam(bf.Line((0, 0), (1, height)), 4, bf.CRBF(2), section, STEEL)
+    stiffness = STEEL.youngs_modulus * section.area
+    spring = (1.0 - softer) * (1.0 - 1.0 / length)
+    supports = [bf.Pin(bar.start), bf.Roller(bar.end, (1, 0)), bf.Spring(bar.end, (0.0, spring * stiffness))]
+    found = bf.solve_buckling(bf.Model([bar], supports, [bf.PointForce(bar.end, (0.0, -1e-3 * stiffness))]))
+    at = (1.0 / length + spring) ** (-1.0 / 3.0)
+    depth = np.sqrt(at**2 - 1.0)
+    exact = 1e3 * ((1.0 / at - 1.0 / length) * depth + spring * (height - depth))
+    assert found.kinds == ("limit point",)
+    assert found.load_factors == pytest.approx([exact], rel=1e-9)
 
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])

@@ -308,7 +308,7 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
         except ConvergenceError as error:
             path.lost = True
             return found, str(error), Status.STOPPED
-        path.add(here)
+        here = path.add(here)
         for point in more:
             # what a step happens to find beyond the limits depends on its length
             beyond = _beyond(path, point.p, point.load_factor, farthest)

@@ -76,11 +76,13 @@ class LoadingPath:
         self.lost = self.refused > _REFUSALS or too_small(self.line, point, self.size)
         return not self.lost
 
-    def add(self, point: PathPoint) -> None:
-        """Add a point up to which all critical points are known."""
-        self.points.append(point)
+    def add(self, point: PathPoint) -> PathPoint:
+        """Add a point up to which all critical points are known, and return it in the scale of the next step."""
+        self.line, rescaled = self.line.rescaled(point)
+        self.points.append(rescaled)
         self.refused = 0
-        self.size = self._next_size
+        self.size = self._next_size * self.line.length(point.tangent)
+        return rescaled
 
     def normal(self, before: PathPoint, after: PathPoint) -> np.ndarray:
         """Return the direction (n + 1,) along which distances between two points are measured."""

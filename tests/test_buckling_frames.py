@@ -196,12 +196,14 @@ def test_limit_points_close_together_are_not_stepped_over(widest_band, softer, h
     stiffness = STEEL.youngs_modulus * section.area
     spring = (1.0 - softer) * (1.0 - 1.0 / length)
     supports = [bf.Pin(bar.start), bf.Roller(bar.end, (1, 0)), bf.Spring(bar.end, (0.0, spring * stiffness))]
-    found = bf.solve_buckling(bf.Model([bar], supports, [bf.PointForce(bar.end, (0.0, -1e-3 * stiffness))]))
+    model = bf.Model([bar], supports, [bf.PointForce(bar.end, (0.0, -1e-3 * stiffness))])
     at = (1.0 / length + spring) ** (-1.0 / 3.0)
-    depth = np.sqrt(at**2 - 1.0)
-    exact = 1e3 * ((1.0 / at - 1.0 / length) * depth + spring * (height - depth))
+    depths = np.sqrt(at**2 - 1.0) * np.array([1.0, -1.0])
+    exact = 1e3 * ((1.0 / at - 1.0 / length) * depths + spring * (height - depths))
+    found, path = bf.solve_buckling(model), bf.trace_equilibrium(model, 1.0)
     assert found.kinds == ("limit point",)
-    assert found.load_factors == pytest.approx([exact], rel=1e-9)
+    assert found.load_factors == pytest.approx(exact[:1], rel=1e-9)
+    assert [point.load_factor for point in path.limit_points] == pytest.approx(exact, rel=1e-9)
 
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])

@@ -5,12 +5,12 @@ stiffness of the softest modes are interpolated between points at a distance on 
 vanishes close together are interpolated as one subspace.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from beamfem.solve.continuation.continuation import PathPoint
+from beamfem.solve.stability.hidden import loads, stops
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 from beamfem.solve.stability.window import Window, Zero, on_path, smooth
 
@@ -48,7 +48,7 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
     to which there are no others; none and `after` if nothing changes in between. Raises PathLostError.
     """
     middle = _between(path, before, after)
-    after = next((point for point in _stops(path, before, middle, after) if Search(path, before, point).changes), after)
+    after = next((point for point in stops(path, before, middle, after) if Search(path, before, point).changes), after)
     while True:
         search = Search(path, before, after)
         if not search.changes:
@@ -61,45 +61,13 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
         after = first
 
 
-def _stops(path: LoadingPath, before: PathPoint, middle: PathPoint, after: PathPoint) -> Iterator[PathPoint]:
-    """Yield points inside a step, in order, at which a pair of limit points would show: slopes at its ends do not."""
-    for start, end in ((before, middle), (middle, after)):
-        at = _extreme_slope(path, start, end)
-        if at is not None:
-            yield on_path(path, path.normal(start, end), (start, end), at)
-        yield end
-
-
-def _extreme_slope(path: LoadingPath, before: PathPoint, after: PathPoint) -> float | None:
-    """Return the distance along the chord at which the load falls by the cubic through two points between which it
-    rises at both ends, or the other way round; None if it does not.
-    """
-    normal = path.normal(before, after)
-    reach, slopes, rise = _loads(path, normal, before, after)
-    curvature = slopes[0] + slopes[1] - 2.0 * rise
-    if slopes[0] * slopes[1] <= 0.0 or curvature == 0.0:
-        return None
-    x = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
-    slope = slopes[0] + x * (6.0 * rise - 4.0 * slopes[0] - 2.0 * slopes[1]) + 3.0 * x**2 * curvature
-    return x * reach if 0.0 < x < 1.0 and slope * slopes[0] < 0.0 else None
-
-
-def _loads(
-    path: LoadingPath, normal: np.ndarray, before: PathPoint, after: PathPoint
-) -> tuple[float, tuple[float, float], float]:
-    """Return the distance of two points along a normal, the slopes of the load over its fractions, and its rise."""
-    reach = path.line.dot(normal, after.y - before.y)
-    first, last = (reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after))
-    return reach, (first, last), after.load_factor - before.load_factor
-
-
 def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoint:
     """Return a point inside a step, where the slope of the load differs most from those at the ends.
 
     Raises PathLostError if it is not on the smooth path predicted by the ends: these lie on different paths.
     """
     normal = path.normal(before, after)
-    reach, slopes, rise = _loads(path, normal, before, after)
+    reach, slopes, rise = loads(path, normal, before, after)
     curvature = slopes[0] + slopes[1] - 2.0 * rise
     fraction = 0.5
     if curvature != 0.0:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import beamfem as bf
+from beamfem.assembly import layout
 from beamfem.element.coordinates import Gradients, Rotation, ShearFree
 from beamfem.element.fields import Cubic, Lagrange
 
@@ -51,8 +52,9 @@ def element(request):
 
 @pytest.fixture
 def widest_band(monkeypatch):
-    """Return a function that sets the widest half width for which a model gets a band."""
-    return lambda half_width: monkeypatch.setattr("beamfem.assembly.layout._WIDEST_BAND", half_width)
+    """Return a function that sets the widest half width for which a model gets a band, also one like those before."""
+    monkeypatch.setattr(layout, "_order_few", layout._order_few.__wrapped__)
+    return lambda half_width: monkeypatch.setattr(layout, "_WIDEST_BAND", half_width)
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from random_models import random_recipe
+from recipes import View
 from scipy.optimize import brentq
 from scipy.sparse.linalg import ArpackNoConvergence
 
@@ -15,6 +16,7 @@ from beamfem.linalg import eigenpairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.stability import linearised
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.stability.movement import size_of
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 STRIP = bf.Rectangle(0.02, 0.01)
@@ -133,6 +135,29 @@ def test_a_search_that_runs_out_of_points_has_stopped(monkeypatch):
     assert found.status is bf.Status.STOPPED
 
 
+@pytest.mark.parametrize("seed", [61, 168, 174, 189, 197])
+def test_beams_in_two_halves_are_searched_as_far_as_whole_ones(seed):
+    """Curved beams whose search ended after a movement by the length of the longest one, with nothing found."""
+    whole, halves = (bf.solve_buckling(random_recipe(seed).build(View(split=how)).model) for how in (False, True))
+    assert halves.kinds == whole.kinds
+    assert halves.load_factors == pytest.approx(whole.load_factors, rel=1e-7)
+    assert halves.status is whole.status
+    assert (whole.status is bf.Status.STOPPED) == (len(whole) == 0)
+
+
+def test_the_size_of_a_model_does_not_depend_on_how_it_is_divided():
+    """A straight beam is as large as it is long; a semicircle reaches from its centre of mass to its ends."""
+    radius, semicircle = 2.0, 2.0 * 2.0 * np.hypot(1.0, 2.0 / np.pi)
+    for cuts in (1, 2, 5):
+        angles = np.linspace(0.3, 0.3 + np.pi, cuts + 1)
+        curves = [bf.Arc((1.0, 5.0), radius, float(a), float(b)) for a, b in pairwise(angles)]
+        beams = [bf.Beam(curve, 80 // cuts, bf.CRBF(2), STRIP, STEEL) for curve in curves]
+        joints = [bf.Rigid(a.end, b.start) for a, b in pairwise(beams)]
+        system = system_of(bf.Model(beams, [bf.Clamp(beams[0].start)], joints=joints), static=True)
+        assert size_of(system) == pytest.approx(semicircle, rel=1e-4)
+    assert size_of(system_of(pinned_column(30.0), static=True)) == pytest.approx(1.0, rel=1e-12)
+
+
 def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch):
     def lost(path, point):
         raise PathLostError("the tangent is singular")
@@ -144,12 +169,61 @@ def test_a_path_that_is_lost_at_once_hands_back_its_start_as_stopped(monkeypatch
     assert caught.value.solution.load_factor.tolist() == [0.0]
 
 
-def test_a_path_whose_steps_are_lost_in_round_off_says_so():
-    """A tie pulled with 400,000 times its load: the path turns within a step that its load factor does not show."""
-    tie = random_recipe(582).build().model
-    with pytest.raises(bf.ConvergenceError, match=r"beyond load factor 393242 .* round-off hides them") as caught:
-        bf.solve_buckling(tie)
-    assert caught.value.solution.load_factor[-1] == pytest.approx(393242.0, rel=1e-5)
+@pytest.mark.parametrize(("seed", "points"), [(177, 100), (582, 60)])
+@pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
+def test_a_tie_under_a_large_load_has_the_limit_point_of_its_path(widest_band, seed, points, half_width):
+    """One step went over a pair of limit points 3e-7 apart: its length was all load, and counts were equal behind."""
+    widest_band(half_width)
+    model = random_recipe(seed).build().model
+    path = bf.trace_equilibrium(model, points=points)
+    found = bf.solve_buckling(model, 2)
+    assert found.kinds[-1] == "limit point"
+    assert found.load_factors[-1] == pytest.approx(path.limit_points[0].load_factor, rel=1e-9)
+    assert found.load_factors[:-1] == pytest.approx([point.load_factor for point in path.bifurcations], rel=1e-9)
+
+
+@pytest.mark.parametrize("softer", [0.3, 1e-2, 1e-4, 1e-5, 1e-6, 1e-7])
+@pytest.mark.parametrize("half_width", [64, -1], ids=["band", "sparse"])
+def test_limit_points_close_together_are_not_stepped_over(widest_band, softer, half_width):
+    """A shallow strut on a spring: P = EA (1 - l/l0) y/l + k (h - y), l^2 = 1 + y^2, is largest at a root in l^3.
+
+    k = (1 - softer) EA (1 - 1/l0): between its limit points the load falls by about softer^1.5.
+    """
+    widest_band(half_width)
+    height, section = 0.1, bf.Rectangle(0.1, 0.2)
+    length = np.hypot(1.0, height)
+    bar = bf.Beam(bf.Line((0, 0), (1, height)), 4, bf.CRBF(2), section, STEEL)
+    stiffness = STEEL.youngs_modulus * section.area
+    spring = (1.0 - softer) * (1.0 - 1.0 / length)
+    supports = [bf.Pin(bar.start), bf.Roller(bar.end, (1, 0)), bf.Spring(bar.end, (0.0, spring * stiffness))]
+    model = bf.Model([bar], supports, [bf.PointForce(bar.end, (0.0, -1e-3 * stiffness))])
+    at = (1.0 / length + spring) ** (-1.0 / 3.0)
+    depths = np.sqrt(at**2 - 1.0) * np.array([1.0, -1.0])
+    exact = 1e3 * ((1.0 / at - 1.0 / length) * depths + spring * (height - depths))
+    found, path = bf.solve_buckling(model), bf.trace_equilibrium(model, 1.0)
+    assert found.kinds == ("limit point",)
+    assert found.load_factors == pytest.approx(exact[:1], rel=1e-9)
+    assert [point.load_factor for point in path.limit_points] == pytest.approx(exact, rel=1e-9)
+
+
+def blown_arch(cuts, angle, unit, mirror):
+    """A clamped arch of 2.4 rad, length/height = 1000, under pressure from below in E I / R^3, in metres times unit."""
+    material, section = bf.Material(2e11 / unit**2, 0.3, 7800.0), bf.Rectangle(0.1 * unit, 2.4e-3 * unit)
+    ends = angle + mirror * (0.5 * np.pi + 1.2 - 2.4 * np.linspace(0.0, 1.0, cuts + 1))
+    curves = [bf.Arc((0.3 * unit, 0.1 * unit), unit, float(a), float(b)) for a, b in pairwise(ends)]
+    beams = [bf.Beam(curve, 12 // cuts, bf.CRBF(4), section, material) for curve in curves]
+    pressure = mirror * material.youngs_modulus * section.second_moment / unit**3
+    loads = [bf.Pressure(beam, pressure) for beam in beams]
+    joints = [bf.Rigid(a.end, b.start) for a, b in pairwise(beams)]
+    return bf.Model(beams, [bf.Clamp(beams[0].start), bf.Clamp(beams[-1].end)], loads, joints)
+
+
+def test_stability_that_is_lost_and_regained_in_a_step_is_found():
+    """Counts of negative pivots are equal before and behind; one view found both, the other the third point first."""
+    plain, other = bf.solve_buckling(blown_arch(1, 0.0, 1.0, 1), 3), bf.solve_buckling(blown_arch(2, 0.7, 1e3, -1), 3)
+    assert plain.kinds == other.kinds == ("bifurcation",) * 3
+    assert plain.load_factors == pytest.approx(other.load_factors, rel=1e-8)
+    assert np.diff(plain.load_factors)[0] < 2e-5 * plain.load_factors[0]
 
 
 @pytest.mark.parametrize("degrees", [0, 17, 90])
@@ -227,6 +301,8 @@ def test_a_model_that_no_load_makes_critical_says_so():
     assert len(found) == 0
     assert len(found.linearised) == 1
     assert "no critical point" in repr(found)
+    assert "goes no further than" in found.ended
+    assert found.status is bf.Status.STOPPED
     with pytest.raises(bf.InputError, match="there is no critical point"):
         found.solution()
 

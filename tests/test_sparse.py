@@ -5,12 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from conftest import beam as small_beam
+from scipy.sparse import csc_array
 
 import beamfem as bf
 from beamfem.assembly.equations import STATICS, linearise
 from beamfem.assembly.layout import Unknowns
 from beamfem.assembly.system import System
 from beamfem.element.axis import cross
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.superlu import superlu
 from beamfem.model.reference import energy_points
 from beamfem.results.postprocess import axis, nodal_vectors
 
@@ -206,3 +209,35 @@ def test_a_state_turned_inside_out_is_seen(element):
         assert (system.assembler().smallest_jacobian(state) <= 0.0) == turned
         seen.add(turned)
     assert seen == {False, True}
+
+
+def without_pivots(seed):
+    """A symmetric matrix (30, 30) with so few entries that it is singular whatever their values are."""
+    random = np.random.default_rng(seed)
+    values = random.standard_normal((30, 30))
+    above = np.triu(np.where(random.random((30, 30)) < 0.08, values, 0.0), 1)
+    matrix = csc_array(above + above.T + np.diag(random.standard_normal(30)))
+    matrix.data[random.integers(matrix.nnz, size=matrix.nnz // 3)] = 0.0
+    matrix.eliminate_zeros()
+    return matrix
+
+
+@pytest.mark.parametrize("seed", [58, 310, 586, 1090])
+def test_a_matrix_whose_zeros_make_it_singular_is_not_given_to_superlu(capfd, seed):
+    """It printed "On entry to DTRSV parameter number 6 had an illegal value", for other seeds the process died."""
+    with pytest.raises(LinAlgError):
+        superlu(without_pivots(seed))
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_matrix_that_is_not_finite_is_not_given_to_superlu(value):
+    matrix = csc_array(np.diag(np.full(5, 2.0)))
+    matrix.data[3] = value
+    with pytest.raises(LinAlgError, match="not finite"):
+        superlu(matrix, full_diagonal=True, options={"SymmetricMode": True})
+
+
+def test_a_zero_on_the_diagonal_is_no_singular_matrix():
+    regular = csc_array(np.array([[0.0, 2.0], [4.0, 0.0]]))
+    np.testing.assert_allclose(superlu(regular).solve(np.array([2.0, 4.0])), [1.0, 1.0])

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from beamfem.assembly.system import System
 from beamfem.linalg.inertia import negative_eigenvalues
 from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
 from beamfem.once import cached_property
 
@@ -128,10 +129,7 @@ class MixedTangent:
             scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
         shape = len(scale), len(scale)
         matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
-        try:
-            return MixedFactors(splu(matrix), scale, matrix, kept, self, rotated, turn)
-        except RuntimeError as error:
-            raise LinAlgError("the tangent is singular") from error
+        return MixedFactors(superlu(matrix), scale, matrix, kept, self, rotated, turn)
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""

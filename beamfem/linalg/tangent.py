@@ -5,12 +5,13 @@ from typing import Protocol
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array, dia_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import SuperLU
 
 from beamfem.kernels.band import band
 from beamfem.kernels.compiling import Routine
 from beamfem.kernels.rollers import hold_normals, rotate_back, rotate_in
 from beamfem.linalg.lapack import LinAlgError, solve_banded
+from beamfem.linalg.superlu import superlu
 
 SMALLEST_PIVOT = 1e-13
 _NOTHING = np.empty(0)
@@ -166,10 +167,7 @@ class SparseTangent:
         matrix = csc_array(self.sparse(rotated)) if len(rotated[0]) else self.matrix
         # the ordering already limits fill-in; wide panels and relaxed supernodes cost more than they save here
         settings = {"permc_spec": "NATURAL", "diag_pivot_thresh": 1e-10, "relax": 1, "panel_size": 1}
-        try:
-            lu = splu(matrix, **settings, options={"SymmetricMode": True})
-        except RuntimeError as error:
-            raise LinAlgError("the tangent is singular") from error
+        lu = superlu(matrix, full_diagonal=not len(rotated[0]), **settings, options={"SymmetricMode": True})
         return SparseFactors(lu, rotated)
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:

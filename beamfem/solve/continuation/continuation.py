@@ -1,7 +1,7 @@
 """Points of an equilibrium path, corrected and linearised with the load factor among the unknowns."""
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -92,6 +92,21 @@ class Continuation:
 
     def length(self, a: np.ndarray) -> float:
         return float(np.sqrt(self.dot(a, a)))
+
+    def rescaled(self, point: PathPoint) -> tuple["Continuation", PathPoint]:
+        """Return the continuation with a larger load scale, and the point, if the load has outgrown the movement.
+
+        A structure that stiffens as it is loaded moves ever less with the load, so that changes of direction vanish
+        beside changes of the load. The new scale gives both equal parts in the tangent, but is at most the load factor.
+        """
+        load = abs(float(point.tangent[-1])) / self.load_scale
+        movement = float(np.sqrt(max(self.dot(point.tangent, point.tangent) - load**2, 0.0)))
+        balanced = self.load_scale * load / max(movement, np.finfo(float).eps)
+        scale = min(balanced, abs(point.load_factor))
+        if scale <= self.load_scale:
+            return self, point
+        line = replace(self, load_scale=scale)
+        return line, PathPoint(point.y, point.tangent / line.length(point.tangent), point.factors)
 
     def hold(self, y: np.ndarray) -> np.ndarray:
         """Return y with the prescribed coordinates of its load factor."""

@@ -15,6 +15,7 @@ from beamfem.solve.newton.convergence import balance_of
 _SHARPNESS = 1e-12  # of a segment: accuracy of the fractions of critical points
 _LEVEL = 1e-4  # largest slope of the load factor accepted at a limit point
 _DISTANCE = 5e-3  # of a part of a segment: least distance of samples from a crossing path
+_NEARLY = 0.3  # of the smaller slope of the load factor at the ends: with less in between there may be two limit points
 _TRIALS = 12
 _BALANCINGS = 4
 _EVEN = 1e-6  # relative difference of products a K^-1 b and b K^-1 a that still counts as symmetric
@@ -131,10 +132,7 @@ class Segment:
 
         An extremum at which another path crosses is a bifurcation: its fraction is added to `turned`.
         """
-        stops = [0.0, 1.0]
-        hidden = self._hidden_extremum()
-        if hidden is not None:
-            stops.insert(1, hidden)
+        stops = self._stops()
         found: list[float] = []
         self.turned = []
         for start, end in pairwise(stops):
@@ -207,10 +205,29 @@ class Segment:
                 return x, samples
         raise SegmentLostError("the load factor has an extremum that was not located")
 
-    def _hidden_extremum(self) -> float | None:
-        """Return where, by the cubic, the slope of the load factor may have changed its sign twice, else None."""
-        left, right = self.slopes[0][-1], self.slopes[1][-1]
-        rise = self.chord[-1]
+    def _stops(self) -> list[float]:
+        """Return fractions between which the slope of the load factor changes its sign once at the most.
+
+        Where the load factor nearly has a pair of extrema by the cubic through the ends, the cubics to the point there
+        tell. Raises SegmentLostError.
+        """
+        near = self._least_slope(0.0, 1.0, _NEARLY)
+        if near is None:
+            return [0.0, 1.0]
+        if self.at(near).tangent[-1] * self.slopes[0][-1] <= 0.0:
+            return [0.0, near, 1.0]
+        hidden = [self._least_slope(start, end, 0.0) for start, end in ((0.0, near), (near, 1.0))]
+        return sorted({0.0, near, 1.0, *(x for x in hidden if x is not None)})
+
+    def _least_slope(self, start: float, end: float, share: float) -> float | None:
+        """Return where the cubic between two fractions has the slope of the load factor nearest to a change of sign.
+
+        None if its sign is not the same at both ends, or if it stays above a share of the smaller slope there.
+        """
+        points, width = (self.at(start), self.at(end)), end - start
+        squared = self.line.dot(self.chord, self.chord)
+        left, right = (width * squared * one.tangent[-1] / self.line.dot(one.tangent, self.chord) for one in points)
+        rise = points[1].load_factor - points[0].load_factor
         curvature = 6.0 * (left + right - 2.0 * rise)
         if left * right <= 0.0 or curvature == 0.0:
             return None
@@ -218,7 +235,7 @@ class Segment:
         if not 0.0 < x < 1.0:
             return None
         slope = left + x * (6.0 * rise - 4.0 * left - 2.0 * right) + x**2 * 0.5 * curvature
-        return float(x) if slope * left < 0.0 else None
+        return float(start + x * width) if slope * np.sign(left) < share * min(abs(left), abs(right)) else None
 
 
 def _cubic(x: float, a: Any, b: Any, a_slope: Any, b_slope: Any) -> Any:

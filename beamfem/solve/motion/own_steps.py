@@ -7,13 +7,13 @@ from typing import Protocol
 import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.sparse import block_array, block_diag, csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.motion_steps import count_turns
+from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, turning
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
@@ -147,8 +147,8 @@ class EquationsOfMotion:
         matrix = csr_array(turn @ block_array(blocks) @ turn.T)[kept][:, kept]
         found = np.zeros(right.size)
         try:
-            found[kept] = splu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
-        except RuntimeError as error:
+            found[kept] = superlu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
+        except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
         return np.asarray(turn.T @ found).reshape(right.shape)
 

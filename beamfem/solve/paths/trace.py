@@ -140,6 +140,8 @@ def trace_equilibrium(
             point = taken.segment.after if landing is None else landing
             record.add(point.y, point.negative_pivots == 0)
             record.add_critical(line, taken, point)
+            line, rescaled = line.rescaled(point)
+            point, size = rescaled, size * line.length(point.tangent)
             report(len(record.rows))
         else:
             record.end("the path has reached the end that was asked for")

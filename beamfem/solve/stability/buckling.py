@@ -29,7 +29,7 @@ from beamfem.validation import count as whole_number
 from beamfem.validation import number_below, positive, squared
 
 _LARGEST_CHANGE = 0.5  # of the model: linearised load factors that would move it further are meaningless
-_LARGEST_MOVEMENT = 1.0  # of the model: the path is followed no further
+_LARGEST_MOVEMENT = 2.0  # of the model, as if it were turned over: the path is followed no further
 _LARGEST_LOAD = 300.0  # of the linearised load factors: the path is followed no further
 _MOST_POINTS = 300
 _SHOWN = 6  # critical points in a text
@@ -61,7 +61,7 @@ class Buckling:
     ended : str
         Why there are no more critical points.
     status : Status
-        STOPPED if the path was lost, or too long, before that could be known.
+        STOPPED if there may be more: the path was lost, or the search ended at its limits of movement, load or length.
 
     Examples
     --------
@@ -210,7 +210,9 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
     """Find the first points of the loading path at which the tangent stiffness is singular.
 
     The true equilibria are followed up to their largest load factor, and negative pivots of the tangent are counted, so
-    that no change of their number is missed. If there are fewer points than asked for, all of them are returned.
+    that no change of their number is missed. If there are fewer points than asked for, all of them are returned;
+    `ended` and `status` of the result say whether there may be more, beyond a movement by twice the size of the model
+    or 300 times the linearised load factors.
 
     Parameters
     ----------
@@ -306,16 +308,28 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
         except ConvergenceError as error:
             path.lost = True
             return found, str(error), Status.STOPPED
-        path.add(here)
+        here = path.add(here)
         for point in more:
+            # what a step happens to find beyond the limits depends on its length
+            beyond = _beyond(path, point.p, point.load_factor, farthest)
+            if beyond or len(found) == count:
+                break
             found.append(point)
             if point.kind == LIMIT_POINT:
-                return found[:count], "the path has its largest load factor there", Status.COMPLETED
-        if len(found) >= count:
-            return found[:count], f"the requested number, {count}, was found", Status.COMPLETED
-        if path.moved(here) > _LARGEST_MOVEMENT:
-            return found, "the model has moved by more than its own length", Status.COMPLETED
-        if here.load_factor > farthest:
-            ended = f"nothing more is critical up to {_LARGEST_LOAD:g} times the linearised load factors"
-            return found, ended, Status.COMPLETED
+                return found, "the path has its largest load factor there", Status.COMPLETED
+        else:
+            beyond = _beyond(path, here.y[:-1], here.load_factor, farthest)
+        if len(found) == count:
+            return found, f"the requested number, {count}, was found", Status.COMPLETED
+        if beyond:
+            return found, beyond, Status.STOPPED
     return found, f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
+
+
+def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: float) -> str:
+    """Return which limit of the search a state p (n,) is beyond, nothing if none."""
+    if path.moved(p) > _LARGEST_MOVEMENT:
+        return f"the search goes no further than a movement by {_LARGEST_MOVEMENT:g} times the size of the model"
+    if load_factor > farthest:
+        return f"the search goes no further than {_LARGEST_LOAD:g} times the linearised load factors, {farthest:.6g}"
+    return ""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamfem.solve.continuation.continuation import PathPoint
+from beamfem.solve.stability.hidden import loads, stops
 from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
 from beamfem.solve.stability.window import Window, Zero, on_path, smooth
 
@@ -47,8 +48,7 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
     to which there are no others; none and `after` if nothing changes in between. Raises PathLostError.
     """
     middle = _between(path, before, after)
-    if Search(path, before, middle).changes:
-        after = middle
+    after = next((point for point in stops(path, before, middle, after) if Search(path, before, point).changes), after)
     while True:
         search = Search(path, before, after)
         if not search.changes:
@@ -67,9 +67,7 @@ def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoin
     Raises PathLostError if it is not on the smooth path predicted by the ends: these lie on different paths.
     """
     normal = path.normal(before, after)
-    reach = path.line.dot(normal, after.y - before.y)
-    slopes = [reach * end.tangent[-1] / path.line.dot(normal, end.tangent) for end in (before, after)]
-    rise = after.load_factor - before.load_factor
+    reach, slopes, rise = loads(path, normal, before, after)
     curvature = slopes[0] + slopes[1] - 2.0 * rise
     fraction = 0.5
     if curvature != 0.0:

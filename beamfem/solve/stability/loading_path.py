@@ -14,6 +14,7 @@ from beamfem.solve.continuation.steps import longest_step, too_small
 from beamfem.solve.modes.lowest import lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
 from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.stability.movement import largest_displacement, size_of
 
 _ITERATIONS = 15
 _FIRST_STEP = 0.02
@@ -75,11 +76,13 @@ class LoadingPath:
         self.lost = self.refused > _REFUSALS or too_small(self.line, point, self.size)
         return not self.lost
 
-    def add(self, point: PathPoint) -> None:
-        """Add a point up to which all critical points are known."""
-        self.points.append(point)
+    def add(self, point: PathPoint) -> PathPoint:
+        """Add a point up to which all critical points are known, and return it in the scale of the next step."""
+        self.line, rescaled = self.line.rescaled(point)
+        self.points.append(rescaled)
         self.refused = 0
-        self.size = self._next_size
+        self.size = self._next_size * self.line.length(point.tangent)
+        return rescaled
 
     def normal(self, before: PathPoint, after: PathPoint) -> np.ndarray:
         """Return the direction (n + 1,) along which distances between two points are measured."""
@@ -93,11 +96,9 @@ class LoadingPath:
         result[self.system.free_dofs] = left
         return result
 
-    def moved(self, point: PathPoint) -> float:
-        """Return the largest movement of a node from the start, in lengths of the model."""
-        places = np.concatenate([block.dof[:, :2] for block in self.system.blocks])
-        x, y = (point.y - self.start.y)[places.T]
-        return float(np.hypot(x, y).max() / self.system.extent)
+    def moved(self, p: np.ndarray) -> float:
+        """Return the largest movement of a node from the start to a state p (n,), in sizes of the model."""
+        return largest_displacement(self.system, p - self.start.y[:-1]) / size_of(self.system)
 
     def solution(self) -> Solution:
         """Return the points found before the path was lost, as a solution."""

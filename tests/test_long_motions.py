@@ -246,6 +246,18 @@ def test_the_first_acceleration_of_a_long_chain_is_that_of_a_short_one(long, mon
         monkeypatch.setattr(tiles, "LONG", 200)
 
 
+@pytest.mark.parametrize("held", [slice(0, 600), slice(301, None), slice(20, None), slice(2, None)])
+def test_unknowns_are_divided_in_halves_wherever_they_are(held, long, monkeypatch):
+    """Most nodes of a chain stand on prescribed coordinates; of those with few others it has no tiles."""
+    own = beam(ELEMENTS[0])
+    nodes = np.arange(301)[held] if held.stop is None else np.arange(1, 301)[: held.stop // 3]
+    held_at = [bf.Prescribed(own.at(node / 300.0), ux=0.0, uy=0.0, rotation=0.0) for node in nodes]
+    model = bf.Model([own], held_at, [GRAVITY])
+    one, two = (moved(model, cores, monkeypatch, steps=4) for cores in (0, 2))
+    assert_near(two, one)
+    assert (tiles.tiles_of(system_of(model, static=False)) is None) == (len(nodes) > 290)
+
+
 def test_a_closed_job_ends_at_once():
     job = np.zeros(16, dtype=np.int64)
     job[0] = two_threads.CLOSED

@@ -20,6 +20,7 @@ from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.kernels.pointers import address_of
 
 LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
+_FEWEST = 4  # unknowns in half widths: two are left in the middle
 _NODES = 2048  # of a tile: about 400 kB, and half as much again for tables
 
 
@@ -51,8 +52,9 @@ def tiles_of(system: System) -> Tiles | None:
     if not is_long(system):
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
-    middle = _middle(block, system.free_dofs)
-    if middle is None or layout.half_width not in KNOWN:
+    known = layout.half_width in KNOWN and len(system.free_dofs) >= _FEWEST * layout.half_width
+    middle = _middle(block, system.free_dofs) if known else None
+    if middle is None:
         return None
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)

@@ -3,7 +3,7 @@
 Strains are written out once more; B = de/dp, shape functions and what sections and rules are come from the package.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -75,7 +75,7 @@ def imposed(mesh, model: bf.Model, at: float, static: bool) -> np.ndarray | floa
     normal = -across(upward)
     r_s = start.r_s + stretch[:, None] * normal + shear[:, None] * upward
     d, d_s = ((1.0 + thickness)[:, None] * vector for vector in (start.d, start.d_s))
-    free = replace(start, r_s=r_s, d=d, d_s=d_s - curvature[:, None] * normal)
+    free = start._replace(r_s=r_s, d=d, d_s=d_s - curvature[:, None] * normal)
     return strains(name, free) - strains(name, start)
 
 

@@ -53,7 +53,7 @@ def element(request):
 @pytest.fixture
 def widest_band(monkeypatch):
     """Return a function that sets the widest half width for which a model gets a band, also one like those before."""
-    monkeypatch.setattr(layout, "_order_few", layout._order_few.__wrapped__)
+    monkeypatch.setattr(layout, "_cached_order", layout._cached_order.__wrapped__)
     return lambda half_width: monkeypatch.setattr(layout, "_WIDEST_BAND", half_width)
 
 

@@ -19,6 +19,7 @@ _PHRASES = (
     ("start from what solve_static finds with this support", 'take `start = "static"` with this support'),
     ("add a PointForce of (0, 0)", 'add a load of kind "force" with `vector = [0, 0]`'),
     ("let a Prescribed support move", 'let a support of kind "prescribed" move'),
+    ("add a Rigid or a Hinge", 'add one to [[joints]], of kind "rigid" or "hinge"'),
     (
         "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "
         "without them, use simulate",

@@ -1,10 +1,10 @@
 """Named parts of a model file, and numbers or functions given by name."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from beamfem.cli.modelfile.table import Reader, Table, shown
+from beamfem.cli.modelfile.table import Kinds, Reader, Table, in_braces, shown
 from beamfem.validation import nearest
 
 
@@ -16,6 +16,7 @@ class Named:
     tables: Mapping[str, Table]
     made: dict[str, Any]
     make: Callable[[Table], Any]
+    kinds: Kinds = field(default_factory=dict)
     short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name is enough
 
     def __call__(self, table: Table, key: str) -> Any:
@@ -29,6 +30,8 @@ class Named:
             return self.part(value)
         if value in self.short:
             return self.make(Table(table.source, (*table.path, key), {"kind": value}))
+        if value in self.kinds:
+            raise table.error(f"the kind {value!r} needs further keys: {in_braces(value, self.kinds[value])}", key)
         raise table.error(f"there is no {self.kind} {value!r}; {nearest(value, [*self.tables, *self.short])}", key)
 
     def part(self, name: str) -> Any:

@@ -48,7 +48,7 @@ def require_analytic(item: Connector) -> None:
     if not np.all(np.abs(force - slope) <= _AGREE * np.maximum(np.abs(force).max(), np.abs(slope).max())):
         raise InputError(
             f"{item.name} says that it is conservative, but the potential of its energy() is not that of its force: "
-            f"the force is {force}, the derivative of the potential {slope}"
+            f"the force is {force}, the derivative of the potential, the second number of energy(), {slope}"
         )
 
 

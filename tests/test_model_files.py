@@ -150,7 +150,7 @@ MISTAKES = {
         "analysis.newton.tolerance",
         "greater than zero",
     ),
-    "material of a number": ('= "steel"', "= 3", 20, "beams.arm.material", "must be a name or a table"),
+    "material of a number": ('= "steel"', "= 3", 20, "beams.arm.material", "must be the name of a material"),
     "kind of a number": ('kind = "rectangle"', "kind = 3", 11, "sections.square.kind", "must be a text"),
     "curve of a list": ('{ kind = "line", start = [0, 0], end = [1, 0] }', "[0, 1]", 16, "beams.arm.curve", "table"),
     "load on no beam": (

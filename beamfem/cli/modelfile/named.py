@@ -25,14 +25,17 @@ class Named:
         if isinstance(value, dict):
             return self.make(table.table(key))
         if not isinstance(value, str):
-            raise table.error(f"must be a name or a table, got {shown(value)}", key)
+            article = "an" if self.kind[0] in "aeiou" else "a"
+            raise table.error(f"must be the name of {article} {self.kind}, or a table, got {shown(value)}", key)
         if value in self.tables:
             return self.part(value)
         if value in self.short:
             return self.make(Table(table.source, (*table.path, key), {"kind": value}))
         if value in self.kinds:
             raise table.error(f"the kind {value!r} needs further keys: {in_braces(value, self.kinds[value])}", key)
-        raise table.error(f"there is no {self.kind} {value!r}; {nearest(value, [*self.tables, *self.short])}", key)
+        known = [*self.tables, *self.short]
+        right = nearest(value, known) if known else f"the file has none; they are headed [{self.kind}s.NAME]"
+        raise table.error(f"there is no {self.kind} {value!r}; {right}", key)
 
     def part(self, name: str) -> Any:
         if name not in self.made:

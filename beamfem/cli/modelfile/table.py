@@ -31,7 +31,7 @@ class Source:
         known = path
         while known and known not in self.lines:
             known = known[:-1]
-        return ModelFileError(message, self.file, self.lines.get(known), _written(path) or None)
+        return ModelFileError(message, self.file, self.lines.get(known), written(path) or None)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def _needed(parameters: Mapping[str, inspect.Parameter]) -> str:
     return ", ".join(name for name, parameter in parameters.items() if parameter.default is parameter.empty)
 
 
-def _written(path: KeyPath) -> str:
+def written(path: KeyPath) -> str:
     """Return a path as text; items of an array are counted from 1."""
     text = ""
     for part in path:

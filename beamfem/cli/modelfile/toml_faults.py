@@ -43,6 +43,8 @@ def _hint(message: str, line: str, rest: str) -> str:
         return "a table in braces must be on one line, without a comma at its end"
     if message.startswith("Illegal character '\\n'"):
         return "a quotation mark is missing at the end of a text"
+    if message.startswith("Expected ']' at the end of a table declaration") and rest:
+        return "names are of A-Z, a-z, 0-9, - and _; others are written in quotation marks"
     if message.startswith("Expected '='"):
         return "keys and their values are written: key = value"
     return "paths may be written with /" if message.startswith("Unescaped") else ""

@@ -67,7 +67,7 @@ def _are_shifted(rows, count, stride, number, step):
     wrong = 0
     for row in range(rows):
         each = at(number, row * stride)
-        if each[0] < 0:
+        if each[0] < 0 or each[count - 1] < 0:
             return False
         for i in range(count):
             wrong += abs(each[i] - each[0] - i * step)

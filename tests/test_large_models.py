@@ -13,6 +13,7 @@ from beamfem.assembly.system import System
 from beamfem.model.beam import reference_positions
 from beamfem.model.grid import Grid, make_grid
 from beamfem.model.grids import make_grids
+from beamfem.model.nearest import distances, nearest
 from beamfem.solve.start.body_motions import Conditions, mechanisms
 
 
@@ -140,3 +141,42 @@ def test_a_band_is_ordered_towards_the_support_and_rollers_stay_in_order():
         assert (still.dofs[0] > still.dofs[-1]) == turned
         x, y = list(model.mesh_of(beam.start).coordinates_of(2).values())[:2]
         assert still.free[y] == still.free[x] + 1
+
+
+def test_many_supports_and_corners_take_no_table_of_places_by_elements():
+    """6000 supports between 6000 elements, on a polyline with 6000 corners: such tables were 288 MB each."""
+    places = np.linspace(0.0, 1.0, 6001)[1:-1].tolist()
+    corners = [(0.1 * i, 0.01 * (i % 2)) for i in range(6001)]
+    for curve in (bf.Line((0.0, 0.0), (600.0, 0.0)), bf.Polyline(corners)):
+        beam = bf.Beam(curve, 7001, bf.CRBF(1), SECTION, MATERIAL)
+        tracemalloc.start()
+        try:
+            grid = make_grid(beam, places)
+            _, most = tracemalloc.get_traced_memory()
+        finally:
+            tracemalloc.stop()
+        assert np.abs(grid.arc[[grid.node_at(place) for place in places]] / curve.length - places).max() < 1e-9
+        assert most < 2e7
+
+
+def test_the_nearest_numbers_and_distances_are_those_of_the_whole_table():
+    rng = np.random.default_rng(3)
+    ascending = np.sort(np.append(rng.random(50), [0.0, 0.25, 0.25, 0.5, 1.0]))
+    values = np.concatenate([rng.random(200), ascending, ascending + 1e-16, [-1.0, 2.0, 0.375]])
+    table = np.abs(values[:, None] - ascending)
+    assert np.array_equal(nearest(ascending, values), table.argmin(axis=1))
+    assert np.array_equal(distances(values, rng.permutation(ascending)), table.min(axis=1))
+    assert np.isinf(distances(values, np.empty(0))).all()
+
+
+def test_reactions_are_of_all_supports_at_a_point():
+    beam = bf.Beam(bf.Line((0.0, 0.0), (1.0, 0.0)), 20, bf.CRBF(1), SECTION, MATERIAL)
+    other = bf.Beam(bf.Line((0.0, 1.0), (1.0, 1.0)), 4, bf.CRBF(1), SECTION, MATERIAL)
+    springs = [bf.Spring(beam.at(place), (0.0, 5.0)) for place in (0.75, 0.25, 0.25 + 1e-12, 0.25 + 2e-9, 0.75)]
+    supports = [*springs, bf.Clamp(beam.start), bf.Clamp(other.start)]
+    model = bf.Model([beam, other], supports, [bf.PointForce(beam.end, (0.0, -1.0))])
+    for point in (*(own.point for own in supports), beam.end, other.end, other.at(0.25)):
+        near = {id(own) for own in supports if own.point.beam is point.beam}
+        near &= {id(own) for own in supports if abs(own.point.fraction - point.fraction) < 1e-9}
+        assert {id(own) for own in model.supports_near(point, 1e-9)} == near
+    assert model.supports_near(beam.at(0.75), 1e-9) == [springs[0], springs[4]]

@@ -15,6 +15,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
+from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
@@ -69,7 +70,7 @@ def simulate(
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments, such as a start from which a support would jump.
+        Before the solve, for invalid arguments, such as a support that would jump from the start.
     ConvergenceError
         If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
         KeyboardInterrupt, carries the states so far as its `solution` too.
@@ -104,9 +105,10 @@ def simulate(
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    if start is not None:
-        require_on_supports(system, state[0], prescribed[0, 0])
-    put_onto_supports(system, state, prescribed[0])
+    require_on_supports(system, state[0], prescribed[0, 0], start is not None)
+    stopped = put_onto_supports(system, state, prescribed[0])
+    if stopped.any():
+        state[1] += impact(system, state[0], stopped)
     if len(system.connectors.multipliers):
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)

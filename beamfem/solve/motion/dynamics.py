@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.assembly.system import System, system_of
+from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
@@ -27,6 +27,7 @@ from beamfem.solve.motion.unresolved import courses, name_unresolved
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import start_state
+from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
 
@@ -90,7 +91,7 @@ def simulate(
             "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end) as "
             f"bf.Integrator describes it, got {shown(integrator)}"
         )
-    system = system_of(model, static=False)
+    system = system_to_solve(model, static=False)
     if own:
         refuse_what_own_steps_lack(system)
     tell_of_compilation()

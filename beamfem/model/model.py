@@ -22,6 +22,7 @@ from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
 from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
+from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
@@ -166,12 +167,18 @@ class Model(ModelOutputs):
         return self._units.of(unit)
 
     @cached_property
+    def made_of(self) -> MadeOf:
+        """What the meshes were made of and may change, see `made_of`."""
+        return made_of(self)
+
+    @cached_property
     def _numbers(self) -> dict[int, int]:
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
     def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
         require_room(self.beams)
+        _ = self.made_of
         connected = [point for connector in self.connectors for point in connector.points]
         fractions = [[fraction for fraction, _ in own] for own in nodes_asked(self)]
         grids = make_grids(self.beams, fractions)

@@ -140,7 +140,8 @@ def number_table(name: str, values: Any, columns: int) -> np.ndarray:
     except ValueError:  # rows of different lengths
         found = np.empty(0)
     if found.dtype.kind not in "iuf" or found.ndim != 2 or found.shape[1] != columns or not np.isfinite(found).all():
-        raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got {shown(values)}")
+        size = f" {found.shape}" if found.size else ""
+        raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got{size} {shown(values)}")
     if holds_truth_values(values):
         raise InputError(f"{name} must hold numbers only, got truth values among them")
     return found

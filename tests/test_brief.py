@@ -1,5 +1,7 @@
 """Results show themselves in a few lines, however much they hold."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -124,9 +126,21 @@ def test_a_sweep_prints_its_first_and_last_points_and_a_study_its_table(large):
 def test_arrays_are_shown_by_shape_and_range(results):
     said = repr(results["section forces"])
     assert said.startswith("SectionForces(arc_length=<array (160,) from 0 to 1>, normal=<array (2, 160) from ")
-    assert repr(results["path"]).endswith("; 0 limit points, 1 bifurcation)")
     assert "values=({'y': <array (1000,) from 0 to 0>}, {'y': <array " in repr(results["sweep"])
     assert "parameters=<300 items>" in repr(results["long sweep"])
+
+
+def test_a_path_and_its_states_show_load_factors(results):
+    path = results["path"]
+    (crossing,) = path.bifurcations
+    said = f"; 0 limit points, 1 bifurcation (load factor {crossing.load_factor:.6g}); ended because the path has"
+    assert said in repr(path)
+    assert repr(path.bifurcations) == (
+        f"(Bifurcation(load factor {crossing.load_factor:.6g}, not stable, of Model(1 beam, 1 support, 1 load)),)"
+    )
+    assert repr(path[0]) == "PathState(load factor 0, stable, of Model(1 beam, 1 support, 1 load))"
+    many = replace(path, limit_points=(path[1],) * 9)
+    assert f"9 limit points (load factor {', '.join([f'{path.at[1]:.6g}'] * 6)}, ...), 1 bifurc" in repr(many)
 
 
 def test_loaded_functions_are_shown_by_how_many_values_they_have(tmp_path):

@@ -1,5 +1,6 @@
 """Curves: closed forms of arc length and tangent, splines, and data that describes no curve."""
 
+import itertools
 import json
 import math
 import pickle
@@ -22,7 +23,7 @@ from beamfem.curves import (
     spline_through_hermite,
     without_removable_knots,
 )
-from beamfem.errors import SeveralTurnsWarning
+from beamfem.errors import InputError, SeveralTurnsWarning
 
 QUARTER = BSpline(2, (0, 0, 0, 1, 1, 1), ((2, 0), (2, 2), (0, 2)), (1, math.sqrt(0.5), 1))
 WAVE = BSpline(3, (0, 0, 0, 0, 0.2, 0.7, 1, 1, 1, 1), ((0, 0), (1, 2), (2, -1), (3, 1), (4, 0), (5, 1)))
@@ -296,3 +297,29 @@ def test_the_advice_for_other_splines_makes_a_close_cubic():
     middle = QUARTER.length * np.linspace(0, 1, 101)
     assert np.abs(np.hypot(*cubic.position(middle).T) - 2.0).max() < limit
     assert len(cubic.hermite()[0]) == 17
+
+
+def test_one_arc_length_gives_one_point_and_one_tangent(curve):
+    at = 0.3 * curve.length
+    for method in (curve.position, curve.tangent):
+        one = method(at)
+        assert one.shape == (2,)
+        assert np.array_equal(one, method(np.array([at]))[0])
+        assert np.array_equal(method([0, at]), method(np.array([0.0, at])))
+
+
+@pytest.mark.parametrize("beyond", [-0.01, 1.01, math.nan])
+def test_arc_lengths_beyond_the_ends_are_refused(curve, beyond):
+    """A line would go on, a spline stay at its end: neither is a point of the beam."""
+    s = beyond * curve.length
+    for method, given in itertools.product((curve.position, curve.tangent), (s, np.array([0.0, s]))):
+        with pytest.raises(InputError, match=f"arc lengths along this {type(curve).__name__} go from 0 to "):
+            method(given)
+    with pytest.raises(InputError, match=r"arc_length must be a number, or an array \(n,\) of numbers, got 'end'"):
+        curve.position("end")
+
+
+def test_arc_lengths_at_the_ends_may_have_round_off(curve):
+    last = curve.length * (1.0 + 1e-15)
+    assert curve.position(last) == pytest.approx(curve.position(curve.length), abs=1e-12)
+    assert curve.position(-1e-16) == pytest.approx(curve.position(0.0), abs=1e-12)

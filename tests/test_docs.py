@@ -57,7 +57,7 @@ def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
 
 def test_a_result_with_the_form_load_of_the_page_is_saved(tmp_path, monkeypatch):
     """Once its class stands in a module, as in a script."""
-    page = ROOT / "docs" / "extending.md"
+    page = ROOT / "docs" / "extending" / "connectors.md"
     module = ModuleType("page")
     monkeypatch.setitem(sys.modules, "page", module)
     for block in blocks_of(page.read_text()):
@@ -85,12 +85,12 @@ def test_what_a_page_names_exists(page):
 
 def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
     page = ROOT / "docs" / "extending.md"
-    rows = re.findall(
-        r"^\| [^|]* \| `(\w+)` \| (?:`(tests/\w+\.py)`|\[below\][^|]*) \| (\d+) \|$", page.read_text(), re.M
-    )
+    place = r"(?:`(tests/\w+\.py)`|\[\w+\]\(([\w/]+\.md)#[^|]*)"
+    rows = re.findall(rf"^\| [^|]* \| `(\w+)` \| {place} \| (\d+) \|$", page.read_text(), re.M)
     assert len(rows) == 15
-    for name, file, lines in rows:
-        code = (ROOT / file).read_text() if file else "\n".join(block.code for block in blocks_of(page.read_text()))
+    for name, file, other, lines in rows:
+        text = (ROOT / file).read_text() if file else (page.parent / other).read_text()
+        code = text if file else "\n".join(block.code for block in blocks_of(text))
         parts = [part for part in ast.parse(code).body if getattr(part, "name", "") == name]
         assert [part.end_lineno - part.lineno + 1 for part in parts] == [int(lines)], name
 

@@ -104,7 +104,7 @@ MISTAKES = {
     "curve without length": ("end = [1, 0]", "end = [0, 0]", 16, "beams.arm.curve.start", "two different points"),
     "curve of words": ("[1, 0]", '"right"', 16, "beams.arm.curve.end", "two numbers"),
     "point of no beam": ('"arm.start"', '"leg.start"', 24, "supports[1].point", "there is no beam 'leg'"),
-    "no point": ('"arm.start"', '"arm"', 24, "supports[1].point", "NAME.end"),
+    "no point": ('"arm.start"', '"arm"', 24, "supports[1].point", "arm.end"),
     "point beyond": ('"arm.start"', '"arm.at(1.5)"', 24, "supports[1].point", "between 0 and 1"),
     "point at words": ('"arm.start"', '"arm.at(half)"', 24, "supports[1].point", "must be a number"),
     "one table of many": ("[[supports]]", "[supports]", 22, "supports", "array of tables"),
@@ -150,7 +150,7 @@ MISTAKES = {
         "analysis.newton.tolerance",
         "greater than zero",
     ),
-    "material of a number": ('= "steel"', "= 3", 20, "beams.arm.material", "must be a name or a table"),
+    "material of a number": ('= "steel"', "= 3", 20, "beams.arm.material", "must be the name of a material"),
     "kind of a number": ('kind = "rectangle"', "kind = 3", 11, "sections.square.kind", "must be a text"),
     "curve of a list": ('{ kind = "line", start = [0, 0], end = [1, 0] }', "[0, 1]", 16, "beams.arm.curve", "table"),
     "load on no beam": (

@@ -55,9 +55,12 @@ class Connector:
         with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; the iteration recovers from it
             found = np.asarray(called(f"force of {self.name}", self.item.force, at))
         if found.shape != (len(self.dofs) + len(self.own),) or found.dtype.kind not in "fic":
+            count = len(self.dofs) + len(self.own)
+            flat = "; .ravel() makes it flat" if found.size == count and found.ndim > 1 else ""
             raise InputError(
-                f"force of {self.name} must return {len(self.dofs) + len(self.own)} numbers, fx, fy and moment at each "
-                f"of its {len(self.reference)} points and {len(self.own)} conditions, got {found.dtype} {found.shape}"
+                f"force of {self.name} must return {count} numbers, fx, fy and moment at each of its "
+                f"{len(self.reference)} points and {len(self.own)} conditions, as an array ({count},), got "
+                f"{found.dtype} {found.shape}{flat}"
             )
         return found
 
@@ -75,7 +78,8 @@ class Connector:
         found = np.asarray(called(f"energy of {self.name}", self.item.energy, at))
         if found.shape != (2,) or found.dtype.kind not in "fic":
             raise InputError(
-                f"energy of {self.name} must return two numbers, kinetic energy and potential, got {found}"
+                f"energy of {self.name} must return two numbers, kinetic and potential energy in this order, "
+                f"got {found}"
             )
         kinetic, potential = found.tolist()
         return kinetic, potential

@@ -58,7 +58,7 @@ def require_energies(item: Connector) -> None:
     if not _same(item, force, slope):
         raise InputError(
             f"{item.name} says that it is conservative, but the potential of its energy() is not that of its force: "
-            f"the force is {force}, the derivative of the potential {slope}"
+            f"the force is {force}, the derivative of the potential, the second number of energy(), {slope}"
         )
     mass = item.tangent(moving, _TIMES[0], _gravity(item), (0.0, 0.0, 1.0))[:number, :number]
     inertia, momentum = mass @ moving[1][item.dofs], _momentum(item, moving) - _momentum(item, resting)

@@ -5,14 +5,16 @@ unit vector or an angle has an error eps, whatever the size of the model.
 """
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from beamfem.element.coordinates import labels
-from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, STRUCTURAL, Block, PointLoads, Springs
+from beamfem.kernels.block import ELASTIC_LINE, SHEAR_RIGID, STRETCH, Block, PointLoads, Springs
+from beamfem.physics.measures import MEASURES, evaluate
 
+_COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
 _FEW = 2000  # nodes; the entries of larger blocks are not cached
 
 
@@ -132,22 +134,35 @@ def _along_and_across(count: int, per_node: int) -> tuple[np.ndarray, np.ndarray
     return slot[slot % per_node < per_node - 1], slot[per_node - 1 :: per_node]
 
 
-def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> tuple[np.ndarray, ...]:
+def _strain_errors(measures: int, of_r: np.ndarray, of_d: np.ndarray, of_e: np.ndarray) -> list[np.ndarray]:
     """Return the errors of the strain measures for errors of r0', d and the third argument, which are of size one."""
-    if measures == STRUCTURAL:
-        return of_r + of_d, of_r + of_d, of_e, of_d
-    if measures == ELASTIC_LINE:
-        return of_r, of_e, of_r + of_d, of_d
-    return of_r, of_e, np.zeros_like(of_r), of_d, of_r + of_d, of_e
+    return [_total((of_r, of_d, of_e), vectors) for vectors in depends(measures)[0]]
 
 
-def _forces(measures: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _forces(measures: int, s: np.ndarray) -> list[np.ndarray]:
     """Return the sizes of the forces on r0', d and the third argument for stress resultants (ns, nc, nq)."""
-    if measures == STRUCTURAL:
-        return s[0] + s[1], s[0] + s[1] + s[3], s[2]
-    if measures == ELASTIC_LINE:
-        return s[0] + s[2], s[2] + s[3], s[1]
-    return s[0] + s[4], s[3] + s[4], s[1] + s[5]
+    return [_total(s, strains) for strains in depends(measures)[1]]
+
+
+def _total(parts: Sequence[np.ndarray] | np.ndarray, chosen: tuple[int, ...]) -> np.ndarray:
+    """Return the sum of the chosen parts, zero without any."""
+    if not chosen:
+        return np.zeros_like(parts[0])
+    result = parts[chosen[0]]
+    for number in chosen[1:]:
+        result = result + parts[number]
+    return result
+
+
+@cache
+def depends(measures: int) -> tuple[tuple[tuple[int, ...], ...], tuple[tuple[int, ...], ...]]:
+    """Return on which of r0', d and a third vector that is small each strain measure depends, and the reverse."""
+    vectors = np.array([[0.8, 0.3], [-0.4, 0.9], [0.0, 0.0]])
+    steps = vectors + _COMPLEX_STEP * 1j * np.eye(6).reshape(6, 3, 2)
+    slopes = evaluate(MEASURES[measures], *np.moveaxis(steps, 1, 0)).imag.reshape(3, 2, -1)
+    found = np.any(slopes != 0.0, axis=1)
+    strains, on_vectors = ([tuple(np.flatnonzero(row).tolist()) for row in rows] for rows in (found.T, found))
+    return tuple(strains), tuple(on_vectors)
 
 
 def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:

@@ -51,11 +51,12 @@ def run(
         from beamfem.assembly.compiled import tell_of_compilation
         from beamfem.cli.modelfile import read_model_file
         from beamfem.cli.modelfile.files import require_saved
-        from beamfem.cli.modelfile.phrases import told_in_keys
+        from beamfem.cli.modelfile.phrases import told_in_keys, warned_in_keys
         from beamfem.cli.targets import require_target
         from beamfem.errors import ConvergenceError
 
-        job = read_model_file(model)
+        with warned_in_keys():
+            job = read_model_file(model)
         if job.varied:
             run_sweep(job, out, vtk, plot, colour, as_json, quiet)
             return

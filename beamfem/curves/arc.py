@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.curves.curve import warn_of_turns
+from beamfem.curves.curve import along, warn_of_turns
 from beamfem.errors import InputError
 from beamfem.validation import convert, finite, positive, vector
 
@@ -64,11 +64,13 @@ class Arc:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         angle = self._angle(arc_length)
         return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         angle = self._angle(arc_length)

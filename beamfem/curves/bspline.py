@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.brief import brief
 from beamfem.curves.arc_length import ArcLength, measure
-from beamfem.curves.curve import numbers, points, turned, unit
+from beamfem.curves.curve import along, numbers, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.validation import convert, count, optional
@@ -76,10 +76,12 @@ class BSpline:
         jumps = turned(unit(self.derivative(np.nextafter(ends, -np.inf))), unit(self.derivative(ends)))
         return tuple(self._arc_length.at(ends[jumps]).tolist())
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self.evaluate(self.parameter(arc_length))
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return unit(self.derivative(self.parameter(arc_length)))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.brief import brief
-from beamfem.curves.curve import GAP, Curve, turned
+from beamfem.curves.curve import GAP, Curve, along, turned
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.validation import fulfils, items, shown
@@ -69,10 +69,12 @@ class Chain:
                 found.append(joint)
         return tuple(sorted(float(corner) for corner in found))
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self._each(arc_length, lambda i, arc: self.curves[i].position(arc) + self._moves[i])
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return self._each(arc_length, lambda i, arc: self.curves[i].tangent(arc))

@@ -1,12 +1,12 @@
 """The protocol of curves, and functions that the kinds of curve share."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from beamfem.errors import SeveralTurnsWarning, warn
-from beamfem.validation import finite, items, vector
+from beamfem.errors import InputError, SeveralTurnsWarning, warn
+from beamfem.validation import finite, items, shown, vector
 
 # A smaller rotation of the tangent [rad] is round-off of the data: its square is negligible compared with 1.
 CORNER = 1e-8
@@ -41,18 +41,23 @@ class Curve(Protocol):
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         ...
 
-    def position(self, arc_length: np.ndarray) -> np.ndarray:
+    def position(self, arc_length: np.ndarray | float) -> np.ndarray:
         """Return the positions at given arc lengths.
 
         Parameters
         ----------
-        arc_length : array, [m], (n,)
-            Arc lengths from the start, from 0 to `length`.
+        arc_length : array or float, [m], (n,)
+            Arc lengths from the start, from 0 to `length`, or one of them.
 
         Returns
         -------
         array, [m], (n, 2)
-            Positions (x, y).
+            Positions (x, y); of one arc length, (2,).
+
+        Raises
+        ------
+        InputError
+            For arc lengths beyond the ends.
 
         Examples
         --------
@@ -62,18 +67,23 @@ class Curve(Protocol):
         """
         ...
 
-    def tangent(self, arc_length: np.ndarray) -> np.ndarray:
+    def tangent(self, arc_length: np.ndarray | float) -> np.ndarray:
         """Return the unit tangents at given arc lengths.
 
         Parameters
         ----------
-        arc_length : array, [m], (n,)
-            Arc lengths from the start, from 0 to `length`.
+        arc_length : array or float, [m], (n,)
+            Arc lengths from the start, from 0 to `length`, or one of them.
 
         Returns
         -------
         array, [-], (n, 2)
-            Unit tangents; at a corner, the tangent after it.
+            Unit tangents; at a corner, the tangent after it. Of one arc length, (2,).
+
+        Raises
+        ------
+        InputError
+            For arc lengths beyond the ends.
 
         Examples
         --------
@@ -81,6 +91,25 @@ class Curve(Protocol):
         array([[0.6, 0.8]])
         """
         ...
+
+
+def along(method: Callable[[Any, np.ndarray], np.ndarray]) -> Callable[[Any, np.ndarray | float], np.ndarray]:
+    """Return a method of a curve that takes one arc length as well, and refuses those beyond the ends."""
+
+    def evaluate(self: Any, arc_length: np.ndarray | float) -> np.ndarray:
+        s = np.asarray(arc_length)
+        if s.dtype.kind not in "iuf" or s.ndim > 1:
+            raise InputError(f"arc_length must be a number, or an array (n,) of numbers, got {shown(arc_length)}")
+        length = self.length
+        if s.size and not (s.min() >= -GAP * length and s.max() <= (1.0 + GAP) * length):
+            kind = type(self).__name__
+            raise InputError(f"arc lengths along this {kind} go from 0 to {length:g}, got {shown(arc_length)}")
+        return method(self, s[None])[0] if s.ndim == 0 else method(self, s)
+
+    # without __wrapped__, so that `keywords` checks it as the others
+    for name in ("__name__", "__qualname__", "__doc__", "__module__", "__annotations__"):
+        setattr(evaluate, name, getattr(method, name))
+    return evaluate
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

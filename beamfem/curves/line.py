@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.curves.curve import along
 from beamfem.errors import InputError
 from beamfem.validation import vector
 
@@ -48,11 +49,13 @@ class Line:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
-        fraction = np.asarray(arc_length)[:, None] / self.length
+        fraction = arc_length[:, None] / self.length
         return (1.0 - fraction) * np.array(self.start) + fraction * np.array(self.end)
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         direction = (np.array(self.end) - np.array(self.start)) / self.length

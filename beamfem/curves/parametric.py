@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.curves.arc_length import ArcLength, measure
 from beamfem.curves.bspline import BSpline
 from beamfem.curves.chebyshev import DEGREE, Panels, approximate, bernstein
-from beamfem.curves.curve import points, turned, unit
+from beamfem.curves.curve import along, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.validation import called, convert, finite, shown, vector
@@ -72,10 +72,12 @@ class Parametric:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return ()
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         return self._panels.columns(slice(0, 2))(self._arc_length.parameter(arc_length))
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return unit(self._rate(self._arc_length.parameter(arc_length)))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.brief import brief
-from beamfem.curves.curve import points, turned, unit
+from beamfem.curves.curve import along, points, turned, unit
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 
@@ -52,6 +52,7 @@ class Polyline:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
         return tuple(self._ends[1:-1][turned(self._directions[:-1], self._directions[1:])].tolist())
 
+    @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
         piece = self._piece(arc_length)
@@ -59,6 +60,7 @@ class Polyline:
         table = np.array(self.points)
         return (1.0 - fraction) * table[piece] + fraction * table[piece + 1]
 
+    @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
         return self._directions[self._piece(arc_length)]

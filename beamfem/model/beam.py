@@ -80,11 +80,12 @@ class Beam:
         else:
             object.__setattr__(self, "elements", _fractions(self.elements))
         if not isinstance(self.element, Element):
-            raise InputError(f"element of a Beam must be an Element, got {shown(self.element)}")
+            raise InputError(f"element of a Beam must be an Element, such as CRBF(order=3), got {shown(self.element)}")
         if not fulfils(self.curve, Curve):
             raise InputError(f"curve of a Beam must be a curve such as Line, got {shown(self.curve)}")
         if self.material is not None and not isinstance(self.material, Material):
-            raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}")
+            swapped = "; the section comes before the material" if isinstance(self.section, Material) else ""
+            raise InputError(f"material of a Beam must be a Material, got {shown(self.material)}{swapped}")
         if self.name is not None and not text("name of a Beam", self.name).strip():
             raise InputError("name of a Beam must not be empty; leave it out for a beam without one")
         if isinstance(self.section, type) or not (self.prismatic or callable(self.section)):
@@ -239,7 +240,9 @@ class Point:
             raise InputError(f"beam of a Point must be a Beam, got {shown(self.beam)}")
         fraction = finite("fraction", self.fraction)
         if not 0.0 <= fraction <= 1.0:
-            raise InputError(f"the fraction along a beam lies between 0 and 1, got {fraction}")
+            length = self.beam.curve.length
+            hint = f"; an arc length s is at the fraction s / {length:g}" if 1.0 < fraction <= length else ""
+            raise InputError(f"the fraction along a beam lies between 0 and 1, got {fraction}{hint}")
         object.__setattr__(self, "fraction", fraction)
 
     @property
@@ -257,6 +260,14 @@ def require_point(kind: str, point: object, name: str = "point") -> None:
     """Raise InputError if the place given for a support, load or joint is not a point."""
     if not isinstance(point, Point):
         raise InputError(f"{name} of {kind} must be a Point, such as beam.end or beam.at(0.5), got {shown(point)}")
+
+
+def require_point_of(item: object, name: str = "point") -> None:
+    """Raise InputError if a field of a user-defined part is missing, or is not a point."""
+    kind = type(item).__name__
+    if not hasattr(item, name):
+        raise InputError(f"{kind} has no field {name}; it needs one, for a Point such as beam.end or beam.at(0.5)")
+    require_point(kind, getattr(item, name), name)
 
 
 def require_beam(kind: str, beam: object) -> None:

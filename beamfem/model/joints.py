@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from beamfem.model.beam import Point, require_point
+from beamfem.model.beam import Point, require_point_of
 from beamfem.model.shapes import Ring
 
 
@@ -25,9 +25,8 @@ class Joint:
     b: Point
 
     def __post_init__(self) -> None:
-        kind = type(self).__name__
-        require_point(kind, getattr(self, "a", None), "a")
-        require_point(kind, getattr(self, "b", None), "b")
+        require_point_of(self, "a")
+        require_point_of(self, "b")
 
     def shapes(self) -> tuple[Ring, ...]:
         """Return the shapes to draw: a ring if the joint is a hinge, otherwise none."""

@@ -10,7 +10,7 @@ import numpy as np
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along, require_names
-from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.returned import forces_of
 from beamfem.model.shapes import Acceleration, Force, ForcesAlong, LoadShape, Moment, Placed, Strains, rotated
 from beamfem.validation import called, convert, finite, flag, function_of_one, function_value, shown, squared
@@ -90,7 +90,7 @@ class PointLoad(Load):
     follower: bool = False
 
     def __post_init__(self) -> None:
-        require_point(type(self).__name__, getattr(self, "point", None))
+        require_point_of(self)
         super().__post_init__()
         flag(f"follower of {type(self).__name__}", self.follower)
 

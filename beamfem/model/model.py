@@ -24,6 +24,7 @@ from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.misplaced import beam_like, listed, refused
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
 from beamfem.model.nodes_asked import nodes_asked
@@ -34,7 +35,7 @@ from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
-from beamfem.validation import items, shown
+from beamfem.validation import shown
 
 _KINDS: dict[str, tuple[type, ...]] = {
     "beams": (Beam,),
@@ -102,11 +103,11 @@ class Model(ModelOutputs):
     def __post_init__(self) -> None:
         _ = self._units
         for name, kinds in _KINDS.items():
-            given = tuple(items(f"{name} of {type(self).__name__}", getattr(self, name)))
+            given = listed(name, getattr(self, name), _KINDS)
             object.__setattr__(self, name, given)
             for item in given:
                 if not isinstance(item, kinds):
-                    raise InputError(f"{name} of a Model cannot hold {shown(item)}, but {_named(kinds)}")
+                    raise InputError(refused(name, item, _KINDS))
                 kind: Any = type(item)
                 if name != "connectors" and not (is_dataclass(item) and kind.__dataclass_params__.frozen):
                     raise InputError(f"{kind.__name__}, one of the {name} of a Model, must be a frozen dataclass")
@@ -134,7 +135,8 @@ class Model(ModelOutputs):
         beam = place.beam if isinstance(place, Point) else place
         if beam is not None and id(beam) not in self._numbers:
             where = f" at {place}" if isinstance(place, Point) else ""
-            raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; add it to beams")
+            remedy = ", or ".join(filter(None, ("add it to beams", beam_like(self.beams, beam))))
+            raise UnknownPointError(f"{kind}{where} is on a beam that is not in this model; {remedy}")
 
     def _require_touches(self) -> None:
         """Raise InputError for the first joint whose points do not coincide."""
@@ -258,8 +260,11 @@ class Model(ModelOutputs):
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
         if id(beam) not in self._numbers:
-            raise UnknownPointError(f"the beam {beam!r} is not in this model")
+            raise self._unknown(f"the beam {beam!r} is not in this model", beam)
         return self._numbers[id(beam)]
+
+    def _unknown(self, message: str, beam: Beam) -> UnknownPointError:
+        return UnknownPointError("; ".join(filter(None, (message, beam_like(self.beams, beam)))))
 
     def mesh_of(self, point: Point) -> BeamMesh:
         """Return the mesh that a point lies on.
@@ -269,7 +274,7 @@ class Model(ModelOutputs):
         if not isinstance(point, Point):
             raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")
         if id(point.beam) not in self._numbers:
-            raise UnknownPointError(f"the point {point} is on a beam that is not in this model")
+            raise self._unknown(f"the point {point} is on a beam that is not in this model", point.beam)
         return self.meshes[self._numbers[id(point.beam)]]
 
     @cached_property
@@ -321,15 +326,6 @@ class Model(ModelOutputs):
 
     def _repr_html_(self) -> str:
         return offered(Model._repr_html_)(self)
-
-
-def _named(kinds: Sequence[type]) -> str:
-    """Return the names of the package's classes of some kinds, as a list in words."""
-    derived: list[Sequence[type]] = [kind.__subclasses__() or [kind] for kind in kinds if kind is not Contribution] or [
-        kinds
-    ]
-    names = [each.__name__ for some in derived for each in some if each.__module__.startswith("beamfem.")]
-    return " or ".join(", ".join(dict.fromkeys(names)).rsplit(", ", 1))  # slots make a class twice
 
 
 def block_key(beam: Beam) -> tuple[Element, Hashable]:

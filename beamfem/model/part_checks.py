@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.errors import InputError
 from beamfem.model.along_beam import AlongBeam, check_along
-from beamfem.model.beam import require_beam, require_point
+from beamfem.model.beam import require_beam, require_point_of
 from beamfem.model.imposed_strains import require_followed
 from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
@@ -42,8 +42,8 @@ def require_part(part: Load | Support | Joint) -> None:
         _require_line_support(part)
     elif isinstance(part, Joint):
         kind = type(part).__name__
-        require_point(kind, getattr(part, "a", None), "a")
-        require_point(kind, getattr(part, "b", None), "b")
+        require_point_of(part, "a")
+        require_point_of(part, "b")
         flag(f"keeps_angle of {kind}", part.keeps_angle)
 
 
@@ -57,7 +57,7 @@ def _require_load(load: Load) -> None:
     if isinstance(load, BodyLoad):
         squared(vector)(f"vector of {kind}", getattr(load, "vector", None))
     elif isinstance(load, PointLoad):
-        require_point(kind, getattr(load, "point", None))
+        require_point_of(load)
         flag(f"follower of {kind}", load.follower)
         _require_value(load)
     elif isinstance(load, AlongBeam):
@@ -69,6 +69,8 @@ def _require_load(load: Load) -> None:
 def _require_value(load: PointLoad) -> None:
     what = f"value of {type(load).__name__}"
     given = called(what, lambda: load.value)
+    if callable(given):
+        raise InputError(f"{what} must be a field or a property, not a method")
     found = [squared(finite)(what, number) for number in items(what, given)]
     if len(found) != 3:
         raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(given)}")
@@ -91,7 +93,7 @@ def _require_along(load: Load, arc_length: np.ndarray) -> None:
 
 def _require_point_support(support: PointSupport) -> None:
     kind = type(support).__name__
-    require_point(kind, getattr(support, "point", None))
+    require_point_of(support)
     prescribed = _by_direction(f"prescribed of {kind}", support.prescribed, (*DIRECTIONS, "normal"))
     springs = _by_direction(f"springs of {kind}", support.springs, DIRECTIONS)
     if not prescribed and not springs:

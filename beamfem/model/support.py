@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from beamfem.model.beam import Beam, Point, require_beam, require_point
+from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.shapes import Constraint, Springs, SpringsAlong, SupportShape
 
 DIRECTIONS = ("ux", "uy", "rotation")
@@ -39,7 +39,7 @@ class PointSupport(Support):
     point: Point
 
     def __post_init__(self) -> None:
-        require_point(type(self).__name__, getattr(self, "point", None))
+        require_point_of(self)
 
     def prescribed(self) -> Mapping[str, Value]:
         """Return the prescribed values by direction; no direction unless overridden.

@@ -1,11 +1,11 @@
 """An equilibrium path: its states, its limit points and its bifurcations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
 
-from beamfem.brief import brief
 from beamfem.model.beam import Beam, Point
 from beamfem.once import cached_property
 from beamfem.results.fitting import require_crossing
@@ -13,6 +13,8 @@ from beamfem.results.postprocess import Components, Fields, SectionForces
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.results.turns import start_rotations
+
+_SHOWN = 6  # critical points of each kind in the text of a path
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +37,9 @@ class PathState(State):
 
     stability: bool | None = field(default=None, kw_only=True)
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        known = {True: ", stable", False: ", not stable", None: ""}[self.stability]
+        return f"{type(self).__name__}(load factor {self.at:.6g}{known}, of {self.model!r})"
 
     @property
     def load_factor(self) -> float:
@@ -178,7 +182,7 @@ class Bifurcation(PathState):
     mode: np.ndarray
     tangent: np.ndarray
 
-    __repr__ = brief
+    __repr__ = PathState.__repr__
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -212,9 +216,8 @@ class Path(Solution):
     bifurcations: tuple[Bifurcation, ...] = ()
 
     def __repr__(self) -> str:
-        counts = (("limit point", len(self.limit_points)), ("bifurcation", len(self.bifurcations)))
-        found = ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for name, count in counts)
-        return f"{super().__repr__()[:-1]}; {found})"
+        found = f"{_listed('limit point', self.limit_points)}, {_listed('bifurcation', self.bifurcations)}"
+        return f"{super().__repr__()[:-1]}; {found}; ended because {self.statistics.ended})"
 
     @overload
     def __getitem__(self, row: int) -> PathState: ...
@@ -228,6 +231,15 @@ class Path(Solution):
         stability = None if self.stability is None else bool(self.stability[row])
         parts = (self.p[row], self.v[row], self.a[row], float(self.at[row]), self.model)
         return PathState(*parts, stability=stability, turned=start_rotations(self)[row])
+
+
+def _listed(name: str, points: Sequence[PathState]) -> str:
+    """Return critical points by number and load factor, the first few of many."""
+    if not points:
+        return f"0 {name}s"
+    factors = ", ".join(f"{point.at:.6g}" for point in points[:_SHOWN])
+    more = ", ..." if len(points) > _SHOWN else ""
+    return f"{len(points)} {name}{'s' * (len(points) > 1)} (load factor {factors}{more})"
 
 
 def _first(value: Any) -> Any:

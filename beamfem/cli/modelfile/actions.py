@@ -127,8 +127,9 @@ def model(root: Table, known: Structure, function: Named, moving: bool) -> Model
     ]
     whole = Model(all_beams, supports, loads, [*inner, *joints], connectors)
     if "units" in root.values:
+        units = root.text("units")
         try:
-            whole = replace(whole, units=root.text("units"))
+            whole = replace(whole, units=units)
         except InputError as error:
             raise root.error(str(error), "units") from None
     _require_compatible(root, whole, places, not moving)

@@ -6,7 +6,7 @@ from typing import Any
 
 from beamfem.cli.modelfile.drawing import from_drawing
 from beamfem.cli.modelfile.own_parts import build_own_or_kind, own_code
-from beamfem.cli.modelfile.table import Kinds, Reader, Table, build_kind
+from beamfem.cli.modelfile.table import Kinds, Reader, Table, build_kind, in_braces
 from beamfem.curves import Arc, BSpline, Chain, Line, Parametric, Polyline, elliptic_arc, spline_through_hermite
 from beamfem.model.grading import graded
 
@@ -37,6 +37,9 @@ def curve(table: Table, key: str) -> Any:
         return drawing.source.file.parent / drawing.text(name)
 
     readers: dict[str, Reader] = {"curves": parts, "file": file, "function": own_code, "derivative": own_code}
+    kind = table.values[key]
+    if isinstance(kind, str) and kind in CURVES:
+        raise table.error(f"must be a table: {in_braces(kind, CURVES[kind])}", key)
     return make(table.table(key))
 
 

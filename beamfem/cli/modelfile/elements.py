@@ -49,7 +49,7 @@ def elements(root: Table) -> Named:
     """Return the elements of a file; presets need no entry of their own."""
 
     def named(what: str, kinds: Kinds) -> Named:
-        return Named(what, {}, {}, lambda table: build_own_or_kind(table, kinds, {}, {}), tuple(kinds))
+        return Named(what, {}, {}, lambda table: build_own_or_kind(table, kinds, {}, {}), kinds, tuple(kinds))
 
     readers: dict[str, Reader] = {
         "forces": named("kind of forces", FORCES),
@@ -61,4 +61,4 @@ def elements(root: Table) -> Named:
         return build_kind(table, ELEMENTS, readers)
 
     short = tuple(name for name in ELEMENTS if name not in _NEED_MORE)
-    return Named("element", root.named("elements"), {}, make, short)
+    return Named("element", root.named("elements"), {}, make, ELEMENTS, short)

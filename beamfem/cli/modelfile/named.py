@@ -1,10 +1,10 @@
 """Named parts of a model file, and numbers or functions given by name."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from beamfem.cli.modelfile.table import Reader, Table, shown
+from beamfem.cli.modelfile.table import Kinds, Reader, Table, in_braces, shown
 from beamfem.validation import nearest
 
 
@@ -16,6 +16,7 @@ class Named:
     tables: Mapping[str, Table]
     made: dict[str, Any]
     make: Callable[[Table], Any]
+    kinds: Kinds = field(default_factory=dict)
     short: tuple[str, ...] = ()  # kinds that need no further keys, so that their name is enough
 
     def __call__(self, table: Table, key: str) -> Any:
@@ -24,12 +25,17 @@ class Named:
         if isinstance(value, dict):
             return self.make(table.table(key))
         if not isinstance(value, str):
-            raise table.error(f"must be a name or a table, got {shown(value)}", key)
+            article = "an" if self.kind[0] in "aeiou" else "a"
+            raise table.error(f"must be the name of {article} {self.kind}, or a table, got {shown(value)}", key)
         if value in self.tables:
             return self.part(value)
         if value in self.short:
             return self.make(Table(table.source, (*table.path, key), {"kind": value}))
-        raise table.error(f"there is no {self.kind} {value!r}; {nearest(value, [*self.tables, *self.short])}", key)
+        if value in self.kinds:
+            raise table.error(f"the kind {value!r} needs further keys: {in_braces(value, self.kinds[value])}", key)
+        known = [*self.tables, *self.short]
+        right = nearest(value, known) if known else f"the file has none; they are headed [{self.kind}s.NAME]"
+        raise table.error(f"there is no {self.kind} {value!r}; {right}", key)
 
     def part(self, name: str) -> Any:
         if name not in self.made:

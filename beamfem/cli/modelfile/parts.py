@@ -45,7 +45,7 @@ def sections(root: Table, material: Named, function: Named) -> Named:
     def make(table: Table) -> Any:
         return build_own_or_kind(table, kinds, readers, types)
 
-    return Named("section", root.named("sections"), {}, make)
+    return Named("section", root.named("sections"), {}, make, kinds)
 
 
 def functions(root: Table) -> Named:
@@ -55,5 +55,5 @@ def functions(root: Table) -> Named:
         types: dict[Any, Reader] = {Callable: value_by(found)}
         return build_own_or_kind(table, FUNCTIONS, {"function": own_code}, types)
 
-    found = Named("function", root.named("functions"), {}, make)
+    found = Named("function", root.named("functions"), {}, make, FUNCTIONS)
     return found

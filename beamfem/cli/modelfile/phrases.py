@@ -1,5 +1,6 @@
 """Messages of the library in the keys of model files: where they name Python, a phrase of TOML takes its place."""
 
+import math
 import re
 import sys
 import warnings
@@ -19,6 +20,7 @@ _PHRASES = (
     ("start from what solve_static finds with this support", 'take `start = "static"` with this support'),
     ("add a PointForce of (0, 0)", 'add a load of kind "force" with `vector = [0, 0]`'),
     ("let a Prescribed support move", 'let a support of kind "prescribed" move'),
+    ("add a Rigid or a Hinge", 'add one to [[joints]], of kind "rigid" or "hinge"'),
     (
         "supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it (Rigid instead of Hinge); "
         "without them, use simulate",
@@ -108,6 +110,7 @@ _NAMES = {
     "simulate": '`kind = "dynamics"`',
 }
 _NAME = re.compile(r"\b(" + "|".join(_NAMES) + r")\b")
+_RADIANS = re.compile(r"np\.radians\(([^()]+)\)")
 _ARGUMENT = re.compile(r"\b(save_every)=(?=\d)")
 
 
@@ -115,23 +118,31 @@ def in_keys(message: str) -> str:
     """Return a message of the library as a user of model files reads it."""
     for python, toml in _PHRASES:
         message = message.replace(python, toml)
+    message = _RADIANS.sub(lambda found: f"{math.radians(float(found[1])):.12g}", message)
     return _ARGUMENT.sub(r"\1 = ", _NAME.sub(lambda found: _NAMES[found[0]], message))
 
 
 @contextmanager
+def warned_in_keys() -> Iterator[None]:
+    """Tell warnings of the library in the keys of model files, without lines of Python."""
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(message: Any, category: Any, *place: Any) -> None:
+            if category.__module__ == errors.__name__ or category is UserWarning:
+                print(f"warning: {in_keys(str(message))}", file=sys.stderr)
+            else:
+                others(message, category, *place)
+
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+@contextmanager
 def told_in_keys() -> Iterator[None]:
-    """Let what fails say so in the keys of model files, and tell its warnings without lines of Python."""
+    """Let what fails say so in the keys of model files, and its warnings too."""
     try:
-        with warnings.catch_warnings():
-            others = warnings.showwarning
-
-            def show(message: Any, category: Any, *place: Any) -> None:
-                if category.__module__ == errors.__name__ or category is UserWarning:
-                    print(f"warning: {in_keys(str(message))}", file=sys.stderr)
-                else:
-                    others(message, category, *place)
-
-            warnings.showwarning = show  # type: ignore[assignment]
+        with warned_in_keys():
             yield
     except BeamfemError as error:
         error.args = tuple(in_keys(part) if isinstance(part, str) else part for part in error.args)

@@ -76,7 +76,10 @@ class Places:
         text = table.text(key)
         found = _POINT.fullmatch(text.strip())
         if not found:
-            raise table.error(f'must be a point such as "NAME.start", "NAME.end" or "NAME.at(0.5)", got "{text}"', key)
+            prefix = text.partition(".")[0]
+            name = prefix if prefix in self.beams else next(iter(self.beams), "NAME")
+            such = f'"{name}.start", "{name}.end" or "{name}.at(0.5)"'
+            raise table.error(f'must be a point such as {such}, got "{text}"', key)
         try:
             if found["beam"] in self.frames and found["fraction"]:
                 return self.frames[found["beam"]].at(*_numbers(table, key, found["fraction"], 2))

@@ -1,6 +1,5 @@
 """Read a model file."""
 
-import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -20,6 +19,7 @@ from beamfem.cli.modelfile.outputs import Output, outputs
 from beamfem.cli.modelfile.phrases import told_in_keys
 from beamfem.cli.modelfile.places import moved
 from beamfem.cli.modelfile.table import Source, Table
+from beamfem.cli.modelfile.toml_faults import in_words, line_of
 from beamfem.cli.modelfile.varied import Varied, varied
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
@@ -120,9 +120,7 @@ def read_model_file(path: str | PathLike[str]) -> Job:
         lines = key_lines(text)
     except tomllib.TOMLDecodeError as error:
         message = str(error)
-        place = re.search(r"\(at line (\d+), column \d+\)", message)
-        line = int(place[1]) if place else text.count("\n") + 1
-        raise ModelFileError(f"not valid TOML: {message}", file, line, None) from None
+        raise ModelFileError(f"not valid TOML: {in_words(message, text)}", file, line_of(message, text), None) from None
     except ValueError as error:  # whole numbers of thousands of digits
         raise ModelFileError(f"a number cannot be read: {error}", file, None, None) from None
     except RecursionError:

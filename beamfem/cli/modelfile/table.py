@@ -31,7 +31,7 @@ class Source:
         known = path
         while known and known not in self.lines:
             known = known[:-1]
-        return ModelFileError(message, self.file, self.lines.get(known), _written(path) or None)
+        return ModelFileError(message, self.file, self.lines.get(known), written(path) or None)
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ class Table:
     def sub(self, value: Any, *path: str | int) -> "Table":
         """Return a value below this table as a Table. Raises ModelFileError if it is not a table."""
         if not isinstance(value, dict):
-            raise self.source.error((*self.path, *path), f"must be a table, got {shown(value)}")
+            headed = f", headed [{path[0]}]" if not self.path and len(path) == 1 else ""
+            raise self.source.error((*self.path, *path), f"must be a table{headed}, got {shown(value)}")
         return Table(self.source, (*self.path, *path), value)
 
     def tables(self, key: str) -> list["Table"]:
@@ -138,6 +139,12 @@ def build_kind(table: Table, kinds: Kinds, readers: Mapping[str, Reader], defaul
     return build(table, kinds[kind], readers)
 
 
+def in_braces(kind: str, make: Callable[..., Any]) -> str:
+    """Return the table of a kind with the keys that it needs, as it is written in the place of a name."""
+    needed = [each.name for each in inspect.signature(make).parameters.values() if each.default is each.empty]
+    return f'{{ kind = "{kind}"{"".join(f", {name} = ..." for name in needed)} }}'
+
+
 def shown(value: Any) -> str:
     """Return a value as written in the file."""
     if isinstance(value, bool):
@@ -164,7 +171,7 @@ def _needed(parameters: Mapping[str, inspect.Parameter]) -> str:
     return ", ".join(name for name, parameter in parameters.items() if parameter.default is parameter.empty)
 
 
-def _written(path: KeyPath) -> str:
+def written(path: KeyPath) -> str:
     """Return a path as text; items of an array are counted from 1."""
     text = ""
     for part in path:

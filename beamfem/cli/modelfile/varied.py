@@ -4,10 +4,11 @@ import copy
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Any
 
 from beamfem.cli.modelfile.lines import Path
-from beamfem.cli.modelfile.table import Table, shown
+from beamfem.cli.modelfile.table import Table, shown, written
 
 _PART = re.compile(r"(?:^|\.)(?P<key>[^.\[\]]+)|\[(?P<item>[1-9]\d*)\]")
 
@@ -61,9 +62,12 @@ def _path(table: Table, root: Table) -> Path:
         end = found.end()
         path.append(found["key"] if found["key"] else int(found["item"]) - 1)
     if not path or end != len(name):
-        raise table.error(f'must be a key such as "sections.NAME.height" or "loads[1].vector[2]", got "{name}"', "key")
+        such = 'such as "sections.NAME.height" or "loads[1].vector[2]", with items counted from 1'
+        raise table.error(f'must be a key {such}, got "{name}"', "key")
     if path[0] in ("sweep", "title", "units", "code", "outputs", "curves", "files"):
         raise table.error(f"{path[0]} cannot be varied", "key")
     if tuple(path) not in root.source.lines:
-        raise table.error(f"{name} is not in the file; write it there with one of its values", "key")
+        near = get_close_matches(name, [written(known) for known in root.source.lines], 1)
+        right = f"did you mean {near[0]}? Otherwise write" if near else "write"
+        raise table.error(f"{name} is not in the file; {right} it there with one of its values", "key")
     return tuple(path)

@@ -55,7 +55,7 @@ class Conditions:
         for foundation in model.line_supports:
             number = model.number_of(foundation.beam)
             for position in self.nodes[number]:
-                for row, k in zip(self._moved(position), foundation.stiffness, strict=True):
+                for row, k in zip(self.moved(position), foundation.stiffness, strict=True):
                     if k > 0.0:
                         self._add({int(body[number]): row})
         for joint in model.joints:
@@ -81,9 +81,10 @@ class Conditions:
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement (2, 3) of a point per unit of a, b and turn of its body."""
         node = self.model.mesh_of(point).node_at(point.fraction)
-        return self._moved(self.nodes[self.model.number_of(point.beam)][node])
+        return self.moved(self.nodes[self.model.number_of(point.beam)][node])
 
-    def _moved(self, position: np.ndarray) -> np.ndarray:
+    def moved(self, position: np.ndarray) -> np.ndarray:
+        """Return the displacement (2, 3) of a position (2,) [m] per unit of a, b and turn of the body there."""
         x, y = (position - self.centre) / self.extent
         return np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
 

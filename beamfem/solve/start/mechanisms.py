@@ -7,6 +7,7 @@ from beamfem.errors import FreeMotionError
 from beamfem.model.named import beam_in_words
 from beamfem.model.support import PointSupport
 from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
+from beamfem.solve.start.unjoined import Pair, in_words, unjoined_ends
 
 _PROVEN = "supported"
 
@@ -38,11 +39,22 @@ def require_support(system: System) -> None:
     moved = [float(np.abs(rows.displacement(point) @ motions[0]).max()) for point in (start, end)]
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
+    unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
+    remedy = f"moves. {in_words(model, unjoined)}. Otherwise a" if unjoined else "moves. A"
     raise FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
-        "moves. A static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
+        f"{remedy} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "
         "(Rigid instead of Hinge); without them, use simulate"
     )
+
+
+def _parts(rows: Conditions, motions: np.ndarray, pair: Pair) -> bool:
+    """Return whether motions (m, 3 bodies) part two points at one place, or turn them differently."""
+    one, other = (int(rows.body[rows.model.number_of(point.beam)]) for point in pair)
+    own = motions.reshape(len(motions), -1, 3)
+    between = own[:, one] - own[:, other]
+    apart = between @ np.vstack([rows.moved(pair[0].reference), [0.0, 0.0, 1.0]]).T
+    return bool(np.abs(apart).max() > NEGLIGIBLE)
 
 
 def _fixes(support: PointSupport) -> bool:

@@ -121,7 +121,7 @@ class PathFollower:
             if _SLOWER * before <= gained <= _FASTER * before and half * (1.0 - load_factor) > _MOST_STEPS * gained:
                 raise OutOfReachError(
                     f"its last steps gained {gained / half:.1e} of the load factor each; at that pace load factor 1 is "
-                    "out of reach: the loads are far too large for the structure",
+                    "out of reach: the loads are far too large for the structure, or not in its units",
                     0,
                     0,
                 )

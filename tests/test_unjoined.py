@@ -1,0 +1,81 @@
+"""A mechanism whose cause is a forgotten joint: the message names both points and what would join them."""
+
+import re
+
+import numpy as np
+import pytest
+
+import beamfem as bf
+from beamfem.solve.start.unjoined import unjoined_ends
+
+SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
+
+
+def line(start, end, name=None):
+    return bf.Beam(bf.Line(start, end), 4, bf.CRBF(2), SECTION, STEEL, name)
+
+
+def said(*parts, **more):
+    with pytest.raises(bf.FreeMotionError) as caught:
+        bf.solve_static(bf.Model(*parts, **more))
+    return str(caught.value)
+
+
+LEFT, RIGHT = line((0, 0), (1, 0), "left"), line((1, 0), (2, 0), "right")
+
+
+@pytest.mark.parametrize("beams", [[LEFT, RIGHT], [RIGHT, LEFT]], ids=["in order", "reversed"])
+def test_ends_without_a_joint_are_named(beams):
+    message = said(beams, [bf.Clamp(LEFT.start)])
+    ends = {"left": "end", "right": "start"}
+    one, two = (f"he {ends[beam.name]} of beam '{beam.name}'" for beam in beams)
+    assert f"T{one} and t{two} are both at (1, 0), but no joint connects them: add a Rigid or a Hinge" in message
+    assert "Otherwise a static solve needs supports that hold it" in message
+
+
+def test_an_end_on_the_inside_of_a_beam_is_found():
+    hanger = line((0.3, 0), (0.3, -1))
+    assert "Fraction 0.3 of beam 'left' and the start of beam 1 are both at (0.3, 0)" in said(
+        [LEFT, hanger], [bf.Clamp(LEFT.start)]
+    )
+
+
+def test_an_end_on_a_curved_element_is_found():
+    arch = bf.Beam(bf.Arc((0, 0), 1.0, 0.0, np.pi), 3, bf.CRBF(2), SECTION, STEEL)
+    rod = line((np.cos(1.0), np.sin(1.0)), (0, 3))
+    assert "Fraction 0.31831 of beam 0 and the start of beam 1" in said([arch, rod], [bf.Clamp(arch.start)])
+
+
+def test_a_third_beam_at_a_joint_is_found():
+    post = line((1, 0), (1, 1), "post")
+    message = said([LEFT, post, RIGHT], [bf.Clamp(LEFT.start)], joints=[bf.Rigid(LEFT.end, post.start)])
+    assert re.search("of beam '(left|post)' and the start of beam 'right' are both", message)
+
+
+def test_beams_that_a_third_connects_are_joined():
+    post = line((1, 0), (1, 1))
+    joints = [bf.Rigid(LEFT.end, post.start), bf.Hinge(post.start, RIGHT.start)]
+    model = bf.Model([LEFT, post, RIGHT], [bf.Clamp(LEFT.start)], joints=joints)
+    assert list(unjoined_ends(model)) == []
+    assert "no joint" not in said(model.beams, model.supports, joints=joints)
+
+
+def test_places_that_the_motion_does_not_part_are_no_cause():
+    """Two beams clamped at one place need no joint; a third one that flies elsewhere has none to forget."""
+    up, away = line((0, 0), (0, 1)), line((5, 5), (6, 5))
+    clamped = [bf.Clamp(LEFT.start), bf.Clamp(up.start)]
+    assert len(list(unjoined_ends(bf.Model([LEFT, up, away], clamped)))) > 0
+    assert "no joint" not in said([LEFT, up, away], clamped)
+
+
+def test_pinned_ends_that_only_turn_differently_are_a_cause():
+    supports = [bf.Clamp(LEFT.start), bf.Pin(RIGHT.start)]
+    assert "The end of beam 'left' and the start of beam 'right'" in said([LEFT, RIGHT], supports)
+
+
+def test_the_first_of_very_many_is_found_at_once():
+    bars = [line((i, j), (i + 1, j)) for i in range(40) for j in range(40)]
+    pairs = unjoined_ends(bf.Model(bars, [bf.Clamp(bars[0].start)]))
+    end, other = next(pairs)
+    assert end.reference == pytest.approx(other.reference)
+    assert sum(1 for _ in pairs) > 2 * 39 * 40 - 2

@@ -178,5 +178,5 @@ def test_reactions_are_of_all_supports_at_a_point():
     for point in (*(own.point for own in supports), beam.end, other.end, other.at(0.25)):
         near = {id(own) for own in supports if own.point.beam is point.beam}
         near &= {id(own) for own in supports if abs(own.point.fraction - point.fraction) < 1e-9}
-        assert {id(own) for own in model.supports_near(point, 1e-9)} == near
-    assert model.supports_near(beam.at(0.75), 1e-9) == [springs[0], springs[4]]
+        assert {id(own) for own in model.supports_along.near(point, 1e-9)} == near
+    assert model.supports_along.near(beam.at(0.75), 1e-9) == [springs[0], springs[4]]

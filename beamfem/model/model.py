@@ -1,7 +1,5 @@
 """A model: beams with their supports, joints, loads and connectors."""
 
-from bisect import bisect_left, bisect_right
-from collections import defaultdict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from math import prod
@@ -32,6 +30,7 @@ from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
+from beamfem.model.supports_along import SupportsAlong
 from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
@@ -303,21 +302,9 @@ class Model(ModelOutputs):
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
 
     @cached_property
-    def _supports_along(self) -> dict[int, tuple[list[float], list[PointSupport]]]:
-        """Fractions and supports of each beam that has some, from its start to its end."""
-        found: defaultdict[int, list[PointSupport]] = defaultdict(list)
-        for support in sorted(self.point_supports, key=lambda own: own.point.fraction):
-            found[id(support.point.beam)].append(support)
-        return {beam: ([support.point.fraction for support in own], own) for beam, own in found.items()}
-
-    def supports_near(self, point: Point, distance: float) -> list[PointSupport]:
-        """Return the supports on a point's beam whose fractions differ from the point's by less than a distance [-]."""
-        fractions, supports = self._supports_along.get(id(point.beam), ([], []))
-        begin, end = (
-            bisect_left(fractions, point.fraction - distance),
-            bisect_right(fractions, point.fraction + distance),
-        )
-        return [own for own in supports[begin:end] if abs(own.point.fraction - point.fraction) < distance]
+    def supports_along(self) -> SupportsAlong:
+        """The supports at points in the order of their beams' fractions."""
+        return SupportsAlong(self.point_supports)
 
     @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:

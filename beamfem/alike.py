@@ -40,7 +40,7 @@ def lasting(*items: object) -> bool:
         kind: Any = type(item)
         if kind in _PLAIN:
             continue
-        if kind is not tuple and not _of_package(kind):
+        if kind is not tuple and not of_package(kind):
             return False
         parts = item if isinstance(item, tuple) else [getattr(item, name) for name in _compared(kind)]
         if parts and not lasting(*parts):
@@ -67,7 +67,7 @@ def _compared(kind: type) -> tuple[str, ...]:
     """Return the names of the fields that a class is compared by, but for those that the package sees to be numbers."""
     if not is_dataclass(kind):
         return ()
-    numbers = (float, float | None) if _of_package(kind) else ()
+    numbers = (float, float | None) if of_package(kind) else ()
     return tuple(own.name for own in fields(kind) if own.compare and own.type not in numbers)
 
 
@@ -77,5 +77,6 @@ def _tells_all(kind: type) -> bool:
 
 
 @lru_cache(maxsize=256)
-def _of_package(kind: type) -> bool:
+def of_package(kind: type) -> bool:
+    """Return whether a class is of the package."""
     return kind.__module__.startswith("beamfem.")

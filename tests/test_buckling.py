@@ -183,3 +183,14 @@ def test_bad_input_is_named():
         bf.solve_buckling(unstable, about=loaded)
     with pytest.raises(bf.InputError, match="mode must be between 0 and 0"):
         bf.solve_buckling(column(SUPPORTS["cantilever"], 10, 6)).solution(1)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1.0, 1e3, 1e6])
+def test_a_following_load_is_refused_in_any_unit_of_length(unit):
+    """In a model of a micrometre its moments seemed as small as round-off beside forces, and it was taken for dead."""
+    section, material = bf.Rectangle(0.03 * unit, 0.03 * unit), bf.Material(7e10, 0.3, 2000.0)
+    beam = bf.Beam(bf.Arc((0.0, 0.0), unit, 0.0, 1.5), 8, bf.CRBF(3), section, material)
+    size = 7e10 * (0.03 * unit) ** 4 / 12.0 / unit**3
+    loads = [bf.DistributedLoad(beam, (0.1 * size, 0.9 * size), follower=True)]
+    with pytest.raises(bf.InputError, match="some load follows the beam"):
+        bf.solve_buckling(bf.Model([beam], [bf.Clamp(beam.start)], loads))

@@ -70,6 +70,76 @@ class Heavy(PointMass):
 
 
 @dataclass(frozen=True)
+class HalfAbsolute(Anchor):
+    """One component by its absolute value: 0 is that of ux, 2 the moment."""
+
+    component: int = 0
+
+    def force(self, at):
+        force = super().force(at)
+        force[self.component] = np.abs(force[self.component])
+        return force
+
+
+@dataclass(frozen=True)
+class Forgetful(Anchor):
+    """A potential without one component."""
+
+    component: int = 0
+
+    def energy(self, at):
+        moved = (at.q - at.reference)[0]
+        moved[self.component] = 0.0
+        return 0.0, 0.5 * float((np.array(self.stiffness) * moved**2).sum())
+
+
+@dataclass(frozen=True)
+class OneSided(Anchor):
+    """A force along uy that grows with the rotation, whose moment knows nothing of it."""
+
+    coupling: float = 0.0
+
+    def force(self, at):
+        return super().force(at) + np.array([0.0, self.coupling * at.q[0, 2], 0.0])
+
+
+@dataclass(frozen=True)
+class Flywheel(PointMass):
+    """A mass with rotary inertia [kg m^2]; kept: which of both the kinetic energy has."""
+
+    inertia: float = 0.0
+    kept: tuple[bool, bool] = (True, True)
+
+    def force(self, at):
+        return super().force(at) + np.array([0.0, 0.0, self.inertia * at.a[0, 2]])
+
+    def energy(self, at):
+        moving, potential = super().energy(at)
+        return moving * self.kept[0] + 0.5 * self.inertia * at.v[0, 2] ** 2 * self.kept[1], potential
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction [N] against ux, turned over within a speed [m/s]."""
+
+    point: bf.Point
+    most: float
+    speed: float
+    unknowns = 0
+    conservative = False
+
+    @property
+    def points(self):
+        return (self.point,)
+
+    def force(self, at):
+        return self.most * np.tanh(at.v[0] / self.speed) * np.array([1.0, 0.0, 0.0])
+
+    def energy(self, at):
+        return 0.0, 0.0
+
+
+@dataclass(frozen=True)
 class Growing(RigidLink):
     def force(self, at):
         return super().force(at) + np.array(6 * [0.0] + [0.1 * at.time])
@@ -180,3 +250,71 @@ def test_results_with_connectors_of_ones_own_say_why_they_cannot_be_saved(tmp_pa
         solution.save(tmp_path / "own.h5")
     solution.plot(tmp_path / "own.png")
     solution.to_vtk(tmp_path / "own.vtkhdf")
+
+
+WRONG = {
+    "a force by its absolute value": (
+        lambda p, m, n: HalfAbsolute(p, (1e2 * n / m, 1e2 * n / m, 10.0 * n * m)),
+        "force of HalfAbsolute is no analytic function of q",
+    ),
+    "a moment by its absolute value": (
+        lambda p, m, n: HalfAbsolute(p, (1e2 * n / m, 1e2 * n / m, 10.0 * n * m), 2),
+        "force of HalfAbsolute is no analytic function of q",
+    ),
+    "a potential without ux": (
+        lambda p, m, n: Forgetful(p, (1e2 * n / m, 1e2 * n / m, 10.0 * n * m)),
+        "potential of its energy",
+    ),
+    "a potential without the rotation": (
+        lambda p, m, n: Forgetful(p, (1e2 * n / m, 1e2 * n / m, 10.0 * n * m), 2),
+        "potential of its energy",
+    ),
+    "a force without its moment": (
+        lambda p, m, n: OneSided(p, (1e2 * n / m, 1e2 * n / m, 10.0 * n * m), n),
+        "stiffness is not symmetric",
+    ),
+    "no energy of rotation": (
+        lambda p, m, n: Flywheel(p, 3.0 * n / m, 0.1 * n * m, (True, False)),
+        "Flywheel says that it is conservative, but the kinetic energy of its energy.. is not that of its force",
+    ),
+    "no energy of translation": (
+        lambda p, m, n: Flywheel(p, 3.0 * n / m, 0.1 * n * m, (False, True)),
+        "Flywheel says that it is conservative, but the kinetic energy of its energy.. is not that of its force",
+    ),
+}
+RIGHT = {
+    "soft beside stiff in torsion": lambda p, m, n: Anchor(p, (1.0 * n / m, 1e6 * n / m, 1e6 * n * m)),
+    "stiff beside soft in torsion": lambda p, m, n: Anchor(p, (1e6 * n / m, 1e6 * n / m, 1.0 * n * m)),
+    "mass and rotary inertia": lambda p, m, n: Flywheel(p, 3.0 * n / m, 0.1 * n * m),
+    "friction": lambda p, m, n: Friction(p, 10.0 * n, 1e-3 * m),
+}
+UNITS = {
+    "m N": (1.0, 1.0),
+    "mm N": (1e3, 1.0),
+    "km GN": (1e-3, 1e-9),
+    "um uN": (1e6, 1e6),
+    "of a micrometre": (1e-6, 1e-12),
+    "nm nN": (1e9, 1e9),
+}
+
+
+def in_units(part, metre, newton):
+    material = bf.Material(2e11 * newton / metre**2, 0.3, 7800.0 * newton / metre**4)
+    section = bf.Rectangle(0.01 * metre, 0.01 * metre)
+    own = bf.Beam(bf.Line((0.0, 0.0), (metre, 0.0)), 2, bf.CRBF(2), section, material)
+    return bf.Model([own], [bf.Clamp(own.start)], connectors=[part(own.end, metre, newton)])
+
+
+@pytest.mark.parametrize(("part", "told"), WRONG.values(), ids=WRONG)
+@pytest.mark.parametrize("units", UNITS.values(), ids=UNITS)
+def test_a_wrong_connector_is_refused_in_any_units(part, told, units):
+    """Forces beside moments, in N/mm beside N mm, went unnoticed, as did moments in a model in km."""
+    with pytest.raises(bf.InputError, match=told):
+        bf.solve_static(in_units(part, *units))
+
+
+@pytest.mark.parametrize("part", RIGHT.values(), ids=RIGHT)
+@pytest.mark.parametrize("units", UNITS.values(), ids=UNITS)
+def test_a_right_connector_is_taken_in_any_units(part, units):
+    """A mass and a friction were called not analytic in a model in nm, and in a beam of a micrometre."""
+    bf.solve_static(in_units(part, *units))

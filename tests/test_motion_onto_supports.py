@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from connectors import Anchor
+from connectors import Anchor, RigidLink
 
 import beamfem as bf
 
@@ -128,7 +128,77 @@ def test_an_impact_onto_a_support_is_plastic(support):
     assert 0.0 < motion.energy().kinetic[0] < 0.5 * 7800.0 * 1e-4 * 1e-8
 
 
-def test_a_motion_from_the_reference_begins_where_supports_prescribe():
-    """Without a start there is no state that would be lost: the theory page says so."""
+OFF_THE_REFERENCE = {
+    "number": (
+        bf.Prescribed(ROD.end, uy=0.01),
+        r"Use a function of time that begins at 0, or start from what solve_",
+    ),
+    "function": (bf.Prescribed(ROD.end, uy=lambda t: 0.01 + t), r"Subtract from its functions their values at time 0"),
+    "rotation": (bf.Prescribed(ROD.end, rotation=-0.2), r"rotation = 0 rad there: it would jump by 0.2 rad"),
+}
+
+
+@pytest.mark.parametrize(("support", "told"), OFF_THE_REFERENCE.values(), ids=OFF_THE_REFERENCE)
+def test_a_support_that_is_not_at_the_reference_needs_a_start(support, told):
+    """It began with 5556 J in one stretched element, for 0.025 J of a cantilever with this deflection, in silence."""
+    model = bf.Model([ROD], [bf.Clamp(ROD.start), support])
+    with pytest.raises(bf.InputError, match=rf"Prescribed at \(1, 0\), .* but the reference has .*{told}"):
+        bf.simulate(model, 2e-4, 1e-4)
+
+
+def test_a_motion_whose_support_is_off_the_reference_starts_from_its_static_state():
     model = bf.Model([ROD], [bf.Clamp(ROD.start), bf.Prescribed(ROD.end, uy=0.01)])
-    assert bf.simulate(model, 2e-4, 1e-4).displacement(ROD.end)[0, 1] == pytest.approx(0.01)
+    static = bf.solve_static(model)
+    motion = bf.simulate(model, 0.01, 1e-4, start=static[-1])
+    assert motion.energy().total == pytest.approx(np.full(101, static.energy().strain[-1]), rel=1e-6)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("elements", [1, 3])
+def test_a_falling_bar_that_is_caught_at_one_end_keeps_its_moment_of_momentum_about_it(elements, unit):
+    """m v L / 2 before and after; only what the support exerts stops it. It was a third less with one element."""
+    bar = bf.Beam(bf.Line((0, 0), (unit, 0)), elements, bf.CRBF(1), bf.Rectangle(0.1 * unit, 0.1 * unit), STEEL)
+    model = bf.Model([bar], [bf.Pin(bar.start)])
+    caught = bf.simulate(model, 1e-6, 1e-6, velocity=bf.RigidVelocity((0.0, -2.0 * unit)))
+    mass = 7800.0 * 0.01 * unit**3
+    assert caught.angular_momentum()[0] == pytest.approx(-mass * 2.0 * unit * unit / 2.0, rel=1e-12)
+    assert caught.energy().kinetic[0] < 0.5 * mass * (2.0 * unit) ** 2
+    if elements == 1:  # r turns about the pin, with no inertia of rotating sections in its way
+        assert caught.velocity(bar.end)[0, 1] == pytest.approx(-3.0 * unit, rel=1e-12)
+
+
+def test_a_bar_that_is_caught_by_an_inclined_roller_keeps_its_momentum_along_it():
+    bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(2), bf.Rectangle(0.1, 0.1), STEEL)
+    model = bf.Model([bar], [bf.Roller(bar.start, (3, 4))])
+    caught = bf.simulate(model, 1e-6, 1e-6, velocity=bf.RigidVelocity((1.0, -2.0)))
+    along = np.array([0.8, -0.6])
+    assert caught.velocity(bar.start)[0] @ [0.6, 0.8] == pytest.approx(0.0, abs=1e-12)
+    assert caught.linear_momentum()[0] @ along == pytest.approx(78.0 * (along @ [1.0, -2.0]), rel=1e-12)
+
+
+@pytest.mark.parametrize("way", ["ux", "uy", "rotation"])
+@pytest.mark.parametrize(("elements", "order"), [(1, 1), (2, 2)])
+def test_a_support_that_sets_off_at_once_does_what_it_does_a_little_later(way, elements, order):
+    """The first node alone had its velocity: one element moved by twice as much as after a corner of the function."""
+    step, later = 1e-6, 20
+
+    def tip(begin):
+        post = bf.Beam(bf.Line((0, 0), (0, 1)), elements, bf.CRBF(order), bf.Rectangle(0.05, 0.05), STEEL)
+        moved = {"ux": 0.0, "uy": 0.0, "rotation": 0.0, way: lambda t: 0.1 * max(t - begin, 0.0)}
+        model = bf.Model([post], [bf.Prescribed(post.start, **moved)])
+        motion = bf.simulate(model, begin + 500 * step, step, bf.GeneralizedAlpha(1.0))
+        return motion.displacement(post.end)
+
+    at_once, after = tip(0.0), tip(later * step)[later:]
+    assert np.abs(at_once - after).max() < 1e-3 * np.abs(after).max()
+
+
+def test_a_link_between_bars_passes_an_impact_on():
+    """Two bars in a row on an undeformable link: stopping one end stops what momentum says, and the link holds."""
+    left, right = (bf.Beam(bf.Line((x, 0), (x + 1, 0)), 1, bf.CRBF(1), bf.Rectangle(0.1, 0.1), STEEL) for x in (0, 2))
+    link = RigidLink(left.end, right.start)
+    model = bf.Model([left, right], [bf.Pin(left.start)], connectors=[link])
+    caught = bf.simulate(model, 1e-6, 1e-6, velocity=bf.RigidVelocity((-1.0, 0.0)))
+    u = [caught.velocity(point)[0, 0] for point in (left.start, left.end, right.start, right.end)]
+    # changes c: c1 + 2 c2 + 2 c3 + c4 = 0 and c3 + 2 c4 = 0, times m / 6, with c1 = 1 and c2 = c3
+    assert u == pytest.approx([0.0, -9.0 / 7.0, -9.0 / 7.0, -6.0 / 7.0], abs=1e-9)

@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 from shooting import Member, solved
 
 import beamfem as bf
+from beamfem.assembly.system import system_of
 from beamfem.linalg.inertia import negative_eigenvalues
 
 EI, EA = 115.0, 5.5e6
@@ -215,3 +216,23 @@ def test_eigenvalues_of_a_matrix_without_narrow_places_are_not_counted():
     matrix = np.zeros((3200, 3200))
     matrix[:1600, 1600:] = np.random.default_rng(0).standard_normal((1600, 1600))
     assert negative_eigenvalues(csr_array(matrix + matrix.T)) is None
+
+
+@pytest.mark.parametrize(("elements", "angle"), [(200, 0.7), (300, 0.3), (500, 0.7), (500, 1.1)])
+@pytest.mark.parametrize("share", [0.9, 0.97, 1.1])
+def test_a_finely_divided_column_is_stable_below_its_buckling_load_whoever_counts(elements, angle, share):
+    """Found with a state of another model: round-off in the stiffness exceeded that of bending, and counted as less."""
+    thin, along = 1e-5, np.array([np.cos(angle), np.sin(angle)])
+    modulus, inertia = 2e11, thin**4 / 12.0
+    beam = bf.Beam(
+        bf.Line((0, 0), along), elements, bf.CRBF(3), bf.Rectangle(thin, thin), bf.Material(modulus, 0.3, 7800.0)
+    )
+    load = share * np.pi**2 * modulus * inertia / 4.0
+    model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, -load * along)])
+    system = system_of(model, static=True)
+    straight = np.array(system.reference)
+    shortening = load / (modulus * thin**2)
+    straight[system.positions] *= 1.0 - shortening
+    rest = np.zeros_like(straight)
+    state = bf.PathState(straight, rest, rest, 1.0, model)
+    assert state.stable == (share < 1.0)

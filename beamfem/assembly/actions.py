@@ -1,11 +1,10 @@
 """Forces, moments and springs at points of elements, in the form that the kernels expect."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from beamfem.element.element import Element
+from beamfem.element.element import Element, kept_with_elements
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
@@ -156,6 +155,6 @@ def _tables(element: Element, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return position, direction
 
 
-@lru_cache(maxsize=64)  # loads at the ends of beams need the same tables repeatedly
+@kept_with_elements  # loads at the ends of beams need the same tables repeatedly
 def _cached_tables(element: Element, xi: bytes) -> tuple[np.ndarray, np.ndarray]:
     return _tables(element, np.frombuffer(xi))

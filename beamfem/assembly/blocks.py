@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
-from beamfem.element.element import Element
+from beamfem.element.element import Element, kept_with_elements
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
@@ -49,7 +49,7 @@ def build_block(
     )
 
 
-@lru_cache(maxsize=64)
+@kept_with_elements
 def _director(element: Element) -> np.ndarray:
     """Return the shape functions (nq, nn) of d at the points of the energy, read-only."""
     found = np.ascontiguousarray(element.field.director(element.energy_points()[0]))

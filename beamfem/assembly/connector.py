@@ -38,6 +38,12 @@ class Connector:
     def name(self) -> str:
         return type(self.item).__name__
 
+    @property
+    def units(self) -> np.ndarray:
+        """Natural unit (3 m,) of each coordinate: the length [m] of the longest connected beam, and 1 rad."""
+        size = max(point.beam.curve.length for point in self.item.points)
+        return np.tile([size, size, 1.0], len(self.reference))
+
     def at(self, motion: Motion, time: float, gravity: np.ndarray) -> At:
         """Return the state at which the contribution is evaluated; the motion may be complex."""
         q, rate, second = (values[self.dofs].reshape(-1, 3) for values in motion)

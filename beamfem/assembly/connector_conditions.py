@@ -14,7 +14,7 @@ _MET, _TRIES = 1e-10, 30  # of the iteration onto the conditions
 _ACTS = 1e-6  # part of the largest force from which on a coordinate counts
 _AGREE = 1e-4
 _ROUND_OFF = 1e-9  # of forces that depend on nothing else; coefficients of friction may be small
-_SPEEDS = (1.0, -1.0, 1e-6, -1e-6, 1e3, -1e3)  # [m/s, rad/s], at which a friction would turn over
+_SPEEDS = (1.0, -1.0, 1e-6, -1e-6, 1e3, -1e3)  # beam lengths and rad per s, at which a friction would turn over
 _PASTS = (1.0, -1.0, 1e-3, -1e-3, 1e6, -1e6)  # added to history variables
 _TIME, _GRAVITY = 0.5, np.zeros(2)  # arbitrary
 _BY_Q, _BY_V = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
@@ -61,10 +61,10 @@ def _on_the_conditions(item: Connector) -> Iterator[Motion]:
 
     Those are where arms that are wrong show; near the reference nothing has slid.
     """
-    rng, lengths = np.random.default_rng(5), _lengths(item)
+    rng, units = np.random.default_rng(5), item.units
     last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
     for far in (0.0, _FAR, _FAR):
-        moved, own = far * lengths * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
+        moved, own = far * units * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
         for side in (1.0, -1.0):  # a contact may be open for one of them
             p, zeros = np.zeros(last), np.zeros(last)
             p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * own
@@ -76,17 +76,17 @@ def _on_the_conditions(item: Connector) -> Iterator[Motion]:
 
 def _meets(item: Connector, motion: Motion) -> bool:
     """Move a state onto the conditions, in place, by Gauss-Newton steps; return whether it arrives."""
-    number, lengths = len(item.dofs), _lengths(item)
+    number, units = len(item.dofs), item.units
     for _ in range(_TRIES):
         try:
-            slope = item.tangent(motion, _TIME, _GRAVITY, _BY_Q)[number:, :number] * lengths
+            slope = item.tangent(motion, _TIME, _GRAVITY, _BY_Q)[number:, :number] * units
             missed = item.force(item.at(motion, _TIME, _GRAVITY)).real[number:]
             change = np.linalg.lstsq(slope, missed, rcond=1e-9)[0]
         except (InputError, LinAlgError):
             return False
         if np.all(np.abs(missed) <= _MET * np.abs(slope).max(axis=1)):
             return True
-        motion[0][item.dofs] -= lengths * change
+        motion[0][item.dofs] -= units * change
     return False
 
 
@@ -111,7 +111,7 @@ def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple
     Third, a multiplier whose part of its own condition is not positive, -1 if there is none. Every coordinate is scaled
     to 1, so that short arms count as much as long ones.
     """
-    works = (_lengths(item)[:, None] * table for table in (held, conditions))  # moments and forces become comparable
+    works = (item.units[:, None] * table for table in (held, conditions))  # moments and forces become comparable
     held, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
     sizes = np.maximum(np.abs(held), np.abs(conditions)).max(axis=1, keepdims=True)
     held, conditions = (table / np.maximum(sizes, _ACTS) for table in (held, conditions))
@@ -129,7 +129,7 @@ def _knows_what_slides(item: Connector) -> bool:
         others: list[Motion] = []
         for speed in _SPEEDS:
             moving = v.copy()
-            moving[item.dofs] = speed * rng.standard_normal(number)
+            moving[item.dofs] = speed * item.units * rng.standard_normal(number)
             others.append((p, moving, a))
         for past in _PASTS if len(item.memory) else ():
             later = p.copy()
@@ -152,9 +152,3 @@ def _reversed(item: Connector, motion: Motion) -> Motion:
     p = motion[0].copy()
     p[item.own] *= -1.0
     return p, motion[1], motion[2]
-
-
-def _lengths(item: Connector) -> np.ndarray:
-    """Return the unit (3 m,) of each coordinate: the length [m] of the longest beam, and 1 rad."""
-    size = max(point.beam.curve.length for point in item.item.points)
-    return np.tile([size, size, 1.0], len(item.reference))

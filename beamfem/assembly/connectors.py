@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
-from beamfem.assembly.connector_checks import follows_time, require_analytic, resists_rates
+from beamfem.assembly.connector_checks import follows_time, require_analytic, require_energies, resists_rates
 from beamfem.assembly.connector_conditions import require_workless
 from beamfem.model.contribution import remembered
 from beamfem.model.load import factor
@@ -164,4 +164,5 @@ def connectors_of(model: Model, static: bool) -> Connectors:
         found.append(Connector(item, np.array(dofs, dtype=np.int64), own, memory, np.array(places)))
         require_analytic(found[-1])
         require_workless(found[-1])
+        require_energies(found[-1])
     return Connectors(model, static, tuple(found))

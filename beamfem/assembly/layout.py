@@ -17,6 +17,7 @@ from beamfem.kernels.block import Block, Layout
 from beamfem.once import cached_property
 
 _FEW = 20_000  # coordinates; the order of larger models is not cached
+_NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
 
 
@@ -67,25 +68,29 @@ def order_unknowns(
     joined: bool,
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
+    held: np.ndarray = _NONE,
 ) -> Unknowns:
-    """Return the order of the unknown coordinates: unchanged for a single chain, renumbered for joined beams.
+    """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
     coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
-    coordinates that come last, since they have no stiffness.
+    coordinates that come last, since they have no stiffness; held: those that supports prescribe, at which a band of
+    statics ends.
     """
     if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
-        return _cached_order(node.tobytes(), node.shape, dof.tobytes(), dof.shape, size, prescribed.tobytes())
+        numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
+        return _cached_order(*numbers, size, prescribed.tobytes(), held.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, coupled, multipliers)
+    return _order(mesh, size, prescribed, joined, coupled, multipliers, held)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
 def _cached_order(
-    node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes
+    node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes, held: bytes
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
-    return _order([Mesh(*whole)], size, np.frombuffer(prescribed, dtype=np.int64), False, (), ())
+    known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, held))
+    return _order([Mesh(*whole)], size, known, False, (), (), supported)
 
 
 def _order(
@@ -95,22 +100,24 @@ def _order(
     joined: bool,
     coupled: Sequence[np.ndarray],
     multipliers: Sequence[int],
+    held: np.ndarray,
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
-    dofs = np.flatnonzero(mask)
+    order = np.arange(size)
     if joined:
-        reordered = _narrow(blocks, size)
-        reordered = reordered[mask[reordered]]
-        if _half_width(blocks, _numbers(reordered, size)) < _half_width(blocks, _numbers(dofs, size)):
-            dofs = reordered
-    free = _numbers(dofs, size)
-    half_width = _half_width(blocks, free)
+        narrow = _narrow(blocks, size)
+        widths = [_half_width(blocks, _numbers(each[mask[each]], size)) for each in (narrow, order)]
+        order = narrow if widths[0] < widths[1] else order
+    half_width = _half_width(blocks, _numbers(order[mask[order]], size))
     if not joined:
         # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
+        order = _to_support(blocks, order, mask, held)
+        dofs = order[mask[order]]
+        free = _numbers(dofs, size)
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
         return Unknowns(free, dofs, layouts, None, reach=reaches(blocks, free, len(dofs)))
     dofs = _scattered(blocks, size, coupled)
@@ -179,6 +186,28 @@ def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     rank = np.empty(size, dtype=np.int64)
     rank[order] = np.arange(size)
     return np.lexsort((np.arange(size), rank[owner]))
+
+
+def _to_support(blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Return the order (size,) of the coordinates, its nodes reversed if it begins closer to a support than it ends.
+
+    Elimination from a free end meets the stiffness of single elements only. In the other direction the last pivots are
+    the stiffness of the whole cantilever, a difference of much larger numbers that has no digits in long ones. unknown
+    (size,): mask of the unknown coordinates.
+    """
+    if not len(held):
+        return order
+    owner = _owners(blocks, len(order))
+    supported = np.zeros(len(order), dtype=bool)
+    supported[owner[held]] = True
+    places = np.flatnonzero(supported[owner[order]])
+    unknown = unknown[order]
+    if np.count_nonzero(unknown[: places[0]]) >= np.count_nonzero(unknown[places[-1] + 1 :]):
+        return order
+    own = owner[order]
+    starts = np.flatnonzero(np.append(True, own[1:] != own[:-1]))
+    counts = np.diff(np.append(starts, len(order)))[::-1]
+    return order[np.repeat(starts[::-1] - np.cumsum(counts) + counts, counts) + np.arange(len(order))]
 
 
 def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.assembly.arena import Arena
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import tiles_of
+from beamfem.assembly.turning import runs_of
 from beamfem.kernels import record
 from beamfem.kernels.motion_steps import difference_rows, padded
 from beamfem.kernels.pointers import address_of
@@ -33,7 +34,8 @@ class MotionWorkspace:
         self.in_two = tiles is not None
         self._bounds = _whole(system) if tiles is None else tiles.bounds
         self._tiles = _NONE if tiles is None else tiles.table
-        self._kept = system.turning, tiles  # what the tables point to
+        pairs = runs_of(system.turning)
+        self._kept = pairs, tiles  # what the tables point to
         nodes = sum(int(work.table[record.NODES]) for work in self.assembler.works)
         first = system.unknowns.first
         in_place = first >= 0
@@ -47,8 +49,8 @@ class MotionWorkspace:
                 record.BEFORE: (4, size),
                 record.DIFFERENCES: (difference_rows(size, len(self._bounds)),),
                 record.INVERSE_SCALE: (padded(size),),
-                record.KEPT: (nodes, 2),
-                record.TURNS: (nodes, 2),
+                record.KEPT: (2, nodes),
+                record.TURNS: (2, nodes),
                 record.RULE: (6,),
                 record.LIMITS: (2,),
             }
@@ -62,7 +64,7 @@ class MotionWorkspace:
         self.solver = system.solver_table.filled(places)
         self._prescribed = system.prescribed_dofs
         for field, values in (
-            (record.PAIR_TABLE, system.turning),
+            (record.PAIR_TABLE, pairs),
             (record.PRESCRIBED_DOFS, self._prescribed),
             (record.BOUNDS, self._bounds),
             (record.TILES, self._tiles),
@@ -70,7 +72,8 @@ class MotionWorkspace:
             self.solver[field] = address_of(values)
         self.solver[record.PARTS] = len(self._bounds)
         self.solver[record.ROWS_DOWN] = 0 if tiles is None else tiles.rows_down
-        self.solver[record.PAIRS], self.solver[record.PRESCRIBED] = len(system.turning), len(self._prescribed)
+        self.solver[record.RUNS_OF_PAIRS], self.solver[record.NODE_STRIDE] = len(pairs), nodes
+        self.solver[record.PRESCRIBED] = len(self._prescribed)
 
 
 def _whole(system: System) -> np.ndarray:

@@ -106,14 +106,29 @@ def loses_digits(system: System, p: np.ndarray, load_factor: float) -> bool:
 
     If so, all further tangents have stress resultants as unknowns.
     """
+    lost = _found_to_lose(system, p, load_factor)
+    if lost is not None:
+        system.proven.add(MIXED if lost else _KEEPS)
+    return bool(lost)
+
+
+def counts_with_stresses(system: System, p: np.ndarray, load_factor: float) -> bool:
+    """Return whether negative eigenvalues in the state p (n,) are to be counted with stress resultants as unknowns.
+
+    Round-off of a plain tangent that loses its digits may be larger than the softest stiffness. Further solves are the
+    same whether this was asked or not.
+    """
+    return MIXED in system.proven or bool(_found_to_lose(system, p, load_factor))
+
+
+def _found_to_lose(system: System, p: np.ndarray, load_factor: float) -> bool | None:
+    """Return whether the plain tangent loses digits, None if it is known before or cannot be checked."""
     if MIXED in system.proven or _KEEPS in system.proven or system.connectors.items:
-        return False
+        return None
     try:
-        lost = lost_digits(system, p, load_factor, STATICS)
+        return lost_digits(system, p, load_factor, STATICS) > LOSES
     except LinAlgError:
-        return False
-    system.proven.add(_KEEPS if lost <= LOSES else MIXED)
-    return lost > LOSES
+        return None
 
 
 def lost_digits(system: System, p: np.ndarray, load_factor: float, coefficients: tuple[float, float, float]) -> float:

@@ -247,7 +247,9 @@ class System:
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
-        return order_unknowns(self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist())
+        held = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
+        order = self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist()
+        return order_unknowns(*order, np.array(held, dtype=np.int64))
 
     @cached_property
     def connectors(self) -> Connectors:
@@ -277,10 +279,11 @@ class System:
 
     @cached_property
     def turning(self) -> np.ndarray:
-        """Equation numbers of x and y of each nodal vector that is a coordinate, and its node in storage order (np, 3).
+        """Equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
         A tangent that is kept for several steps is rotated with the sections in these components. Nodes are numbered
-        consecutively over all blocks; vectors with a prescribed component or an inclined roller are left out.
+        consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
+        left out.
         """
         free, found, first = self.unknowns.free, [], 0
         for numbered in self.blocks:
@@ -291,7 +294,7 @@ class System:
                 nodes = np.flatnonzero(np.isin(block.node_kind, turning))
                 x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
                 known = (x >= 0) & (y >= 0)
-                found.append(np.column_stack([x, y, first + nodes])[known])
+                found.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[known])
             first += len(block.dof)
         pairs = np.concatenate(found)
         _, once = np.unique(pairs[:, 0], return_index=True)

@@ -13,6 +13,7 @@ from beamfem.assembly.chain_parts import block_of, is_chain, loads_of
 from beamfem.assembly.element_group import make_group
 from beamfem.assembly.group_structure import storage_order
 from beamfem.assembly.system import System
+from beamfem.assembly.turning import runs_of
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
 from beamfem.kernels.band_halves import whole_blocks
@@ -106,9 +107,9 @@ def _pairs(turning: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
     for tile in table:
         unknown, end, node = tile[[record.DONE_UNKNOWN, record.END_DONE_UNKNOWN, record.TILE_NODE]]
         first, last = np.searchsorted(turning[:, 0], (unknown, end))
-        own = np.ascontiguousarray(turning[first:last] - [unknown, unknown, node])
+        own = runs_of(turning[first:last] - [unknown, unknown, node, 0])
         own = known.setdefault(own.tobytes(), own)
-        tile[record.TILE_PAIRS], tile[record.TILE_PAIR_TABLE] = len(own), address_of(own)
+        tile[record.TILE_RUNS_OF_PAIRS], tile[record.TILE_PAIR_TABLE] = len(own), address_of(own)
     return tuple(known.values())
 
 

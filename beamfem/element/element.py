@@ -1,9 +1,9 @@
 """The definition of an element: a field, nodal coordinates and elastic forces."""
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Literal
+from functools import lru_cache, wraps
+from typing import Literal, TypeVar, get_args
 
 import numpy as np
 
@@ -11,13 +11,15 @@ from beamfem.alike import whole
 from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
 from beamfem.element.field_checks import require_field
-from beamfem.element.fields import Cubic, Field
+from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ElasticLine, Forces, Structural
 from beamfem.errors import InputError
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
+_Value = TypeVar("_Value")
+_LASTING = frozenset((Cubic, Lagrange, *get_args(Coordinates), *get_args(Forces)))
 
 
 @dataclass(frozen=True)
@@ -146,12 +148,24 @@ class Element:
         return ((*self.quadrature(), np.ones_like(shear)),)
 
 
+def kept_with_elements(function: Callable[..., _Value]) -> Callable[..., _Value]:
+    """Cache what a function returns for an element, unless a part of it is the user's own, which may change."""
+    known = lru_cache(maxsize=64)(function)
+
+    @wraps(function)
+    def kept(element: Element, *arguments: Hashable) -> _Value:
+        lasts = {type(element.field), type(element.coordinates), type(element.forces)} <= _LASTING
+        return known(element, *arguments) if lasts else function(element, *arguments)
+
+    return kept
+
+
 def has_stations(field: Field) -> bool:
     """Return whether the strains at the Lobatto points of the cubic field determine a field, and do not lock."""
     return type(field) is Cubic or ("r_x" in field.vectors and len(field.nodes) == 2 and field.degree == 3)
 
 
-@lru_cache(maxsize=64)  # every beam of a model needs them
+@kept_with_elements  # every beam of a model needs them
 def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
     """Return the points and weights (nq,) of the strain energy, read-only."""
     if element.integration == "lobatto":
@@ -164,7 +178,7 @@ def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
     return found
 
 
-@lru_cache(maxsize=64)
+@kept_with_elements
 def _counted(element: Element) -> np.ndarray | None:
     """Return the mask (nq, ns, ns) of the stiffness entries that enter the energy at its points, None if all do."""
     counted = np.concatenate([np.tile(rule[2], (len(rule[0]), 1)) for rule in element.energy_rules()])

@@ -8,7 +8,7 @@ from beamfem.kernels.motion_steps import FAST
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
-_turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
+_turn_pairs, _keep, _turns = caller("idnirr"), caller("iiir"), caller("iiirr")
 _stay_on_planes = inlined(rollers.stay_on_planes)
 
 
@@ -58,8 +58,8 @@ def assemble(part, system, solver, calls):
         model_passes.add_group(s, system, group)
         if b[r.TURNS_WANTED] != 0:
             if s[r.TANGENT] != 0:
-                _keep(call[r.KEEP_DIRECTIONS], groups[group], node, kept)
-            _turns(call[r.TURNS_SINCE], groups[group], node, kept, turns)
+                _keep(call[r.KEEP_DIRECTIONS], groups[group], node, b[r.NODE_STRIDE], kept)
+            _turns(call[r.TURNS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, turns)
         node += wholes(groups[group])[r.NODES]
     model_passes.add_springs(s, 0, s[r.SPRINGS])
     return -1.0
@@ -81,8 +81,8 @@ def factorise(part, system, solver, calls):
 
 @inlined
 def _turn_vectors(b, call, sense):
-    pairs, table = b[r.PAIRS], wholes(b[r.PAIR_TABLE])
-    _turn_pairs(call[r.TURN_PAIRS], pairs, sense, table, reals(b[r.TURNS]), reals(b[r.RIGHT]))
+    runs, table, turns = b[r.RUNS_OF_PAIRS], wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS])
+    _turn_pairs(call[r.TURN_PAIRS], runs, sense, table, b[r.NODE_STRIDE], turns, reals(b[r.RIGHT]))
 
 
 @inlined

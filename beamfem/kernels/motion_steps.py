@@ -268,41 +268,51 @@ def count_turns(pairs, table, before, now, turned):
         turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
-@routine("iir")
-def keep_directions(group, first, kept):
-    """Store the vectors d of the nodes of a group in `kept` (N, 2), from row `first` on."""
-    b = wholes(group)
-    chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
-    for node in range(b[NODES]):
-        d = at(chunks, (node // LANES * b[NODE_ROWS] + size - 2) * ROW + node % LANES)
-        kept[2 * (first + node)], kept[2 * (first + node) + 1] = d[0], d[ROW]
+@routine("iiir")
+def keep_directions(group, first, stride, kept):
+    """Store the vectors d of the nodes of a group in `kept` (2, stride), from column `first` on."""
+    b, begin = wholes(group), 0
+    chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
+    while begin < nodes:
+        d, own = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW), at(kept, first + begin)
+        for i in range(min(LANES, nodes - begin)):
+            own[i], own[stride + i] = d[i], d[ROW + i]
+        begin += LANES
 
 
-@routine("iirr", fastmath=FAST)
-def turns_since(group, first, kept, turns):
-    """Fill the cosine and sine (N, 2) of the rotation of each node of a group since `keep_directions` stored its d."""
-    small_code()
-    b = wholes(group)
-    chunks, size = reals(b[CHUNKS]), 2 * b[VECTORS]
-    for node in range(b[NODES]):
-        d, own = at(chunks, (node // LANES * b[NODE_ROWS] + size - 2) * ROW + node % LANES), 2 * (first + node)
-        x, y, x0, y0 = d[0], d[ROW], kept[own], kept[own + 1]
-        c, s = x * x0 + y * y0, y * x0 - x * y0
-        inverse = 1.0 / math.sqrt(c * c + s * s)
-        turns[own], turns[own + 1] = c * inverse, s * inverse
+@routine("iiirr", fastmath=FAST)
+def turns_since(group, first, stride, kept, turns):
+    """Fill the cosine and sine (2, stride) of the rotation of each node of a group since its d was kept.
+
+    See `keep_directions`.
+    """
+    b, begin = wholes(group), 0
+    chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
+    while begin < nodes:
+        d = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW)
+        own, its = at(kept, first + begin), at(turns, first + begin)
+        for i in range(min(LANES, nodes - begin)):
+            x, y, x0, y0 = d[i], d[ROW + i], own[i], own[stride + i]
+            c, s = x * x0 + y * y0, y * x0 - x * y0
+            inverse = 1.0 / math.sqrt(c * c + s * s)
+            its[i], its[stride + i] = c * inverse, s * inverse
+        begin += LANES
 
 
-@routine("idnrr", fastmath=FAST)
-def turn_pairs(pairs, sense, table, turns, right):
+@routine("idnirr", fastmath=FAST)
+def turn_pairs(runs, sense, table, stride, turns, right):
     """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
     A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
-    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (pairs, 3): numbers of x, y
-    and the node of each vector; turns (N, 2): see `turns_since`.
+    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, 5): see
+    `turning.runs_of`; turns (2, stride): see `turns_since`.
     """
     small_code()
-    for i in range(pairs):
-        first, second, node = table[3 * i], table[3 * i + 1], table[3 * i + 2]
-        c, s = turns[2 * node], sense * turns[2 * node + 1]
-        x, y = right[first], right[second]
-        right[first], right[second] = c * x - s * y, s * x + c * y
+    for run in range(runs):
+        own = at(table, 5 * run)
+        step, apart, vector = own[3], own[1] - own[0], at(right, own[0])
+        cosine, sine = at(turns, own[2]), at(turns, stride + own[2])
+        for i in range(own[4]):
+            c, s = cosine[i], sense * sine[i]
+            x, y = vector[i * step], vector[i * step + apart]
+            vector[i * step], vector[i * step + apart] = c * x - s * y, s * x + c * y

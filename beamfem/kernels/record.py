@@ -178,10 +178,10 @@ DIFFERENCES = 18  # see `motion_steps.difference_rows`
 INVERSE_SCALE = 19  # address (padded(n),)
 RULE = 20
 STATISTICS = 21
-PAIRS = 22  # vectors that rotate with their section
-PAIR_TABLE = 23  # (pairs, 3): numbers of x and y, node
-KEPT = 24  # (N, 2)
-TURNS = 25  # (N, 2)
+RUNS_OF_PAIRS = 22  # of vectors that rotate with their section
+PAIR_TABLE = 23  # (runs, 5): see `turning.runs_of`
+KEPT = 24  # (2, node stride)
+TURNS = 25  # (2, node stride)
 STEPS = 26
 PRESCRIBED_VALUES = 27  # (steps, 3, prescribed)
 BODIES = 28  # (steps or 1, beams, 4)
@@ -210,7 +210,8 @@ REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards
 TILES = 49  # address (tiles, tile fields)
 ROWS_DOWN = 50  # rows eliminated downwards from the top, see `band_halves`
 STEP_WANTED = 51  # whether corrections are needed before they are added to the state
-SOLVER_FIELDS = 52
+NODE_STRIDE = 52
+SOLVER_FIELDS = 53
 
 FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
 FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them
@@ -223,7 +224,8 @@ TILE_NODE = 1  # number of its first node in the storage order of the chain
 NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
 # what no later tile has, so that it is complete with this one
 DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_SPRING, END_DONE_SPRING = range(6, 12)
-TILE_PAIRS, TILE_PAIR_TABLE = range(12, 14)  # of its unknowns: as `PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
+# of its unknowns: as `RUNS_OF_PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
+TILE_RUNS_OF_PAIRS, TILE_PAIR_TABLE = range(12, 14)
 # rows, from the end of the part, that can be eliminated before this tile and with it, see `band_halves.whole_blocks`
 ROWS_BEFORE, ROWS_WITH = range(14, 16)
 TILE_FIELDS = 16

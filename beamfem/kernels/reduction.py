@@ -61,10 +61,26 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
                         to[i] = source[i]
 
 
+@inlined
+def _are_shifted(rows, count, stride, number, step):
+    """Return whether the numbers (rows, stride) of each element are those of the first one, plus a step for each."""
+    wrong = 0
+    for row in range(rows):
+        each = at(number, row * stride)
+        if each[0] < 0 or each[count - 1] < 0:
+            return False
+        for i in range(count):
+            wrong += abs(each[i] - each[0] - i * step)
+    return wrong == 0
+
+
 @routine("iiiiinirr")
 def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix):
     """Add the reduced matrices k of a batch to a band matrix (n, 2 half + 1); number (nodes * coordinates, stride)."""
     rows, width = nodes * size, 2 * half
+    step = number[1] - number[0] if count > 1 else 0
+    shifted = _are_shifted(nodes * coordinates, count, stride, number, step)
+    shift = (width + 1) * step
     for m in range(nodes):
         for its in range(coordinates):
             columns = at(number, (m * coordinates + its) * stride)
@@ -72,10 +88,15 @@ def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix
                 for own in range(coordinates):
                     to = at(number, (n * coordinates + own) * stride)
                     value = at(k, (rows * (m * size + its) + n * size + own) * ROW)
-                    for i in range(count):
-                        row, column = to[i], columns[i]
-                        if row >= 0 and column >= 0:
-                            matrix[width * row + half + column] += value[i]
+                    if shifted:  # as in most of a chain: entries need not be looked up
+                        entry = at(matrix, width * to[0] + half + columns[0])
+                        for i in range(count):
+                            entry[i * shift] += value[i]
+                    else:
+                        for i in range(count):
+                            row, column = to[i], columns[i]
+                            if row >= 0 and column >= 0:
+                                matrix[width * row + half + column] += value[i]
 
 
 @routine("iiiinsrr")

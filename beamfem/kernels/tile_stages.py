@@ -12,7 +12,7 @@ from beamfem.kernels.pointers import at, caller, reals, slots, small_code, whole
 
 _in_two, _substitute = caller("iiii", "d"), caller("iiii", "d")
 _factor, _solve = caller("iiiiiisrr", "d"), caller("iiiiiirr")
-_turn_pairs, _keep, _turns = caller("idnrr"), caller("iir"), caller("iirr")
+_turn_pairs, _keep, _turns = caller("idnirr"), caller("iiir"), caller("iiirr")
 
 
 @inlined
@@ -32,8 +32,9 @@ def _solve_rows(b, address, part, start, stop):
 
 @inlined
 def _turn_vectors(b, call, tile, sense):
-    turns, right = at(reals(b[r.TURNS]), 2 * tile[r.TILE_NODE]), at(reals(b[r.RIGHT]), tile[r.DONE_UNKNOWN])
-    _turn_pairs(call[r.TURN_PAIRS], tile[r.TILE_PAIRS], sense, wholes(tile[r.TILE_PAIR_TABLE]), turns, right)
+    turns, right = at(reals(b[r.TURNS]), tile[r.TILE_NODE]), at(reals(b[r.RIGHT]), tile[r.DONE_UNKNOWN])
+    runs, table = tile[r.TILE_RUNS_OF_PAIRS], wholes(tile[r.TILE_PAIR_TABLE])
+    _turn_pairs(call[r.TURN_PAIRS], runs, sense, table, b[r.NODE_STRIDE], turns, right)
 
 
 @routine("iiii", "d")
@@ -54,8 +55,8 @@ def assemble(part, system, solver, calls):
         model_passes.add_group(s, system, group)
         if b[r.TURNS_WANTED] != 0:
             if s[r.TANGENT] != 0:
-                _keep(call[r.KEEP_DIRECTIONS], groups[group], tile[r.TILE_NODE], kept)
-            _turns(call[r.TURNS_SINCE], groups[group], tile[r.TILE_NODE], kept, turns)
+                _keep(call[r.KEEP_DIRECTIONS], groups[group], tile[r.TILE_NODE], b[r.NODE_STRIDE], kept)
+            _turns(call[r.TURNS_SINCE], groups[group], tile[r.TILE_NODE], b[r.NODE_STRIDE], kept, turns)
         model_passes.add_springs(s, tile[r.DONE_SPRING], tile[r.END_DONE_SPRING])
         motion_stages.fill_right(s, b, tile[r.DONE_UNKNOWN], tile[r.END_DONE_UNKNOWN])
         _turn_vectors(b, call, tile, -1.0)

@@ -196,10 +196,12 @@ def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
 
 
 def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
-    """Return a copy of a band matrix with the normals of inclined rollers constrained."""
-    result, (first, normal) = rows.copy(), rotated
-    if len(first):
-        hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
+    """Return a band matrix with the normals of inclined rollers constrained; without rollers it is the same array."""
+    first, normal = rotated
+    if not len(first):
+        return rows
+    result = rows.copy()
+    hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
     return result
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beamfem.alike import by_value, lasting
-from beamfem.element.element import Element
+from beamfem.element.element import Element, kept_with_elements
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import ELASTIC_LINE
 from beamfem.material import Material
@@ -103,7 +103,7 @@ def _derivatives(
     return np.ascontiguousarray(table * scaled * inverse), second
 
 
-@lru_cache(maxsize=64)
+@kept_with_elements
 def _slopes(element: Element) -> tuple[np.ndarray, np.ndarray]:
     """Return dN/dxi (nq, nv) for r0 and d, and d2N/dxi2 for r0, at the points of the energy."""
     basis, (xi, _) = element.field, element.energy_points()
@@ -178,7 +178,7 @@ class _Tables(NamedTuple):
     rd: np.ndarray
 
 
-@lru_cache(maxsize=32)
+@kept_with_elements
 def _tables(element: Element) -> _Tables:
     basis = element.field
     xi, _ = length_rule(basis)

@@ -9,6 +9,7 @@ from skfem import MeshLine
 
 from beamfem.curves import BSpline, Line
 from beamfem.model.beam import Beam
+from beamfem.model.nearest import distances, nearest
 from beamfem.once import cached_property
 
 _INSIDE = 1e-8  # of the length: distance from an element end at a jump at which the section is evaluated
@@ -86,7 +87,7 @@ class Grid:
         """Return the node at a fraction [-] at which there is a support or joint; `make_grid` has put one there."""
         if fraction in (0.0, 1.0):
             return 0 if fraction == 0.0 else self.nodes - 1
-        return int(np.argmin(np.abs(self.arc - fraction * self.vertices[-1])))
+        return int(nearest(self.arc, fraction * self.vertices[-1]))
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc lengths (n,) [m] of points, given by element and xi, both (n,)."""
@@ -106,7 +107,7 @@ class Grid:
         if not jumps:
             return arc
         length = self.vertices[-1]
-        near = np.abs(self.vertices[:, None] - np.array(jumps)).min(axis=1) < _INSIDE * length
+        near = distances(self.vertices, np.array(jumps)) < _INSIDE * length
         inside = np.where(near, _INSIDE * length, 0.0)
         return np.clip(arc, (self.vertices + inside)[element], (self.vertices - inside)[element + 1])
 
@@ -128,7 +129,7 @@ def make_grid(beam: Beam, fractions: Iterable[float]) -> Grid:
     inner = beam.element.field.nodes
     last = len(inner) - 1
     elements = len(vertices) - 1
-    at_corner = np.abs(vertices[1:-1, None] - corners).min(axis=1, initial=np.inf) < 1e-9 * length
+    at_corner = distances(vertices[1:-1], corners) < 1e-9 * length
     # at a corner, the adjacent elements have separate nodes
     first = np.arange(elements) * last + np.concatenate([[0], np.cumsum(at_corner)])
     node = first[:, None] + np.arange(last + 1)
@@ -151,10 +152,10 @@ def _knot_spans(beam: Beam, fractions: Iterable[float]) -> Grid:
     assert isinstance(spline, BSpline)
     u = spline.breaks
     near = 1e-9 * np.diff(u).min()
-    for fraction in sorted(set(fractions)):
-        here = spline.parameter(np.array([fraction * spline.length]))[0]
-        if np.abs(u - here).min() > near:
-            u = np.sort(np.append(u, here))
+    wanted = spline.parameter(np.array(sorted(set(fractions))) * spline.length)
+    extra = wanted[distances(wanted, u) > near]
+    # those that are no further apart than this share an element end
+    u = np.sort(np.append(u, extra[np.diff(extra, prepend=-np.inf) > near]))
     arc = spline.arc_length(u)
     arc[-1] = spline.length
     rate = spline.length / (u[-1] - u[0])
@@ -174,14 +175,14 @@ def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
     assert not isinstance(asked, str)
     grid = np.linspace(0.0, 1.0, asked + 1) if isinstance(asked, int) else np.array(asked, dtype=float)
     near = 1e-9 * np.diff(grid).min()
-    extra = [f for f in sorted(set(fractions)) if np.abs(grid - f).min() > near]
-    distinct = [f for i, f in enumerate(extra) if i == 0 or f - extra[i - 1] > near]
-    movable = np.abs(np.subtract.outer(grid, sorted(set(fractions)))).min(axis=1, initial=np.inf) > near
+    wanted = np.array(sorted(set(fractions)))
+    extra = wanted[distances(wanted, grid) > near]
+    distinct = extra[np.diff(extra, prepend=-np.inf) > near]
+    movable = distances(grid, wanted) > near
     movable[[0, -1]] = False
     moved = grid.copy()
     added = []
-    for fraction in distinct:
-        i = int(np.abs(grid - fraction).argmin())
+    for fraction, i in zip(distinct.tolist(), nearest(grid, distinct).tolist(), strict=True):
         if movable[i] and abs(grid[i] - fraction) < _MOVED * (grid[i + 1] - grid[i - 1]):
             moved[i], movable[i] = fraction, False
         else:

@@ -20,6 +20,7 @@ from beamfem.model.grid import Grid
 from beamfem.model.grids import make_grids
 from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
+from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
@@ -29,6 +30,7 @@ from beamfem.model.numbering import number_nodes
 from beamfem.model.part_checks import require_part
 from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
+from beamfem.model.supports_along import SupportsAlong
 from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
@@ -166,12 +168,18 @@ class Model(ModelOutputs):
         return self._units.of(unit)
 
     @cached_property
+    def made_of(self) -> MadeOf:
+        """What the meshes were made of and may change, see `made_of`."""
+        return made_of(self)
+
+    @cached_property
     def _numbers(self) -> dict[int, int]:
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
     def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
         require_room(self.beams)
+        _ = self.made_of
         connected = [point for connector in self.connectors for point in connector.points]
         fractions = [[fraction for fraction, _ in own] for own in nodes_asked(self)]
         grids = make_grids(self.beams, fractions)
@@ -292,6 +300,11 @@ class Model(ModelOutputs):
     def point_supports(self) -> tuple[PointSupport, ...]:
         """The supports at points."""
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
+
+    @cached_property
+    def supports_along(self) -> SupportsAlong:
+        """The supports at points in the order of their beams' fractions."""
+        return SupportsAlong(self.point_supports)
 
     @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 _MUCH = 0.1  # fraction of the exchanged energy; a larger drift makes the results meaningless
 _ROWS = 100  # rows at which the exchanged energy is evaluated
+_FIRST = 32  # rows at which it is evaluated besides: what a sudden start gives rise to may last for a few steps only
 
 
 @dataclass(frozen=True)
@@ -82,9 +83,10 @@ def _rise(solution: "Solution") -> EnergyDrift | None:
 
 
 def _energy_of_rows(solution: "Solution") -> "Energy":
-    """Return the energies of at most `_ROWS` rows, and of the fastest one."""
+    """Return the energies of at most `_ROWS` rows, of the first `_FIRST` ones, and of the fastest one."""
     fastest = np.argmax(np.einsum("sn,sn->s", solution.v, solution.v))
-    rows = np.unique(np.append(np.linspace(0, len(solution) - 1, _ROWS).astype(int), fastest))
+    spread, first = np.linspace(0, len(solution) - 1, _ROWS).astype(int), np.arange(min(_FIRST, len(solution)))
+    rows = np.unique(np.concatenate([spread, first, [fastest]]))
     at, p, v, a = (values[rows] for values in (solution.at, solution.p, solution.v, solution.a))
     return replace(solution, at=at, p=p, v=v, a=a, stability=None, turned=start_rotations(solution)[rows]).energy()
 

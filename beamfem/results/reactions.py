@@ -25,8 +25,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     """
     model = solution.model
     model.mesh_of(point)  # refuses what is no point of this model
-    on_beam = [support for support in model.point_supports if support.point.beam is point.beam]
-    own = [support for support in on_beam if abs(support.point.fraction - point.fraction) < 1e-9]
+    own = model.supports_along.near(point, 1e-9)
     if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
     return reaction_of(solution, own)

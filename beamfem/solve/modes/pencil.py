@@ -18,12 +18,17 @@ _ASYMMETRY = 1e-12
 _FELT = 1e-4  # of the work of random forces: share of the round-off of the stiffness above which it is examined
 
 
-def is_symmetric(matrix: csr_array) -> bool:
-    """Return whether a tangent is symmetric up to round-off relative to its diagonal."""
-    size = np.sqrt(np.abs(matrix.diagonal()))
+def is_symmetric(system: System, matrix: csr_array) -> bool:
+    """Return whether a tangent (unknown, unknown) is symmetric up to round-off relative to its diagonal.
+
+    Moments and forces are compared by their work on motions of the size of the model.
+    """
+    length = system.scale[system.free_dofs]
+    size = np.sqrt(np.abs(matrix.diagonal())) * length
     difference = (matrix - matrix.T).tocoo()
-    scale = size[difference.row] * size[difference.col]
-    return bool(np.all(np.abs(difference.data) <= _ASYMMETRY * np.maximum(scale, 1e-3 * size.max() ** 2)))
+    row, column = difference.row, difference.col
+    apart = np.abs(difference.data) * length[row] * length[column]
+    return bool(np.all(apart <= _ASYMMETRY * np.maximum(size[row] * size[column], 1e-3 * size.max() ** 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +85,7 @@ class Pencil:
 
     @cached_property
     def symmetric(self) -> bool:
-        return is_symmetric(self.stiffness)
+        return is_symmetric(self.system, self.stiffness)
 
     @cached_property
     def size(self) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
-from beamfem.assembly.system import System, system_of
+from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
@@ -15,6 +15,7 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
+from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
@@ -26,6 +27,7 @@ from beamfem.solve.motion.unresolved import courses, name_unresolved
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import start_state
+from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
 
@@ -69,7 +71,7 @@ def simulate(
     Raises
     ------
     InputError
-        Before the solve, for invalid arguments, such as a start from which a support would jump.
+        Before the solve, for invalid arguments, such as a support that would jump from the start.
     ConvergenceError
         If a step does not converge; its `solution` has all states so far. Any other exception during the solve, such as
         KeyboardInterrupt, carries the states so far as its `solution` too.
@@ -89,7 +91,7 @@ def simulate(
             "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end) as "
             f"bf.Integrator describes it, got {shown(integrator)}"
         )
-    system = system_of(model, static=False)
+    system = system_to_solve(model, static=False)
     if own:
         refuse_what_own_steps_lack(system)
     tell_of_compilation()
@@ -104,9 +106,10 @@ def simulate(
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    if start is not None:
-        require_on_supports(system, state[0], prescribed[0, 0])
-    put_onto_supports(system, state, prescribed[0])
+    require_on_supports(system, state[0], prescribed[0, 0], start is not None)
+    stopped = put_onto_supports(system, state, prescribed[0])
+    if stopped.any():
+        state[1] += impact(system, state[0], stopped)
     if len(system.connectors.multipliers):
         require_met(system, state[0], state[1], duration)
     state[2] = initial_acceleration(system, state, parts[0].loads_from)

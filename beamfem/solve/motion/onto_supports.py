@@ -15,10 +15,11 @@ _ZERO = 1e-12  # of the size of the model, and rad: round-off in messages
 _NAMES = {"r^x": "ux", "r^y": "uy", "theta": "rotation"}
 
 
-def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray) -> None:
-    """Raise InputError if a support would move its point from a given start at once.
+def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, given: bool) -> None:
+    """Raise InputError if a support would move its point from the start at once.
 
-    p (n,): coordinates of the start; prescribed (nh,): values of the prescribed coordinates at time 0.
+    p (n,): coordinates of the start; prescribed (nh,): values of the prescribed coordinates at time 0; given: whether
+    the start is a state, not the reference.
     """
     moved = float(np.abs(p - system.reference)[system.positions].max()) / system.extent
     near = max(_OFF * min(moved, 1.0), _SAME)
@@ -35,18 +36,23 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray) -
         names = {way: coordinate_of(support, way) for way in support.prescribed()}
         if any(name is not None and numbers[name] in jumps for name in names.values()):
             dofs = {way: (_NAMES[name], numbers[name]) for way, name in names.items() if name is not None}
-            raise InputError(_jumping(system, support, p, dofs, jumps))
+            raise InputError(_jumping(system, support, p, dofs, jumps, given))
         if None in names.values() and numbers["r^x"] in slides:
             raise InputError(_sliding(system, support, slides[numbers["r^x"]]))
 
 
-def put_onto_supports(system: System, state: np.ndarray, prescribed: np.ndarray) -> None:
-    """Give prescribed coordinates of a state p, p', p'' (4, n) their values (3, nh), and remove what rollers stop."""
+def put_onto_supports(system: System, state: np.ndarray, prescribed: np.ndarray) -> np.ndarray:
+    """Give prescribed coordinates of a state p, p', p'' (4, n) their values (3, nh), and remove what rollers stop.
+
+    Return the change of p' (n,).
+    """
+    before = state[1].copy()
     state[:3, system.prescribed_dofs] = prescribed
     for dof, normal in system.inclined:
         pair = slice(dof, dof + 2)
         state[0, pair] -= normal * (normal @ (state[0, pair] - system.reference[pair]))
         state[1, pair] -= normal * (normal @ state[1, pair])
+    return np.asarray(state[1] - before)
 
 
 def _unfelt_turns(system: System, gaps: np.ndarray) -> np.ndarray:
@@ -67,11 +73,17 @@ def _large(dofs: np.ndarray, gaps: np.ndarray, near: np.ndarray | float) -> dict
 
 
 def _jumping(
-    system: System, support: PointSupport, p: np.ndarray, dofs: dict[str, tuple[str, int]], jumps: dict[int, float]
+    system: System,
+    support: PointSupport,
+    p: np.ndarray,
+    dofs: dict[str, tuple[str, int]],
+    jumps: dict[int, float],
+    given: bool,
 ) -> str:
     """Return the message that a support prescribes coordinates other than those of a start p (n,).
 
-    dofs: name and number of the coordinate of each direction; jumps: change [m], [rad] of those that would jump.
+    dofs: name and number of the coordinate of each direction; jumps: change [m], [rad] of those that would jump; given:
+    see `require_on_supports`.
     """
     metre, prescribed = system.model.unit("m"), support.prescribed()
     held, there, hold, driven = [], [], [], False
@@ -87,10 +99,16 @@ def _jumping(
             driven = driven or callable(prescribed[way])
     jump = " and ".join(f"{size:.4g} {unit}" for unit, size in apart.items() if size > 0.0)
     message = (
-        f"{type(support).__name__} at {support.point}, prescribes {', '.join(held)} when the motion begins, but start "
-        f"has {', '.join(there)} there: it would jump by {jump}. To hold it where it is, use a Prescribed support with "
-        f"{', '.join(hold)}"
+        f"{type(support).__name__} at {support.point}, prescribes {', '.join(held)} when the motion begins, but "
+        f"{'start' if given else 'the reference'} has {', '.join(there)} there: it would jump by {jump}. "
     )
+    if not given:
+        if driven:
+            start = "Subtract from its functions their values at time 0, or start from a static state with these values"
+        else:
+            start = "Use a function of time that begins at 0, or start from what solve_static finds with this support"
+        return message + start
+    message += f"To hold it where it is, use a Prescribed support with {', '.join(hold)}"
     if driven:
         return f"{message}; to continue a motion, shift the time of its functions, which begins at 0 again"
     return f"{message}; or start from what solve_static finds with this support"

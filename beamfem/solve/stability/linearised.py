@@ -33,7 +33,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     for steps, weight in ((1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)):
         at = steps * width
         rate = rate + weight / (12.0 * width) * _tangent(system, p + at * slope, load_factor + at).sparse(UNROTATED)
-    if not is_symmetric(csr_array(stiffness + width * rate)):
+    if not is_symmetric(system, csr_array(stiffness + width * rate)):
         raise InputError(
             "some load follows the beam, so that its work depends on the motion: such loads can make a structure "
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"

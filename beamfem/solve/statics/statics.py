@@ -8,7 +8,6 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from beamfem.assembly.compiled import tell_of_compilation
-from beamfem.assembly.system import system_of
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
@@ -18,6 +17,7 @@ from beamfem.solve.newton.iteration import Newton, require_newton
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.mechanisms import require_support
 from beamfem.solve.start.multipliers import require_independent
+from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.statics.load_steps import SAME, Snap, reach
 from beamfem.solve.statics.preload import first_equilibrium
 from beamfem.solve.statics.static_record import StaticRecord
@@ -125,7 +125,7 @@ def solve_through(
     """Return the static solution up to the load factor `end`, with rows at the load factors `stops`."""
     steps = count("steps", steps)
     one_of("snap", snap, ("error", "jump"))
-    system = system_of(model, static=True)
+    system = system_to_solve(model, static=True)
     tell_of_compilation()
     require_support(system)
     require_independent(system, system.reference)

@@ -248,6 +248,13 @@ def test_a_path_is_saved_and_drawn_as_a_solution_and_a_motion_starts_from_its_st
     assert np.array_equal(motion.p[0], path.limit_points[0].p)
 
 
+def test_an_until_for_a_whole_solution_is_told_that_it_gets_one_state():
+    beam, model = cantilever(10, (0.0, 5.0))
+    with pytest.raises(IndexError) as caught:
+        trace_equilibrium(model, lambda state: state.displacement(beam.end)[-1, 1] > 0.1)
+    assert any("state.displacement(point)[1], have no axis of rows" in note for note in caught.value.__notes__)
+
+
 @pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt])
 def test_what_stops_the_work_keeps_the_path(error):
     _, model = cantilever(10, (0.0, 5.0))

@@ -243,7 +243,10 @@ def _met(until: Until, state: PathState) -> bool:
     try:
         answer = until(state)
     except Exception as error:
-        error.add_note(f"raised by `until`, for the state at load factor {state.load_factor:.6g}")
+        error.add_note(
+            f"raised by `until`, for the state at load factor {state.load_factor:.6g}; results of one state, such as "
+            "state.displacement(point)[1], have no axis of rows"
+        )
         raise
     if not isinstance(answer, bool | np.bool_):
         raise InputError(f"until must return True or False for a state of the path, got {answer!r}")

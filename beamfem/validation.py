@@ -226,7 +226,7 @@ def members(protocol: type) -> tuple[str, ...]:
 
 def function_value(name: str, function: Callable[[float], float], at: float) -> float:
     """Return the finite value of a user's function, or raise InputError naming it and the argument."""
-    return finite(f"{name}({at:g})", called(name, function, at))
+    return finite(f"{name} at {at:g}", called(name, function, at))
 
 
 def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:

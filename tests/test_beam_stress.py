@@ -97,6 +97,21 @@ def test_the_peak_of_a_frame_is_in_the_weaker_of_two_beams():
         solution.peak_stress("mises")
 
 
+def test_a_peak_that_leaves_beams_out_warns_of_them():
+    """Moments without a height define no stress: the largest one of the model may be there."""
+    known = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), bf.Rectangle(0.02, 0.01), STEEL)
+    unknown = bf.Beam(bf.Line((1, 0), (2, 0)), 4, bf.CRBF(2), bf.Section(2e-4, 1e-9), STEEL, "arm")
+    loads, joint = [bf.PointForce(unknown.end, (0.0, 1e-3))], [bf.Rigid(known.end, unknown.start)]
+    both = bf.solve_static(bf.Model([known, unknown], [bf.Clamp(known.start)], loads, joint))
+    with pytest.warns(bf.UnknownStressWarning, match=r"1 of 2 beams \(arm\) is not known and is left out: .*height"):
+        peak = both.peak_stress("tension")
+    assert peak.beam is known
+    assert peak.value == pytest.approx(1e-3 * 2.0 / (0.02 * 0.01**2 / 6.0), rel=1e-3)
+    alone = bf.solve_static(bf.Model([unknown], [bf.Clamp(unknown.start)], loads))
+    with pytest.warns(bf.UnknownStressWarning, match="of 1 of 1 beams .* is not known and is nan"):
+        assert np.isnan(alone.peak_stress().value)
+
+
 def test_layers_have_strengths_of_their_own():
     """The stiff layer carries more stress, the weak one is used up first."""
     weak = bf.Material(2e10, 0.3, 1000.0, strength=1e6)

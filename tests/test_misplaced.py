@@ -10,6 +10,7 @@ import beamfem as bf
 STEEL, SQUARE = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
 AXIS = bf.Line((0, 0), (2, 0))
 BEAM = bf.Beam(AXIS, 4, bf.CRBF(2), SQUARE, STEEL)
+NEXT, AWAY = (bf.Beam(bf.Line(*ends), 4, bf.CRBF(2), SQUARE, STEEL) for ends in (((2, 0), (3, 0)), ((5, 0), (6, 0))))
 CLAMP, FORCE = bf.Clamp(BEAM.start), bf.PointForce(BEAM.end, (0.0, 1.0))
 
 
@@ -76,6 +77,12 @@ class OtherHalf(bf.Section):
 
 PROFILE = {"area": 1e-4, "second_moment": 8.333e-10}
 MISTAKES = {
+    "an amplitude of two numbers": (
+        lambda: bf.solve_static(
+            bf.Model([BEAM], [CLAMP], [bf.PointForce(BEAM.end, (0, 1), amplitude=lambda t: (0, t))])
+        ),
+        r"^amplitude of PointForce at 0 must be a number, got \(0, 0.0\)$",
+    ),
     "a beam for a list": (lambda: bf.Model(BEAM, [CLAMP]), r"beams of Model .* brackets: beams=\[...\]"),
     "a clamp for a list": (lambda: bf.Model([BEAM], CLAMP), r"write it in brackets: supports=\[...\]"),
     "a load among supports": (lambda: bf.Model([BEAM], [FORCE]), "supports of a Model .*; it belongs in loads"),
@@ -100,6 +107,14 @@ MISTAKES = {
     ),
     "an arc length as a fraction": (lambda: BEAM.at(1.5), "got 1.5; an arc length s is at the fraction s / 2$"),
     "beyond the beam": (lambda: BEAM.at(2.5), "got 2.5$"),
+    "a joint of the wrong ends": (
+        lambda: bf.Model([BEAM, NEXT], joints=[bf.Rigid(BEAM.end, NEXT.end)]),
+        "which are 1 m apart; .* of the longer beam; the end of the first beam and the start of the second do$",
+    ),
+    "a joint of beams apart": (
+        lambda: bf.Model([BEAM, AWAY], joints=[bf.Rigid(BEAM.end, AWAY.end)]),
+        "which are 4 m apart; a joint needs points that coincide, to 1e-05 of the longer beam$",
+    ),
     "a joint without a and b": (lambda: Pair(BEAM.start, BEAM.end), "Pair has no field a; it needs one, for a Point"),
     "a load without a point": (lambda: Push(BEAM.end), "Push has no field point"),
     "a value that is called": (lambda: bf.Model([BEAM], [CLAMP], [Called(BEAM.end)]), "a property, not a method"),

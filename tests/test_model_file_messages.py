@@ -138,6 +138,20 @@ def test_errors_of_syntax_say_what_would_be_right(text, hint):
     assert hint in in_words(str(caught.value), text).partition("; ")[2]
 
 
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        (b"\x89HDF\r\n", "this is a results file, which beamfem info, plot and export read; model files are TOML"),
+        (b"\xff\xfe", "this is not a text in UTF-8; model files are TOML"),
+    ],
+)
+def test_other_files_are_named(tmp_path, start, message):
+    (tmp_path / "arm.h5").write_bytes(start)
+    with pytest.raises(ModelFileError) as caught:
+        read_model_file(tmp_path / "arm.h5")
+    assert str(caught.value) == f"{tmp_path / 'arm.h5'}: {message}"
+
+
 @pytest.mark.filterwarnings("default::beamfem.errors.SeveralTurnsWarning")
 def test_an_arc_in_degrees_is_warned_of_in_numbers(tmp_path):
     line, arc = "end = [1, 0]", 'kind = "arc", center = [0, 0], radius = 1, start_angle = 0, end_angle = 180'

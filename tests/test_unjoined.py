@@ -4,9 +4,10 @@ import re
 
 import numpy as np
 import pytest
+from connectors import SpringDamper
 
 import beamfem as bf
-from beamfem.solve.start.unjoined import unjoined_ends
+from beamfem.model.unjoined import unjoined_ends
 
 SECTION, STEEL = bf.Rectangle(0.01, 0.01), bf.Material(2e11, 0.3, 7800.0)
 
@@ -79,3 +80,25 @@ def test_the_first_of_very_many_is_found_at_once():
     end, other = next(pairs)
     assert end.reference == pytest.approx(other.reference)
     assert sum(1 for _ in pairs) > 2 * 39 * 40 - 2
+
+
+FRAME = [line((0, 0), (0, 1)), line((0, 1), (1, 1)), line((1, 1), (1, 0))]
+FEET = [bf.Clamp(FRAME[0].start), bf.Clamp(FRAME[2].end)]
+PUSH = [bf.PointForce(FRAME[0].end, (1.0, 0.0))]
+JOINTS = [bf.Rigid(FRAME[0].end, FRAME[1].start), bf.Rigid(FRAME[1].end, FRAME[2].start)]
+
+
+def test_a_missing_joint_that_leaves_no_mechanism_is_warned_of():
+    """The bar is then a cantilever on the left column, and the right column stands alone."""
+    (said,) = bf.solve_static(bf.Model(FRAME, FEET, PUSH, JOINTS[:1])).warnings
+    assert said.startswith("The end of beam 1 and the start of beam 2 are both at (1, 1), but no joint connects them, ")
+    assert re.search(r"they move 0\.00[0-9]+ m apart\. If they belong together, add a Rigid or a Hinge$", said)
+    assert bf.solve_static(bf.Model(FRAME, FEET, PUSH, JOINTS)).warnings == ()
+    assert bf.simulate(bf.Model(FRAME, FEET, PUSH, JOINTS[1:]), 0.01, 1e-3).warnings[-1].startswith("The end of beam 0")
+
+
+def test_ends_that_stay_together_or_that_a_connector_ties_are_not_warned_of():
+    pinned = [*FEET, bf.Pin(FRAME[1].end), bf.Pin(FRAME[2].start)]
+    assert bf.solve_static(bf.Model(FRAME, pinned, PUSH, JOINTS[:1])).warnings == ()
+    tie = SpringDamper(FRAME[1].at(0.5), FRAME[2].start, stiffness=10.0)
+    assert bf.solve_static(bf.Model(FRAME, FEET, PUSH, JOINTS[:1], [tie])).warnings == ()

@@ -45,7 +45,9 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
             dof = dofs[name]
             if dof in found:
                 what = type(support).__name__
-                raise InputError(f"{what} at {support.point}: another support already prescribes {direction} there")
+                raise InputError(
+                    f"{what} at {support.point}: another support already prescribes {direction} there; one is enough"
+                )
             found[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
     return tuple(found[dof] for dof in sorted(found))
 

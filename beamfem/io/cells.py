@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from beamfem.alike import by_value
-from beamfem.errors import UnknownStressWarning, warn
 from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.io.samples import Samples, body, centreline
 from beamfem.material import Material
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.model.named import names
+from beamfem.results.unknown_stress import warn_of_unknown_stress
 from beamfem.section import Layered
 from beamfem.validation import flag, one_of, require_known, shown
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 Geometry = Literal["deformed", "reference"]
 # numbers of cell types, from vtkCellType.h
 VERTEX, LINE, LAGRANGE_QUADRILATERAL = 1, 3, 70
-_NAMED = 10  # beams that a warning names
 
 
 @dataclass(frozen=True)
@@ -161,18 +160,7 @@ class Cells:
         """Warn of beams whose stress is left out, or nan beside that of others."""
         number = {id(mesh): i for i, mesh in enumerate(self.meshes)}
         unknown = sorted({number[id(part.mesh)] for part in self.samples if not part.known["stress_xx"]})
-        if unknown:
-            called = names(self.beams)
-            shown = ", ".join(called[number] for number in unknown[:_NAMED]) + (
-                ", ..." if len(unknown) > _NAMED else ""
-            )
-            what = "left out" if len(unknown) == len(self.meshes) else "nan"
-            warn(
-                f"the stress of {len(unknown)} of {len(self.meshes)} beams ({shown}) is not known and is {what}: their "
-                "sections are given by a stiffness, a law of their own, or moments without a height; "
-                "Section(..., height=) gives it",
-                UnknownStressWarning,
-            )
+        warn_of_unknown_stress(self.beams, unknown, "left out" if len(unknown) == len(self.meshes) else "nan")
 
     def names(self, solution: "Solution") -> list[str]:
         """Return the fields that there are."""

@@ -1,8 +1,12 @@
 """What would be right where a model is given a part of another kind, or a point of another model."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
+import numpy as np
+
+from beamfem.curves.curve import GAP
 from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.contribution import Contribution
@@ -38,6 +42,15 @@ def beam_like(beams: Sequence[Beam], beam: Beam) -> str:
     alike = (number for number, own in enumerate(beams) if type(own.curve) is type(beam.curve))
     same = next((number for number in alike if beams[number].curve == beam.curve), None)
     return "" if same is None else f"use model.beams[{same}], a beam on the same axis"
+
+
+def touching(one: Beam, other: Beam) -> str:
+    """Return in words which ends of two beams are at one place, empty if none are."""
+    near = GAP * max(one.curve.length, other.curve.length)
+    for own, its in product(("start", "end"), repeat=2):
+        if np.hypot(*(getattr(one, own).reference - getattr(other, its).reference)) <= near:
+            return f"; the {own} of the first beam and the {its} of the second do"
+    return ""
 
 
 def _named(kinds: Sequence[type]) -> str:

@@ -22,7 +22,7 @@ from beamfem.model.joints import Joint
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
-from beamfem.model.misplaced import beam_like, listed, refused
+from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
 from beamfem.model.nodes_asked import nodes_asked
@@ -153,7 +153,7 @@ class Model(ModelOutputs):
         if gap > GAP * max(joint.a.beam.curve.length, joint.b.beam.curve.length):
             raise InputError(
                 f"{kind} joins {joint.a} and {joint.b}, which are {gap:g} {self.unit('m')} apart; a joint needs points "
-                f"that coincide, to {GAP:g} of the longer beam"
+                f"that coincide, to {GAP:g} of the longer beam{touching(joint.a.beam, joint.b.beam)}"
             )
 
     @cached_property

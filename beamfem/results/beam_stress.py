@@ -15,6 +15,7 @@ from beamfem.results.section_forces import at_points, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
+from beamfem.results.unknown_stress import warn_of_unknown_stress
 from beamfem.units import Units, units_of
 from beamfem.validation import require_known, shown
 
@@ -173,10 +174,17 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
 
 
 def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
-    """Return the peak of a stress over all beams and rows, as `BeamStress.peak`; nan if none is known."""
+    """Return the peak of a stress over all beams and rows, as `BeamStress.peak`; nan if none is known.
+
+    Warns of beams with sections that define no stress.
+    """
     peaks = [beam_stress(solution, beam).peak(part) for beam in solution.model.beams]
     sizes = _measured(part, np.array([peak.value for peak in peaks]))
-    return peaks[0 if np.isnan(sizes).all() else int(np.nanargmax(sizes))]
+    unknown = np.isnan(sizes)
+    if part != "utilisation":  # which a material without a strength does not have either
+        what = "nan" if unknown.all() else "left out"
+        warn_of_unknown_stress(solution.model.beams, np.flatnonzero(unknown).tolist(), what)
+    return peaks[0 if unknown.all() else int(np.nanargmax(sizes))]
 
 
 def _measured(part: Part, values: np.ndarray) -> np.ndarray:

@@ -104,7 +104,12 @@ class Quantities(PointQuantities):
         Returns
         -------
         Peak
-            The peak, with its beam.
+            The peak, with its beam; nan if no value is known.
+
+        Warns
+        -----
+        UnknownStressWarning
+            If sections of some beams define no stress, such as moments without a height.
 
         Examples
         --------

@@ -1,6 +1,7 @@
 """A solution: states of a model over load factor or time, and the results derived from them."""
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import overload
 
 import numpy as np
@@ -18,6 +19,7 @@ from beamfem.results.pictures import Pictures
 from beamfem.results.quantities import Quantities
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import start_rotations
+from beamfem.results.unjoined import unjoined_warnings
 from beamfem.validation import shown, whole
 
 
@@ -161,8 +163,9 @@ class Solution(Quantities, Pictures, Exports):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings to heed before using the results, those on locking included; empty if there are none."""
-        return (*self.statistics.warnings, *locking_warnings(self), *drift_warnings(self))
+        """Warnings to heed before using the results, on locking and on missing joints too; empty if there are none."""
+        found = locking_warnings(self), drift_warnings(self), unjoined_warnings(self)
+        return (*self.statistics.warnings, *chain.from_iterable(found))
 
     @cached_property
     def stable(self) -> np.ndarray:

@@ -25,6 +25,7 @@ from beamfem.errors import InputError
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 
+_HDF5 = b"\x89HDF"
 _KEYS = (
     "title",
     "units",
@@ -114,7 +115,9 @@ def read_model_file(path: str | PathLike[str]) -> Job:
     except IsADirectoryError:
         raise ModelFileError("this is a folder, not a model file", file, None, None) from None
     except UnicodeDecodeError:
-        raise ModelFileError("this is not a text in UTF-8, as TOML files are", file, None, None) from None
+        results = file.read_bytes().startswith(_HDF5)
+        what = "a results file, which beamfem info, plot and export read" if results else "not a text in UTF-8"
+        raise ModelFileError(f"this is {what}; model files are TOML", file, None, None) from None
     try:
         values = tomllib.loads(text)
         lines = key_lines(text)

@@ -6,8 +6,8 @@ from beamfem.assembly.system import System
 from beamfem.errors import FreeMotionError
 from beamfem.model.named import beam_in_words
 from beamfem.model.support import PointSupport
+from beamfem.model.unjoined import Pair, in_words, unjoined_ends
 from beamfem.solve.start.body_motions import NEGLIGIBLE, Conditions, bodies_of, mechanisms
-from beamfem.solve.start.unjoined import Pair, in_words, unjoined_ends
 
 _PROVEN = "supported"
 
@@ -40,7 +40,7 @@ def require_support(system: System) -> None:
     farthest = (start, end)[int(moved[1] > (1.0 + 1e-6) * moved[0])]
     x, y = farthest.reference
     unjoined = next((pair for pair in unjoined_ends(model) if _parts(rows, free, pair)), None)
-    remedy = f"moves. {in_words(model, unjoined)}. Otherwise a" if unjoined else "moves. A"
+    remedy = f"moves. {in_words(model, unjoined)}: add a Rigid or a Hinge. Otherwise a" if unjoined else "moves. A"
     raise FreeMotionError(
         f"{beam_in_words(model.beams, number)} can move freely: {', '.join(described)}; its point ({x:g}, {y:g}) "
         f"{remedy} static solve needs supports that hold it (a Clamp, or a Pin and a Roller) or joints that stiffen it "

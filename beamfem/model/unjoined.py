@@ -38,11 +38,11 @@ def unjoined_ends(model: Model) -> Iterator[Pair]:
 
 
 def in_words(model: Model, pair: Pair) -> str:
-    """Return a sentence that names two points at one place, and what would join them."""
+    """Return a sentence that names two points at one place without a joint."""
     one, other = sorted(pair, key=lambda point: model.number_of(point.beam))
     x, y = one.reference
     both = f"{_point_in_words(model, one)} and {_point_in_words(model, other)}"
-    return f"{both[0].upper()}{both[1:]} are both at ({x:g}, {y:g}), but no joint connects them: add a Rigid or a Hinge"
+    return f"{both[0].upper()}{both[1:]} are both at ({x:g}, {y:g}), but no joint connects them"
 
 
 def _point_in_words(model: Model, point: Point) -> str:

@@ -1,7 +1,5 @@
 """A model: beams with their supports, joints, loads and connectors."""
 
-from bisect import bisect_left, bisect_right
-from collections import defaultdict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from math import prod
@@ -289,23 +287,6 @@ class Model(ModelOutputs):
     def point_supports(self) -> tuple[PointSupport, ...]:
         """The supports at points."""
         return tuple(support for support in self.supports if isinstance(support, PointSupport))
-
-    @cached_property
-    def _supports_along(self) -> dict[int, tuple[list[float], list[PointSupport]]]:
-        """Fractions and supports of each beam that has some, from its start to its end."""
-        found: defaultdict[int, list[PointSupport]] = defaultdict(list)
-        for support in sorted(self.point_supports, key=lambda own: own.point.fraction):
-            found[id(support.point.beam)].append(support)
-        return {beam: ([support.point.fraction for support in own], own) for beam, own in found.items()}
-
-    def supports_near(self, point: Point, distance: float) -> list[PointSupport]:
-        """Return the supports on a point's beam whose fractions differ from the point's by less than a distance [-]."""
-        fractions, supports = self._supports_along.get(id(point.beam), ([], []))
-        begin, end = (
-            bisect_left(fractions, point.fraction - distance),
-            bisect_right(fractions, point.fraction + distance),
-        )
-        return [own for own in supports[begin:end] if abs(own.point.fraction - point.fraction) < distance]
 
     @cached_property
     def line_supports(self) -> tuple[LineSupport, ...]:

@@ -11,6 +11,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.model.beam import Point
 from beamfem.model.support import PointSupport
+from beamfem.model.supports_near import supports_near
 from beamfem.results.last_digits import exactly
 from beamfem.results.loading import loading
 
@@ -25,7 +26,7 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     """
     model = solution.model
     model.mesh_of(point)  # refuses what is no point of this model
-    own = model.supports_near(point, 1e-9)
+    own = supports_near(model, point, 1e-9)
     if not own:
         raise InputError(f"there is no support at {point}, so there is no reaction")
     return reaction_of(solution, own)

@@ -1,6 +1,7 @@
 """What is done for many members at once is what would be done for each; and its cost."""
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -180,3 +181,80 @@ def test_reactions_are_of_all_supports_at_a_point():
         near &= {id(own) for own in supports if abs(own.point.fraction - point.fraction) < 1e-9}
         assert {id(own) for own in model.supports_along.near(point, 1e-9)} == near
     assert model.supports_along.near(beam.at(0.75), 1e-9) == [springs[0], springs[4]]
+
+
+def heated_lattice(cells):
+    """A lattice on foundations, each of its members heated."""
+    model, _ = grid(cells, cells, element=bf.CRBF(1))
+    material = bf.Material(1e7, 0.3, 1000.0, thermal_expansion=1e-5)
+    warm = {id(beam): replace(beam, material=material) for beam in model.beams}
+    beams = list(warm.values())
+
+    def moved(point):
+        return warm[id(point.beam)].at(point.fraction)
+
+    return bf.Model(
+        beams,
+        [bf.Clamp(moved(own.point)) for own in model.supports] + [bf.Foundation(beam, (1.0, 2.0)) for beam in beams],
+        [bf.Temperature(beam, 1.0 + number % 3) for number, beam in enumerate(beams)],
+        [bf.Rigid(moved(joint.a), moved(joint.b)) for joint in model.joints],
+    )
+
+
+def taken_by_results(solution):
+    """Return the largest memory [bytes] that some results of one beam take, after those of another."""
+    first, *_, last = solution.model.beams
+    calls = (
+        solution.section_forces,
+        solution.stresses,
+        lambda beam: solution.fields(beam.end),
+        lambda beam: solution.rotation(beam.at(0.3)),
+    )
+    most = []
+    for call in calls:
+        call(first)
+        tracemalloc.start()
+        try:
+            call(last)
+            most.append(tracemalloc.get_traced_memory()[1])
+        finally:
+            tracemalloc.stop()
+    return most
+
+
+def test_results_of_a_beam_take_no_memory_of_the_size_of_the_model():
+    """Each of n members took n coordinates, loads and foundations: 8 times as much in a model of 8 times the size."""
+    small, large = (taken_by_results(bf.solve_static(heated_lattice(cells))) for cells in (6, 18))
+    assert all(after < 1.5 * before for before, after in zip(small, large, strict=True))
+
+
+def test_forces_of_all_beams_of_a_lattice_balance_at_its_joints():
+    """Foundations, temperatures and several beams of one block: each beam finds its own loads among those of all."""
+    solution = bf.solve_static(heated_lattice(4))
+    for beam in solution.model.beams:
+        forces, foundation = solution.section_forces(beam), np.array([1.0, 2.0])
+        mesh = solution.model.mesh_of(beam.start)
+        moved = np.array([solution.displacement(beam.at(s))[-1] for s in (0.0, 0.5, 1.0)])
+        pulled = foundation * np.trapezoid(moved, dx=0.5 * beam.curve.length, axis=0)
+        normal = [solution.fields(point).r_y[-1][[1, 0]] * [1.0, -1.0] for point in (beam.start, beam.end)]
+        ends = [
+            forces.normal[-1, i] * n + forces.shear[-1, i] * np.array([-n[1], n[0]])
+            for i, n in zip((0, -1), normal, strict=True)
+        ]
+        assert mesh.elements == 2
+        assert ends[1] - ends[0] == pytest.approx(pulled, abs=1e-6 * np.abs(ends).max())
+
+
+@pytest.mark.parametrize("element", [bf.CRBF(2), bf.ANCF(), bf.ShearRigid()], ids=lambda own: own.name)
+def test_the_energy_of_many_moments_is_the_work_of_each(element):
+    beam = bf.Beam(bf.Arc((0.0, 0.0), 1.0, 0.0, 2.0), 5, element, SECTION, MATERIAL)
+    places = (0.2, 0.37, 0.8, 1.0)
+    loads = [bf.PointMoment(beam.at(place), 0.1 * (1 + i)) for i, place in enumerate(places)]
+    loads += [bf.PointForce(beam.at(0.5), (0.3, 0.2)), *(bf.DistributedLoad(beam, (0.1 * i, -0.2)) for i in range(3))]
+    solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], loads))
+    work = sum(load.value[2] * solution.rotation(load.point) for load in loads if isinstance(load, bf.PointMoment))
+    arc = np.linspace(0.0, 1.0, 4001)
+    moved = np.array([solution.displacement(beam.at(s))[-1] for s in arc])
+    total = np.trapezoid(moved @ np.array([0.3, -0.6]), dx=beam.curve.length / 4000)
+    known = work[-1] + solution.displacement(beam.at(0.5))[-1] @ [0.3, 0.2] + total
+    assert solution.energy().potential[-1] == pytest.approx(-known, rel=1e-4)

@@ -13,6 +13,7 @@ from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
+from beamfem.once import cached_property
 
 _FEW = 8  # points; tables of more points are not cached
 
@@ -32,6 +33,20 @@ class Actions:
     xi: np.ndarray
     rule: np.ndarray
     loads: tuple[PointLoad | LineLoad, ...]
+
+    @cached_property
+    def _spread(self) -> tuple[np.ndarray, np.ndarray]:
+        """Distributed loads and foundations (m,), ordered by element, and their elements (m,)."""
+        spread = np.flatnonzero(self.rule > 0)
+        order = spread[np.argsort(self.points.element[spread], kind="stable")]
+        return order, self.points.element[order]
+
+    def spread_on(self, elements: np.ndarray) -> np.ndarray:
+        """Return the numbers (k,) of the distributed loads and foundations on elements of the block, ascending."""
+        order, owner = self._spread
+        first, last = (np.searchsorted(owner, elements, side=side) for side in ("left", "right"))
+        count = last - first
+        return np.sort(order[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())])
 
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,13 @@ from beamfem.model.mesh import BeamMesh
 
 _FEW = 2000  # elements; results for larger blocks are not cached
 PER_CLASS = tuple(name for name in Classes._fields if name != "kind")
+
+
+def classes_of(block: Block, elements: slice | np.ndarray) -> dict[str, Any]:
+    """Return the classes of some elements of a block, numbered from the first one used, with their data."""
+    used, kind = np.unique(block.kind[elements], return_inverse=True)
+    data = {} if len(used) == len(block.scale) else {name: getattr(block, name)[used] for name in PER_CLASS}
+    return {**data, "kind": kind}
 
 
 def build_block(

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.blocks import PER_CLASS, homes
+from beamfem.assembly.blocks import classes_of, homes
 from beamfem.kernels.block import Block, PointLoads
 
 if TYPE_CHECKING:
@@ -23,11 +23,8 @@ def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:
     node = whole.node[elements]
     nodes = slice(int(node[0, 0]), int(node[-1, -1]) + 1)
     dof, node = whole.dof[nodes], node - nodes.start
-    used, kind = np.unique(whole.kind[elements], return_inverse=True)
-    classes = {} if len(used) == len(whole.scale) else {name: getattr(whole, name)[used] for name in PER_CLASS}
     return whole._replace(
-        **classes,
-        kind=kind,
+        **classes_of(whole, elements),
         home=homes(node, len(dof)),
         imposed=None if whole.imposed is None else whole.imposed.of(elements),
         history=whole.history_of(elements),

@@ -15,6 +15,14 @@ def uncounted(model: Model) -> list[BeamMesh]:
     return known["_uncounted"]
 
 
+def number_uncounted(model: Model, mesh: BeamMesh) -> int | None:
+    """Return the number of a mesh of the model among those of `uncounted`, None if it is not one of them."""
+    known: dict[str, dict[int, int]] = model.__dict__
+    if "_numbers_uncounted" not in known:
+        known["_numbers_uncounted"] = {id(own): number for number, own in enumerate(uncounted(model))}
+    return known["_numbers_uncounted"].get(id(mesh))
+
+
 def _has_gradients_only(mesh: BeamMesh) -> bool:
     if not isinstance(mesh.beam.element.coordinates, Gradients):
         return False

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -36,8 +37,21 @@ class Rows:
     imposing: np.ndarray
 
 
+# the last rows of each solution, which the beams of a model ask for one after another
+_KEPT: "WeakKeyDictionary[Solution, tuple[slice, Rows]]" = WeakKeyDictionary()
+
+
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
-    """Return some rows of a solution with the forces that act in them."""
+    """Return some rows of a solution with the forces that act in them, which is kept until other rows are asked for."""
+    if not isinstance(rows, slice):
+        return _rows_of(solution, rows)
+    kept = _KEPT.get(solution)
+    if kept is None or kept[0] != rows:
+        kept = _KEPT[solution] = rows, _rows_of(solution, rows)
+    return kept[1]
+
+
+def _rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
     system, at = loading(solution)
     times = at[rows].tolist()
     body = np.array([system.body(time) for time in times]).reshape(len(times), -1, 4)
@@ -150,7 +164,7 @@ def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> 
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
     points, own = actions.points, actions.points.element - mesh.first_element
-    here = np.flatnonzero(np.isin(own, elements) & (actions.rule > 0))
+    here = actions.spread_on(mesh.first_element + elements)
     element, position, direction = _numbers(elements, own[here]), points.position[here], points.direction[here]
     values = rows.values[mesh.block][:, here]
     r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[here]

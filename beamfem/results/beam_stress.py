@@ -11,7 +11,7 @@ from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.registry import offered
 from beamfem.results.free_bodies import Cuts
-from beamfem.results.section_forces import at_points, stations
+from beamfem.results.section_forces import at_points, in_parts, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
 from beamfem.results.stresses import von_mises
@@ -200,15 +200,14 @@ def stress_at(
     rows: slice | np.ndarray = slice(None),
 ) -> dict[str, np.ndarray]:
     """Return the stresses of `BeamStress` (steps, points) of some rows at points (element, xi) of a beam, by name."""
-    chosen, parts = np.arange(len(solution))[rows], []
     chunk = max(1, _VALUES // (len(_HEIGHTS) * max(len(xi), 1)))
-    for first in range(0, max(len(chosen), 1), chunk):
-        parts.append(_of_rows(solution, mesh, element, xi, chosen[first : first + chunk]))
+    chosen = list(in_parts(len(solution), rows, chunk)) or [slice(0)]
+    parts = [_of_rows(solution, mesh, element, xi, part) for part in chosen]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def _of_rows(
-    solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: np.ndarray
+    solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
 ) -> dict[str, np.ndarray]:
     normal, shear, moment = np.moveaxis(at_points(solution, mesh, Cuts(element, xi), rows), 1, 0)
     own, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()

@@ -1,5 +1,6 @@
 """Energies of a solution."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -8,7 +9,7 @@ import numpy as np
 
 from beamfem.brief import brief
 from beamfem.model.beam import Beam
-from beamfem.model.load import Load, factor
+from beamfem.model.load import LineLoad, Load, PointLoad, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, reference_axis, reference_position
 from beamfem.model.returned import forces_of
@@ -16,6 +17,7 @@ from beamfem.registry import offered
 from beamfem.results import postprocess
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.loading import loading
+from beamfem.results.turns import rotations
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -89,19 +91,29 @@ def _of_gravity(solution: "Solution", first_moments: Sequence[np.ndarray]) -> np
 
 def _of_loads(solution: "Solution") -> np.ndarray:
     result = np.zeros(len(solution))
+    turned: defaultdict[int, list[PointLoad]] = defaultdict(list)
     for acting in solution.model.point_loads:
         if not acting.conservative:
             continue
-        weights = _factors(solution, acting)
         fx, fy, moment = acting.value
-        result -= weights * (solution.displacement(acting.point) @ np.array([fx, fy]))
+        if fx or fy:
+            moved = solution.displacement(acting.point)
+            result -= _factors(solution, acting) * (moved @ np.array([fx, fy]))
         if moment:
-            result -= weights * moment * solution.rotation(acting.point)
-    for spread in solution.model.line_loads:
-        if spread.conservative:
-            weights = _factors(solution, spread)
-            moved, weight, arc = _along(solution, spread.beam)
-            result -= weights * np.einsum("sqc,qc,q->s", moved, forces_of(spread, arc), weight)
+            turned[id(acting.point.beam)].append(acting)
+    for moments in turned.values():
+        angles = rotations(solution, [acting.point for acting in moments])
+        for acting, angle in zip(moments, angles.T, strict=True):
+            result -= _factors(solution, acting) * acting.value[2] * angle
+    spread: defaultdict[int, list[LineLoad]] = defaultdict(list)
+    for line in solution.model.line_loads:
+        if line.conservative:
+            spread[id(line.beam)].append(line)
+    for lines in spread.values():
+        moved, weight, arc = _along(solution, lines[0].beam)
+        for line in lines:
+            work = np.einsum("sqc,qc,q->s", moved, forces_of(line, arc), weight)
+            result -= _factors(solution, line) * work
     return result
 
 

@@ -5,10 +5,12 @@ Its interpolation contains rigid-body motions, so these forces balance its loads
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
+from beamfem.assembly.blocks import classes_of
 from beamfem.assembly.points import elastic_forces
 from beamfem.element.axis import cross, dot
 from beamfem.kernels.block import Block
@@ -88,12 +90,20 @@ class FreeBodies:
         return coo_array((fraction, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
 
 
-def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) -> FreeBodies:
-    """Return elements (ne,), in ascending order, as free bodies in rows; p (steps, n): coordinates to use there."""
-    block = rows.system.blocks[mesh.block]
-    number = mesh.first_element + elements
-    q, v, a = (np.ascontiguousarray(values) for values in (p, rows.v, rows.a))
-    found = elastic_forces(_parted(block, number), q, v, a, rows.imposing)
+class Parted(NamedTuple):
+    """Elements of a block without shared nodes, and the numbers (k,) of their coordinates in the model.
+
+    In the block they are numbered from 0, so that the forces of a beam take no arrays of the size of the model.
+    """
+
+    block: Block
+    used: np.ndarray
+
+
+def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, parted: Parted, p: np.ndarray) -> FreeBodies:
+    """Return elements (ne,), in ascending order, as free bodies in rows; p (steps, k): their coordinates there."""
+    q, v, a = (np.ascontiguousarray(values) for values in (p, rows.v[:, parted.used], rows.a[:, parted.used]))
+    found = elastic_forces(parted.block, q, v, a, rows.imposing)
     e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in found)
     acting = acting_on(rows, mesh, elements, e, acceleration)
     force -= acting.nodal(len(elements))
@@ -108,18 +118,23 @@ def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, p: np.ndarray) ->
     return FreeBodies(mesh, elements, e, at_more_points(acting, mesh, elements), ends, moments)
 
 
-def _parted(block: Block, elements: np.ndarray) -> Block:
-    """Return elements of a block, without shared nodes."""
-    nodes = block.node[elements]
+def parted(block: Block, elements: np.ndarray) -> Parted:
+    """Return elements of a block without shared nodes."""
+    nodes, history = block.node[elements], block.history_of(elements)
     flat = nodes.ravel()
-    return block._replace(
+    dof = block.dof[flat]
+    used = np.unique(np.concatenate([dof[dof >= 0], history.ravel()]))
+    part = block._replace(
+        **classes_of(block, elements),
         imposed=None if block.imposed is None else block.imposed.of(elements),
-        history=block.history_of(elements),
+        history=np.searchsorted(used, history) if history.size else history,
         node=np.arange(len(flat)).reshape(nodes.shape),
-        **{name: getattr(block, name)[elements] for name in ("kind", "beam")},
+        dof=np.where(dof >= 0, np.searchsorted(used, dof), -1),
+        beam=block.beam[elements],
         home=np.indices(nodes.shape).reshape(2, -1).T,
-        **{name: getattr(block, name)[flat] for name in ("node_kind", "frame", "dof")},
+        **{name: getattr(block, name)[flat] for name in ("node_kind", "frame")},
     )
+    return Parted(part, used)
 
 
 def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:

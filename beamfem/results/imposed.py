@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.mesh import BeamMesh
-from beamfem.results.loading import loading
+from beamfem.results.loading import imposing, loading
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -15,10 +15,10 @@ def imposed_measures(
     solution: "Solution", mesh: BeamMesh, rows: slice | np.ndarray = slice(None)
 ) -> np.ndarray | float:
     """Return the imposed strains (steps, points, ns) at the strain energy points of a beam; 0 if there are none."""
-    system, at = loading(solution)
+    system, _ = loading(solution)
     imposed = system.blocks[mesh.block].imposed
     if imposed is None:
         return 0.0
     own = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
-    found = [own.at(system.imposing(time)) for time in at[rows].tolist()]
+    found = [own.at(factors) for factors in imposing(solution)[rows]]
     return np.array(found).reshape(len(found), -1, own.first.shape[-1])

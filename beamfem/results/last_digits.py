@@ -31,13 +31,24 @@ def remainders(solution: "Solution") -> np.ndarray:
     return result
 
 
+def _corrected(solution: "Solution") -> np.ndarray:
+    """Return whether each row has remainders (steps,)."""
+    known: dict[str, np.ndarray] = solution.__dict__
+    if "_corrected" not in known:
+        known["_corrected"] = np.asarray(solution.remainders.any(axis=1))
+    return known["_corrected"]
+
+
 def exactly(
-    solution: "Solution", values: Callable[[np.ndarray], np.ndarray], rows: slice | np.ndarray = slice(None)
+    solution: "Solution",
+    values: Callable[[np.ndarray], np.ndarray],
+    rows: slice | np.ndarray = slice(None),
+    some: slice | np.ndarray = slice(None),
 ) -> np.ndarray:
-    """Return a function (steps, ...) of the coordinates (steps, n) of rows; remainders are included to first order."""
-    p, steps = solution.p[rows], solution.remainders[rows]
+    """Return a function (steps, ...) of some coordinates (steps, k) of rows; remainders are included to first order."""
+    p = solution.p[rows][:, some]
     found = values(p)
-    if not steps.any():
+    if not _corrected(solution)[rows].any():
         return found
     system = system_of(solution.model, solution.static)
-    return found + differentiated(system, values, p, steps)
+    return found + differentiated(system, values, p, solution.remainders[rows][:, some], some)

@@ -15,3 +15,12 @@ def loading(solution: "Solution") -> tuple[System, np.ndarray]:
     if solution.loaded is not None:
         return system_of(solution.model, static=True), solution.loaded
     return system_of(solution.model, solution.static), solution.at
+
+
+def imposing(solution: "Solution") -> np.ndarray:
+    """Return the factors (steps, k) of the loads that impose strains, computed once for all beams."""
+    known: dict[str, np.ndarray] = solution.__dict__
+    if "_imposing" not in known:
+        system, at = loading(solution)
+        known["_imposing"] = np.array([system.imposing(time) for time in at.tolist()]).reshape(len(at), -1)
+    return known["_imposing"]

@@ -9,11 +9,12 @@ from beamfem.model.contribution import Contribution
 from beamfem.model.model import Model
 from beamfem.results import postprocess
 from beamfem.results.connected import connector_force, multipliers
+from beamfem.results.nodal import rate_at
 from beamfem.results.postprocess import Fields
 from beamfem.results.reactions import reaction
 from beamfem.results.section_forces import Cuts, at_points
 from beamfem.results.self_stress import self_stress
-from beamfem.results.turns import turned_of
+from beamfem.results.turns import rotations, turned_of
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -118,7 +119,9 @@ class PointQuantities:
         >>> motion.velocity(beam.end)[-1].round(2)
         array([-0.09, -2.44])
         """
-        return self._axis(point, postprocess.nodal_velocities(self.model.mesh_of(point), self.p, self.v)).r[:, 0]
+        mesh = self.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        return rate_at(mesh, self.p, self.v, element, xi).r[:, 0]
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section, counter-clockwise positive, full turns included.
@@ -138,15 +141,8 @@ class PointQuantities:
         >>> round(float(solution.rotation(beam.end)[-1]), 4)
         -0.0229
         """
-        mesh = self.model.mesh_of(point)
-        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        now = self._axis(point, postprocess.nodal_vectors(mesh, self.p))
-        return postprocess.turning(mesh, self.p, now, element, xi, turned_of(self._whole, mesh))[:, 0]
-
-    def _axis(self, point: Point, vectors: np.ndarray) -> postprocess.Axis:
-        mesh = self.model.mesh_of(point)
-        element, xi = mesh.locate(point.fraction)
-        return postprocess.axis(mesh, vectors, np.array([element]), np.array([xi]))
+        self.model.mesh_of(point)  # refuses what is no point of this model
+        return rotations(self._whole, [point])[:, 0]
 
     def reaction(self, point: Point) -> np.ndarray:
         """Return the reaction of supports and springs on the beam at a point.

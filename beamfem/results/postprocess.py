@@ -15,12 +15,12 @@ from beamfem.model.reference import (
     energy_points,
     energy_stiffness_at,
     inertia_points,
-    interpolate,
     reference_angle,
     reference_axis,
     reference_position,
 )
 from beamfem.registry import offered
+from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
 from beamfem.units import Units
 
 
@@ -123,40 +123,13 @@ class SectionForces:
         return offered(SectionForces._repr_html_)(self)
 
 
-def nodal_vectors(mesh: BeamMesh, p: np.ndarray) -> np.ndarray:
-    """Return the nodal vectors e (steps, nodes, vectors per node, 2) of the states p (steps, n)."""
-    table = mesh.table(p)
-    result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
-    for node_kind, nodes in mesh.node_kinds:
-        frame = mesh.carried.frame[nodes]
-        result[:, nodes] = coordinates.nodal_vectors(node_kind, mesh.vectors, table[:, nodes], frame)
-    return result
-
-
-def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return their rates e' = B p' (steps, nodes, vectors per node, 2)."""
-    table, rates = mesh.table(p), mesh.table(v)
-    result = np.empty((len(p), mesh.nodes, len(mesh.vectors), 2))
-    for node_kind, nodes in mesh.node_kinds:
-        frame = mesh.carried.frame[nodes]
-        result[:, nodes] = coordinates.nodal_rates(node_kind, mesh.vectors, table[:, nodes], rates[:, nodes], frame)
-    return result
-
-
-def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
-    """Interpolate nodal vectors (steps, nodes, vectors, 2) at points (element, xi), both (points,)."""
-    own = mesh.node[element]
-    local = vectors[:, own].reshape(len(vectors), len(element), own.shape[1] * vectors.shape[2], 2)
-    return interpolate(mesh, local, element, xi)
-
-
 def position(mesh: BeamMesh, p: np.ndarray, fraction: float) -> np.ndarray:
     """Return the position (steps, 2) [m] of a point of the axis; at a node without interpolation."""
     node = mesh.node_near(fraction)
     if node is not None:
         return np.asarray(p[:, mesh.carried.dof[node, :2]])
     element, xi = mesh.locate(fraction)
-    return axis(mesh, nodal_vectors(mesh, p), np.array([element]), np.array([xi])).r[:, 0]
+    return axis_at(mesh, p, np.array([element]), np.array([xi])).r[:, 0]
 
 
 def start(mesh: BeamMesh, fraction: float) -> np.ndarray:
@@ -184,7 +157,7 @@ def turning(
     angle = np.arctan2(cross(start, normal), dot(start, normal))
     inner = mesh.node.shape[1] - 1
     node = mesh.node[element, np.round(xi * inner).astype(int)]
-    near = nodal_rotations(mesh, p, turned)[:, node]
+    near = nodal_angles(mesh, p, node) if has_angles(mesh) else nodal_rotations(mesh, p, turned)[:, node]
     return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
 
 
@@ -235,7 +208,7 @@ def fields(
     forces (steps, 3, points): normal force, shear force and moment there; self_stress (steps, points, 1) [Pa]: stress
     in equilibrium over the section, from hindered thermal expansion; turned: see `nodal_rotations`.
     """
-    now = axis(mesh, nodal_vectors(mesh, p), element, xi)
+    now = axis_at(mesh, p, element, xi)
     strain = strain_at_axis(mesh, now, element, xi)
     own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
     along = (own.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]

@@ -1,5 +1,6 @@
 """Section forces of beams from the equilibrium of their elements, at stations and at any other points."""
 
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -8,8 +9,9 @@ import numpy as np
 from beamfem.model.beam import Beam
 from beamfem.model.mesh import BeamMesh
 from beamfem.results.acting import Rows, rows_of
-from beamfem.results.free_bodies import Cuts, cut_free
+from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
 from beamfem.results.last_digits import exactly
+from beamfem.results.loading import loading
 from beamfem.results.postprocess import SectionForces
 from beamfem.units import units_of
 
@@ -32,20 +34,30 @@ def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
 
 def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return normal and shear force [N] and moment [N m] (steps, 3, points) of some rows at points of a beam."""
-    chosen = np.arange(len(solution))[rows]
     elements = np.unique(cuts.element)
+    own = parted(loading(solution)[0].blocks[mesh.block], mesh.first_element + elements)
     size = mesh.classes.scale.shape[1] * (len(cuts.xi) + len(elements) * len(mesh.beam.element.field.nodes))
     chunk = max(1, _VALUES // size)
     parts = [np.empty((0, 3, len(cuts.xi)))]
-    for first in range(0, len(chosen), chunk):
-        numbers = chosen[first : first + chunk]
+    for numbers in in_parts(len(solution), rows, chunk):
         here = rows_of(solution, numbers)
-        parts.append(exactly(solution, partial(_at_cuts, here, mesh, elements, cuts), numbers))
+        parts.append(exactly(solution, partial(_at_cuts, here, mesh, elements, own, cuts), numbers, own.used))
     return np.concatenate(parts)
 
 
-def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, cuts: Cuts, p: np.ndarray) -> np.ndarray:
-    return cut_free(rows, mesh, elements, p).at(cuts)
+def in_parts(count: int, rows: slice | np.ndarray, longest: int) -> Iterator[slice | np.ndarray]:
+    """Yield some of `count` rows in parts of a limited length, as slices if they are given as a slice."""
+    if not isinstance(rows, slice):
+        yield from (rows[first : first + longest] for first in range(0, len(rows), longest))
+        return
+    chosen = range(count)[rows]
+    for first in range(0, len(chosen), longest):
+        part = chosen[first : first + longest]
+        yield slice(part[0], part[-1] + 1, part.step) if part.step > 0 else np.array(part)
+
+
+def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, own: Parted, cuts: Cuts, p: np.ndarray) -> np.ndarray:
+    return cut_free(rows, mesh, elements, own, p).at(cuts)
 
 
 def stations(mesh: BeamMesh) -> Cuts:

@@ -1,13 +1,15 @@
 """Self-equilibrated stress over a section whose layers hinder each other's thermal expansion."""
 
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem.model.along_beam import jumps_along
+from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.returned import heat_of
-from beamfem.results.loading import loading
+from beamfem.results.loading import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
 
@@ -29,8 +31,8 @@ def self_stress(
     eps, kappa: free strains of the section; y (n, heights) [m]; layer: the one, of several, to which y belongs; None:
     the one at the axis. It does not contribute to section forces.
     """
-    beam, (system, at) = mesh.beam, loading(solution)
-    imposed = [(number, load) for number, (_, load) in enumerate(system.model.imposing) if load.beam is beam]
+    beam = mesh.beam
+    imposed = _imposed_on(solution).get(id(beam), [])
     if not imposed:
         return 0.0
     arc = mesh.section_arc_length(element, xi)
@@ -38,12 +40,23 @@ def self_stress(
     if all(expands_evenly(section, beam.material) for section in sections):
         return 0.0
     units = np.array([_units(section, mesh, layer, own) for section, own in zip(_each(sections, y), y, strict=True)])
-    factors = np.array([system.imposing(time) for time in at[rows].tolist()])
+    factors = imposing(solution)[rows]
     result = np.zeros((len(factors), *y.shape))
     for number, load in imposed:
         there = mesh.arc_length_inside(element, xi, jumps_along(load))
         result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, there))
     return result
+
+
+def _imposed_on(solution: "Solution") -> dict[int, list[tuple[int, ImposedStrain]]]:
+    """Return the loads that impose strains on each beam, with their numbers, by the identity of the beam."""
+    known: dict[str, dict[int, list[tuple[int, ImposedStrain]]]] = solution.model.__dict__
+    if "_imposed_on" not in known:
+        found: defaultdict[int, list[tuple[int, ImposedStrain]]] = defaultdict(list)
+        for number, (_, load) in enumerate(solution.model.imposing):
+            found[id(load.beam)].append((number, load))
+        known["_imposed_on"] = found
+    return known["_imposed_on"]
 
 
 def _each(sections: list[CrossSection], y: np.ndarray) -> list[CrossSection]:

@@ -1,13 +1,16 @@
 """Full turns of beams without nodal angles, whose coordinates do not hold them, in the rows of a solution."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamfem.model.beam import Point
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
-from beamfem.model.turns import uncounted
+from beamfem.model.turns import number_uncounted, uncounted
 from beamfem.results import postprocess
+from beamfem.results.nodal import axis_at
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -36,5 +39,13 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
     """Return the start rotation of one beam (steps,) [rad]; None if its coordinates hold full turns."""
-    own = [i for i, other in enumerate(uncounted(solution.model)) if other is mesh]
-    return start_rotations(solution)[:, own[0]] if own else None
+    own = number_uncounted(solution.model, mesh)
+    return None if own is None else start_rotations(solution)[:, own]
+
+
+def rotations(solution: "Solution", points: Sequence[Point]) -> np.ndarray:
+    """Return the rotations (steps, points) [rad] of sections of one beam, full turns included."""
+    mesh = solution.model.mesh_of(points[0])
+    element, xi = (np.array(each) for each in zip(*(mesh.locate(point.fraction) for point in points), strict=True))
+    now = axis_at(mesh, solution.p, element, xi)
+    return postprocess.turning(mesh, solution.p, now, element, xi, turned_of(solution, mesh))

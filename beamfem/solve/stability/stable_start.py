@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from beamfem.assembly.equations import STATICS, linearise, load_slope
+from beamfem.assembly.equations import load_slope
+from beamfem.assembly.round_off import counts_with_stresses
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.results.solution import Solution, State
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.newton.newton import solve_equilibrium
+from beamfem.solve.stability.stability import unstable_directions
 from beamfem.solve.start.balance import left_over
 from beamfem.solve.start.start_state import resting_state
 from beamfem.solve.statics.preload import first_equilibrium
@@ -34,9 +36,9 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
             "no load grows with the load factor, or supports take it up, so none can buckle the model; add one with "
             "scale=True"
         )
-    zeros = np.zeros_like(p)
-    tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)[1]
-    unstable = tangent.factorised(system.rotated).negative_pivots
+    unstable = unstable_directions(system, p, load_factor, mixed=False)
+    if unstable > 0 and counts_with_stresses(system, p, load_factor):
+        unstable = unstable_directions(system, p, load_factor, mixed=True)
     if unstable > 0:
         raise InputError(
             f"the state at load factor {load_factor:g} that buckling starts from is unstable already, "

@@ -14,7 +14,7 @@ from beamfem.model.model import Model
 from beamfem.model.named import beam_in_words
 from beamfem.model.nodes_asked import nodes_asked
 from beamfem.model.reference import reference_angle
-from beamfem.model.turns import uncounted
+from beamfem.model.turns import number_uncounted, uncounted
 from beamfem.results import postprocess
 from beamfem.results.solution import State
 
@@ -91,8 +91,8 @@ def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarra
 
 def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
     """Return the rotation of each node's section (nodes,) [rad] in a state."""
-    own = [i for i, other in enumerate(uncounted(state.model)) if other is mesh]
-    turned = state.turned[own] if own and state.turned is not None else None
+    own = number_uncounted(state.model, mesh)
+    turned = None if own is None or state.turned is None else state.turned[[own]]
     return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
 
 

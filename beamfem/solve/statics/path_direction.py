@@ -7,6 +7,8 @@ from beamfem.assembly.equations import STATICS, linearise, load_slope
 from beamfem.assembly.system import System
 from beamfem.solve.continuation.steps import leaves_arc
 
+# of the lesser rise of the load per movement at the ends of a step: with less in between it may fall there
+_SHARE = 0.3
 _SLOPE_WIDTH = 1e-3  # of the load step; loads are evaluated within it only, since functions may end with it
 
 
@@ -14,7 +16,8 @@ def leaves_path(system: System, start: tuple[np.ndarray, float], end: tuple[np.n
     """Return whether no smooth path leads from one equilibrium, p (n,) and its load factor, to another.
 
     Along an arc the chord deviates from the tangents at its ends by half the angle between them; between states on two
-    pieces of a path, on either side of limit points, it deviates from one of them by more.
+    pieces of a path, on either side of limit points, it deviates from one of them by more. Where a short snap leads on
+    in the same direction, the load rises less over the step than at both its ends, see `_dips`.
     """
     (p, before), (q, after) = start, end
     width = _SLOPE_WIDTH * (after - before)
@@ -25,7 +28,21 @@ def leaves_path(system: System, start: tuple[np.ndarray, float], end: tuple[np.n
         return True
     chord = (q - p) / system.scale
     turn = _angle(first, last)
-    return any(leaves_arc(_angle(chord, tangent), turn) for tangent in (first, last))
+    if any(leaves_arc(_angle(chord, tangent), turn) for tangent in (first, last)):
+        return True
+    along = [(after - before) * float(chord @ tangent) for tangent in (first, last)]
+    return min(along) > 0.0 and _dips(*(float(chord @ chord) / each for each in along))
+
+
+def _dips(first: float, last: float) -> bool:
+    """Return whether the load falls, or nearly does, on a cubic with these slopes at its ends and a mean slope of 1.
+
+    Only a structure that is softer in between than at both ends is meant: where it softens or stiffens all the way,
+    one slope is below the mean.
+    """
+    if min(first, last) <= 1.0:
+        return False
+    return first - (2.0 * first + last - 3.0) ** 2 / (3.0 * (first + last - 2.0)) < _SHARE * min(first, last)
 
 
 def _tangent(system: System, p: np.ndarray, load_factor: float, middle: float, width: float) -> np.ndarray:

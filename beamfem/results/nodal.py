@@ -1,0 +1,76 @@
+"""Nodal vectors, angles and the interpolated axis in states of a beam, at all nodes or only where they are needed."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from beamfem.element import coordinates
+from beamfem.element.axis import Axis
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.reference import interpolate
+
+
+def nodal_vectors(mesh: BeamMesh, p: np.ndarray, some: np.ndarray | None = None) -> np.ndarray:
+    """Return the nodal vectors e (steps, nodes, vectors per node, 2) of states p (steps, n), of some nodes or all."""
+    dof, frame, kinds = _nodes(mesh, some)
+    table = p[:, dof]
+    result = np.empty((*table.shape[:2], len(mesh.vectors), 2))
+    for node_kind, nodes in kinds:
+        result[:, nodes] = coordinates.nodal_vectors(node_kind, mesh.vectors, table[:, nodes], frame[nodes])
+    return result
+
+
+def nodal_velocities(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, some: np.ndarray | None = None) -> np.ndarray:
+    """Return their rates e' = B p' (steps, nodes, vectors per node, 2)."""
+    dof, frame, kinds = _nodes(mesh, some)
+    table, rates = p[:, dof], v[:, dof]
+    result = np.empty((*table.shape[:2], len(mesh.vectors), 2))
+    for node_kind, nodes in kinds:
+        own = table[:, nodes], rates[:, nodes]
+        result[:, nodes] = coordinates.nodal_rates(node_kind, mesh.vectors, *own, frame[nodes])
+    return result
+
+
+def _nodes(mesh: BeamMesh, some: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, Sequence[tuple[int, np.ndarray]]]:
+    """Return coordinates (k, npn) and frames (k, 3) of some nodes (k,) or all, and each kind with its nodes."""
+    carried = mesh.carried
+    if some is None:
+        return carried.dof, carried.frame, mesh.node_kinds
+    kind = carried.node_kind[some]
+    return carried.dof[some], carried.frame[some], [(own, np.flatnonzero(kind == own)) for own in set(kind.tolist())]
+
+
+def axis(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Interpolate nodal vectors (steps, nodes, vectors, 2) at points (element, xi), both (points,)."""
+    own = mesh.node[element]
+    local = vectors[:, own].reshape(len(vectors), len(element), own.shape[1] * vectors.shape[2], 2)
+    return interpolate(mesh, local, element, xi)
+
+
+def axis_at(mesh: BeamMesh, p: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Return the axis in states p (steps, n) at points (element, xi), both (points,), from their elements only."""
+    return _around(mesh, nodal_vectors(mesh, p, mesh.node[element].ravel()), element, xi)
+
+
+def rate_at(mesh: BeamMesh, p: np.ndarray, v: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Return the rate of the axis at points (element, xi), likewise."""
+    return _around(mesh, nodal_velocities(mesh, p, v, mesh.node[element].ravel()), element, xi)
+
+
+def _around(mesh: BeamMesh, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
+    """Interpolate the nodal vectors (steps, points nn, vectors, 2) of the element of each point."""
+    return interpolate(mesh, vectors.reshape(len(vectors), len(element), -1, 2), element, xi)
+
+
+def has_angles(mesh: BeamMesh) -> bool:
+    """Return whether the rotation of every node's section is a coordinate."""
+    if mesh.beam.element.forces.turns_with == "r_x":
+        return False
+    return all(coordinates.labels(node_kind, mesh.vectors)[-1] == "theta" for node_kind, _ in mesh.node_kinds)
+
+
+def nodal_angles(mesh: BeamMesh, p: np.ndarray, some: np.ndarray) -> np.ndarray:
+    """Return the rotations (steps, k) [rad] of some nodes (k,) of a beam that has them as coordinates."""
+    last = {node_kind: len(coordinates.labels(node_kind, mesh.vectors)) - 1 for node_kind, _ in mesh.node_kinds}
+    column = [last[node_kind] for node_kind in mesh.carried.node_kind[some].tolist()]
+    return np.asarray(p[:, mesh.carried.dof[some, column]])

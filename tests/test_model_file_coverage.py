@@ -161,6 +161,8 @@ NO_KEY = {
     "Model.groups": "numbers of the mesh for a program",
     "Model.number_of": "numbers of the mesh for a program",
     "Model.mesh_of": "numbers of the mesh for a program",
+    "Model.made_of": "numbers of the mesh for a program",
+    "Model.supports_along": "numbers of the mesh for a program",
     **dict.fromkeys(
         (
             f"Model.{name}"

@@ -263,3 +263,21 @@ def test_energy_of_springs_counts_in_the_total(support):
     energy = motion.energy()
     assert np.ptp(energy.potential) > 0.9 * energy.total[0]
     assert energy.total == pytest.approx(energy.total[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.6])
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e3])
+@pytest.mark.parametrize("weight", [True, False])
+def test_a_foundation_alone_bears_a_load_along_its_beam(angle, size, weight):
+    """It sinks as it is, by load over stiffness: with no force at any point, all digits seemed to be lost."""
+    steel = bf.Material(2e11, 0.3, 7800.0)
+    beam = bf.Beam(bf.Line((0, 0), (np.cos(angle), np.sin(angle))), 4, bf.CRBF(3), bf.Rectangle(0.02, 0.02), steel)
+    stiffness, mass = 1e5, 7800.0 * 4e-4
+    load = bf.Gravity((0.0, -size / mass)) if weight else bf.DistributedLoad(beam, (0.0, -size))
+    model = bf.Model([beam], [bf.Foundation(beam, (stiffness, stiffness))], [load])
+    solution = bf.solve_static(model)
+    assert solution.statistics.digits > 6.0
+    sunk = pytest.approx([0.0, -size / stiffness], abs=1e-9 * size / stiffness + 1e-15)  # positions are rounded
+    for point in (beam.start, beam.at(0.5), beam.end):
+        assert solution.displacement(point)[-1] == sunk
+    assert bf.trace_equilibrium(model, 1.0).displacement(beam.end)[-1] == sunk

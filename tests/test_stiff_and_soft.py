@@ -8,6 +8,8 @@ from scipy.sparse import csr_array
 from shooting import Member, solved
 
 import beamfem as bf
+from beamfem.assembly.equations import STATICS
+from beamfem.assembly.round_off import lost_digits
 from beamfem.assembly.system import system_of
 from beamfem.linalg.inertia import negative_eigenvalues
 
@@ -236,3 +238,24 @@ def test_a_finely_divided_column_is_stable_below_its_buckling_load_whoever_count
     rest = np.zeros_like(straight)
     state = bf.PathState(straight, rest, rest, 1.0, model)
     assert state.stable == (share < 1.0)
+
+
+@pytest.mark.parametrize("element", [bf.ShearRigid(stretchable=False), bf.ANCF(bf.ElasticLine()), bf.CRBF(3)])
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1.0, 1e3, 1e4, 1e6])
+def test_a_block_keeps_its_digits_with_stress_resultants_as_unknowns_in_any_unit(element, unit):
+    """In a model of 1000 its flexibility was below round-off beside one: the plain tangent was right, and given up."""
+    block = bf.Beam(
+        bf.Line((0.0, 0.0), (0.8 * unit, 0.6 * unit)),
+        12,
+        element,
+        bf.Rectangle(unit, unit),
+        bf.Material(7e10, 0.3, 2700.0),
+    )
+    force = 7e10 * unit**2 / 12.0
+    model = bf.Model([block], [bf.Clamp(block.start)], [bf.PointForce(block.end, (0.3e-3 * force, -1e-3 * force))])
+    system = system_of(model, static=True)
+    assert lost_digits(system, system.reference, 1.0, STATICS) < 1e-8
+    path = bf.trace_equilibrium(model, 1.0)
+    static = bf.solve_static(model)
+    expected = pytest.approx(static.displacement(block.end)[-1], abs=1e-9 * unit)
+    assert path.displacement(block.end)[-1] == expected

@@ -21,6 +21,7 @@ from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import Rotated, Stresses, Tangent, turning
 from beamfem.once import cached_property
 
+_FLEXIBILITY = 1e-10  # of the stiffest part, beside derivatives of strains of one
 _REFINEMENTS = 2  # make each equation accurate relative to its own terms, however large others are (Skeel 1980)
 
 
@@ -93,7 +94,8 @@ class MixedTangent:
     zeros (n, n): tangent without the elastic part; slopes (m, n): weights times derivatives of the strains by the
     unknowns; flexibility (m, m): weights times inverse stiffness; weight (m,): quadrature weights; loads (n,): residual
     without elastic forces; strain (m,): strains; places: shape (ne, nq, ns) of the stress resultants of each block, and
-    the measures that have a stiffness; positive: number of positive eigenvalues of the section stiffnesses; plain: K.
+    the measures that have a stiffness; positive: number of positive eigenvalues of the section stiffnesses; plain: K;
+    unit (n,): size of the model for positions [m], 1 for other coordinates.
     """
 
     zeros: csr_array
@@ -105,6 +107,7 @@ class MixedTangent:
     places: tuple[tuple[tuple[int, ...], np.ndarray], ...]
     positive: int
     plain: Tangent
+    unit: np.ndarray
 
     def factorised(self, rotated: Rotated) -> MixedFactors:
         """Factorise the mixed matrix. Raises LinAlgError."""
@@ -114,22 +117,41 @@ class MixedTangent:
             kept[rotated[0]] = False
             turn = turning(n, rotated)
             zeros, couples = (turn @ zeros @ turn.T)[kept][:, kept], csr_array(couples @ turn.T)[:, kept]
-        unknown, resultants = zeros.shape[0], len(self.weight)
+        unknown = zeros.shape[0]
         above, beside, below = coo_array(zeros), coo_array(couples), self.flexibility
         row = np.concatenate([above.row, unknown + beside.row, beside.col, unknown + below.row])
         column = np.concatenate([above.col, beside.col, unknown + beside.row, unknown + below.col])
         data = np.concatenate([above.data, beside.data, beside.data, -below.data])
         entries = data != 0.0
         row, column, data = row[entries], column[entries], data[entries]
-        sizes, scale = np.abs(data), np.ones(unknown + resultants)
+        sizes, scale = np.abs(data), self._units(self.unit[kept], beside)
         for _ in range(3):
             largest = np.zeros(len(scale))
             np.maximum.at(largest, row, scale[row] * sizes * scale[column])
-            # powers of two round nothing
-            scale /= 2.0 ** np.round(0.5 * np.log2(np.where(largest > 0.0, largest, 1.0)))
+            scale /= np.sqrt(np.where(largest > 0.0, largest, 1.0))
+        scale = 2.0 ** np.round(np.log2(scale))  # powers of two round nothing
         shape = len(scale), len(scale)
         matrix = csc_array(coo_array((scale[row] * data * scale[column], (row, column)), shape=shape))
         return MixedFactors(superlu(matrix), scale, matrix, kept, self, rotated, turn)
+
+    def _units(self, length: np.ndarray, couples: coo_array) -> np.ndarray:
+        """Return the scale (n + m,) in which the matrix is nearly the same in any units.
+
+        In it the least flexibility is well above round-off beside the derivatives of the strains, which would otherwise
+        hide how stresses with the same resultants share them. length (n,): `unit` of the coordinates; couples (m, n):
+        `slopes` of them.
+        """
+        below, couple = self.flexibility, np.abs(couples.data) * length[couples.col]
+        flexible, strains, stiff = np.zeros(len(self.weight)), np.zeros(len(self.weight)), np.zeros(len(length))
+        own = below.row == below.col
+        flexible[below.row[own]] = np.abs(below.data[own])
+        known = flexible[couples.row] > 0.0
+        np.maximum.at(strains, couples.row, couple)
+        np.add.at(stiff, couples.col[known], couple[known] ** 2 / flexible[couples.row[known]])
+        size = 1.0 / np.sqrt(_FLEXIBILITY * stiff.max(initial=0.0)) if stiff.any() else 1.0
+        with np.errstate(divide="ignore"):
+            resultant = np.fmin(1.0 / (size * strains), 1.0 / np.sqrt(flexible))
+        return np.concatenate([size * length, np.where(np.isfinite(resultant), resultant, 1.0)])
 
     def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
         """Return x with A x = right. Raises LinAlgError."""
@@ -171,4 +193,4 @@ def mixed(
     flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
     places = tuple((table.shape, table.resists) for table in tables)
     own = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
-    return MixedTangent(*own)
+    return MixedTangent(*own, system.scale[system.free_dofs])

@@ -164,6 +164,24 @@ def _acting(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
     return max(load_size(system, system.loads_at(load_factor)), reactions, float(sprung.max(initial=0.0)))
 
 
+def _distributed(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
+    """Return the size of weights and forces along beams [N m] as `_acting`, by what is unbalanced (n,) without them.
+
+    Where foundations alone bear them, there is no larger force.
+    """
+    loads = system.loads_at(load_factor)
+    if not loads.body.any():
+        return 0.0
+    assembler, zeros, without = system.assembler(), np.zeros(len(p)), np.empty(len(p))
+    assembler.take(LoadsAt(np.zeros_like(loads.body), loads.points, loads.imposing))
+    assembler.weigh((1.0, 1.0, 1.0))
+    assembler.balance(p, zeros, zeros, without, np.empty(0), False)
+    system.connectors.add_forces(without, (p, zeros, zeros), load_factor)
+    forces = without - unbalanced
+    totals = [abs(float(rigid_rates(system, RigidVelocity(way), p) @ forces)) for way in ((1.0, 0.0), (0.0, 1.0))]
+    return max(float(np.max(np.abs(forces) * system.scale, initial=0.0)), system.extent * max(totals))
+
+
 def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: float) -> float:
     """Return the number of reliable digits of the largest acting force, by the balance of each row and of the whole.
 
@@ -179,6 +197,8 @@ def _digits(system: System, p: np.ndarray, unbalanced: np.ndarray, load_factor: 
         worst = max(worst, size * abs(float(rigid_rates(system, motion, p) @ left)))
     if worst == 0.0:
         return MOST_DIGITS
+    if acting < 10.0**ENOUGH * worst:
+        acting = max(acting, _distributed(system, p, unbalanced, load_factor))
     if not system.loads_at(load_factor).any and acting <= _NOTHING * float(
         np.max(row_floors(system, p) * system.scale)
     ):

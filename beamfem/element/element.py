@@ -154,8 +154,10 @@ def kept_with_elements(function: Callable[..., _Value]) -> Callable[..., _Value]
 
     @wraps(function)
     def kept(element: Element, *arguments: Hashable) -> _Value:
-        lasts = {type(element.field), type(element.coordinates), type(element.forces)} <= _LASTING
-        return known(element, *arguments) if lasts else function(element, *arguments)
+        field, coordinates, forces = type(element.field), type(element.coordinates), type(element.forces)
+        if field in _LASTING and coordinates in _LASTING and forces in _LASTING:
+            return known(element, *arguments)
+        return function(element, *arguments)
 
     return kept
 

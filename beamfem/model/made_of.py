@@ -26,11 +26,17 @@ def made_of(model: "Model") -> MadeOf:
 
     Parts of the package do not change, and what connectors say is asked in every state.
     """
+    kinds = set(map(type, (*model.supports, *model.loads, *model.joints)))
+    for beam in model.beams:
+        element = beam.element
+        parts = beam.section, beam.material, beam.curve, element.field, element.coordinates, element.forces
+        kinds.update(map(type, parts))
+    changing = {kind for kind in kinds if not _plain(kind)}
+    if not changing:
+        return ()
     known: dict[int, tuple[str, Any]] = {}
     for name, items in _parts(model):
-        changing = {kind for kind in set(map(type, items)) if not _plain(kind)}
-        if changing:
-            known.update((id(item), (name, item)) for item in items if type(item) in changing)
+        known.update((id(item), (name, item)) for item in items if type(item) in changing)
     return tuple((name, item, _attributes(item)) for name, item in known.values() if not _lasts(item))
 
 

@@ -106,7 +106,8 @@ def simulate(
     state = np.zeros((4, model.size))
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
-    require_on_supports(system, state[0], prescribed[0, 0], start is not None)
+    if start is not None or system.moved:
+        require_on_supports(system, state[0], prescribed[0, 0], start is not None)
     stopped = put_onto_supports(system, state, prescribed[0])
     if stopped.any():
         state[1] += impact(system, state[0], stopped)

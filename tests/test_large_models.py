@@ -259,3 +259,27 @@ def test_the_energy_of_many_moments_is_the_work_of_each(element):
     total = np.trapezoid(moved @ np.array([0.3, -0.6]), dx=beam.curve.length / 4000)
     known = work[-1] + solution.displacement(beam.at(0.5))[-1] @ [0.3, 0.2] + total
     assert solution.energy().potential[-1] == pytest.approx(-known, rel=1e-4)
+
+
+def test_stresses_of_many_layers_ask_for_the_moments_of_the_section_once(monkeypatch):
+    """It was once for each layer, of all layers."""
+    asked, moments = [], bf.Layered.moments
+
+    def counted(self, material=None):
+        asked.append(len(self.layers))
+        return moments(self, material)
+
+    counts = []
+    for layers in (4, 16):
+        strong = [replace(MATERIAL, strength=1e5 * (1 + i)) for i in range(layers)]
+        section = bf.Layered([bf.Layer(own, 0.05 / layers) for own in strong], width=0.05)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), section)
+        solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (1.0, 0.0))]))
+        with monkeypatch.context() as patched:
+            patched.setattr(bf.Layered, "moments", counted)
+            stresses = solution.stresses(beam)
+        # a pull by 1 N stresses all layers alike, so that the weakest one counts
+        assert stresses.utilisation[-1] == pytest.approx(1.0 / 0.0025 / 1e5, rel=1e-5)
+        counts.append(len(asked))
+        asked.clear()
+    assert counts[0] == counts[1]

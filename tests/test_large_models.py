@@ -283,3 +283,19 @@ def test_stresses_of_many_layers_ask_for_the_moments_of_the_section_once(monkeyp
         counts.append(len(asked))
         asked.clear()
     assert counts[0] == counts[1]
+
+
+@pytest.mark.parametrize("element", [bf.BilinearANCF(), bf.ANCF(), bf.CRBF(2)], ids=lambda own: own.name)
+def test_joined_nodes_stay_in_the_band_when_it_is_turned_towards_the_support(element):
+    """Nodes that share some of their coordinates are further apart in the reverse order: entries were lost."""
+    post = bf.Beam(bf.Line((0.0, 0.0), (0.0, 1.0)), 2, element, SECTION, MATERIAL)
+    arm = bf.Beam(bf.Arc((1.0, 1.0), 1.0, np.pi, 1.5), 2, element, SECTION, MATERIAL)
+    brace = bf.Beam(bf.Line((0.0, 1.0), (-1.0, 1.5)), 2, element, SECTION, MATERIAL)
+    joints = [bf.Hinge(post.end, arm.start), bf.Rigid(post.end, brace.start)]
+    for held in (post.start, arm.end, brace.end):
+        system = System(bf.Model([post, arm, brace], [bf.Clamp(held)], joints=joints), static=True)
+        free, half_width = system.unknowns.free, system.layouts[0].half_width
+        for block in system.blocks:
+            numbers = np.where(block.dof >= 0, free[block.dof], -1)[block.node].reshape(len(block.node), -1)
+            known = [own[own >= 0] for own in numbers]
+            assert max(np.ptp(own) for own in known if len(own)) <= half_width

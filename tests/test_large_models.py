@@ -1,6 +1,7 @@
 """What is done for many members at once is what would be done for each; and its cost."""
 
 import tracemalloc
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from beamfem.model.grid import Grid, make_grid
 from beamfem.model.grids import make_grids
 from beamfem.model.nearest import distances, nearest
 from beamfem.model.supports_near import supports_near
+from beamfem.results import last_digits, postprocess
 from beamfem.solve.start.body_motions import Conditions, mechanisms
 
 
@@ -299,3 +301,31 @@ def test_joined_nodes_stay_in_the_band_when_it_is_turned_towards_the_support(ele
             numbers = np.where(block.dof >= 0, free[block.dof], -1)[block.node].reshape(len(block.node), -1)
             known = [own[own >= 0] for own in numbers]
             assert max(np.ptp(own) for own in known if len(own)) <= half_width
+
+
+def test_tables_and_pictures_of_many_beams_compute_what_belongs_to_the_model_once(monkeypatch):
+    """Tables took the energy of all beams for each of them, pictures the last digits of the state for each load."""
+    calls = Counter()
+
+    def counted(module, name):
+        own = getattr(module, name)
+
+        def call(*given):
+            calls[name] += 1
+            return own(*given)
+
+        monkeypatch.setattr(module, name, call)
+
+    counted(postprocess, "strain_energies")
+    counted(last_digits, "digits_of")
+    counts = []
+    for number in (3, 9):
+        posts = [bf.Beam(bf.Line((i, 0), (i, 1)), 2, bf.CRBF(1), SECTION, MATERIAL) for i in range(number)]
+        loads = [bf.PointForce(post.end, (0.01, 0.0)) for post in posts]
+        solution = bf.solve_static(bf.Model(posts, [bf.Clamp(post.start) for post in posts], loads))
+        calls.clear()
+        solution.to_pandas()
+        solution.plot()
+        counts.append((calls["strain_energies"] / number, calls["digits_of"]))
+    assert counts[0] == counts[1]
+    assert counts[0][0] == 1.0

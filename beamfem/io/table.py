@@ -14,6 +14,7 @@ from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
 
 if TYPE_CHECKING:
+    from beamfem.results.energies import Energy
     from beamfem.results.solution import Solution
 
 _PIECES = 4  # of an element between neighbouring points
@@ -27,7 +28,7 @@ Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 Variables = dict[str, Variable]
 
 
-def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
+def arrays(solution: "Solution", beam: Beam, energy: "Energy | None" = None) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
@@ -36,10 +37,11 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor,
     number of the beam (with the `names` of all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the
     reference (station,). Adjacent elements each have a station at their common end, where section forces may jump.
+    energy: that of the solution, if it is known already.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
     points, along_beam = stations(solution.model, beam)
-    rows = np.arange(len(solution))
+    rows = slice(None)
     at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
     over = (at[0],)
     along = (*over, "station")
@@ -61,7 +63,7 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     for name, label in _STRESSES.items():
         if np.isfinite(stresses[name]).any():
             data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
-    energy = solution.energy()
+    energy = solution.energy() if energy is None else energy
     for name in ("kinetic", "strain", "potential"):
         data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
     return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
@@ -132,7 +134,8 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
 
 def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
     """Return the `arrays` of a beam, or of all beams joined along their stations."""
-    parts = [arrays(solution, own) for own in (solution.model.beams if beam is None else (beam,))]
+    energy = solution.energy()
+    parts = [arrays(solution, own, energy) for own in (solution.model.beams if beam is None else (beam,))]
     return side_by_side([data for data, _ in parts]), side_by_side([coordinates for _, coordinates in parts])
 
 

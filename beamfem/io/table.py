@@ -77,7 +77,7 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
     # elements agree on the arc length of their common end, to the last digit
     arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
     arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
-    called = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
+    called = _called(model)
     found = {
         "beam": (np.full(len(points.element), number), about("number of the beam", "1") | called),
         "arc_length": (arc, about("arc length in the reference", "m")),
@@ -85,6 +85,14 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }
     return points, {name: (("station",), *own) for name, own in found.items()}
+
+
+def _called(model: Model) -> dict[str, str]:
+    """Return the names of all beams as an attribute, where there are any; made once for all beams."""
+    known: dict[str, dict[str, str]] = model.__dict__
+    if "_called" not in known:
+        known["_called"] = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
+    return known["_called"]
 
 
 def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:

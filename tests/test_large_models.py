@@ -1,6 +1,7 @@
 """What is done for many members at once is what would be done for each; and its cost."""
 
 import tracemalloc
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from beamfem.model.beam import reference_positions
 from beamfem.model.grid import Grid, make_grid
 from beamfem.model.grids import make_grids
 from beamfem.model.nearest import distances, nearest
+from beamfem.results import last_digits, postprocess
 from beamfem.solve.start.body_motions import Conditions, mechanisms
 
 
@@ -258,3 +260,71 @@ def test_the_energy_of_many_moments_is_the_work_of_each(element):
     total = np.trapezoid(moved @ np.array([0.3, -0.6]), dx=beam.curve.length / 4000)
     known = work[-1] + solution.displacement(beam.at(0.5))[-1] @ [0.3, 0.2] + total
     assert solution.energy().potential[-1] == pytest.approx(-known, rel=1e-4)
+
+
+def test_stresses_of_many_layers_ask_for_the_moments_of_the_section_once(monkeypatch):
+    """It was once for each layer, of all layers."""
+    asked, moments = [], bf.Layered.moments
+
+    def counted(self, material=None):
+        asked.append(len(self.layers))
+        return moments(self, material)
+
+    counts = []
+    for layers in (4, 16):
+        strong = [replace(MATERIAL, strength=1e5 * (1 + i)) for i in range(layers)]
+        section = bf.Layered([bf.Layer(own, 0.05 / layers) for own in strong], width=0.05)
+        beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), section)
+        solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (1.0, 0.0))]))
+        with monkeypatch.context() as patched:
+            patched.setattr(bf.Layered, "moments", counted)
+            stresses = solution.stresses(beam)
+        # a pull by 1 N stresses all layers alike, so that the weakest one counts
+        assert stresses.utilisation[-1] == pytest.approx(1.0 / 0.0025 / 1e5, rel=1e-5)
+        counts.append(len(asked))
+        asked.clear()
+    assert counts[0] == counts[1]
+
+
+@pytest.mark.parametrize("element", [bf.BilinearANCF(), bf.ANCF(), bf.CRBF(2)], ids=lambda own: own.name)
+def test_joined_nodes_stay_in_the_band_when_it_is_turned_towards_the_support(element):
+    """Nodes that share some of their coordinates are further apart in the reverse order: entries were lost."""
+    post = bf.Beam(bf.Line((0.0, 0.0), (0.0, 1.0)), 2, element, SECTION, MATERIAL)
+    arm = bf.Beam(bf.Arc((1.0, 1.0), 1.0, np.pi, 1.5), 2, element, SECTION, MATERIAL)
+    brace = bf.Beam(bf.Line((0.0, 1.0), (-1.0, 1.5)), 2, element, SECTION, MATERIAL)
+    joints = [bf.Hinge(post.end, arm.start), bf.Rigid(post.end, brace.start)]
+    for held in (post.start, arm.end, brace.end):
+        system = System(bf.Model([post, arm, brace], [bf.Clamp(held)], joints=joints), static=True)
+        free, half_width = system.unknowns.free, system.layouts[0].half_width
+        for block in system.blocks:
+            numbers = np.where(block.dof >= 0, free[block.dof], -1)[block.node].reshape(len(block.node), -1)
+            known = [own[own >= 0] for own in numbers]
+            assert max(np.ptp(own) for own in known if len(own)) <= half_width
+
+
+def test_tables_and_pictures_of_many_beams_compute_what_belongs_to_the_model_once(monkeypatch):
+    """Tables took the energy of all beams for each of them, pictures the last digits of the state for each load."""
+    calls = Counter()
+
+    def counted(module, name):
+        own = getattr(module, name)
+
+        def call(*given):
+            calls[name] += 1
+            return own(*given)
+
+        monkeypatch.setattr(module, name, call)
+
+    counted(postprocess, "strain_energies")
+    counted(last_digits, "digits_of")
+    counts = []
+    for number in (3, 9):
+        posts = [bf.Beam(bf.Line((i, 0), (i, 1)), 2, bf.CRBF(1), SECTION, MATERIAL) for i in range(number)]
+        loads = [bf.PointForce(post.end, (0.01, 0.0)) for post in posts]
+        solution = bf.solve_static(bf.Model(posts, [bf.Clamp(post.start) for post in posts], loads))
+        calls.clear()
+        solution.to_pandas()
+        solution.plot()
+        counts.append((calls["strain_energies"] / number, calls["digits_of"]))
+    assert counts[0] == counts[1]
+    assert counts[0][0] == 1.0

@@ -115,8 +115,11 @@ def _order(
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
-        order = _to_support(blocks, order, mask, held)
         dofs = order[mask[order]]
+        turned = _to_support(blocks, order, mask, held)
+        # joined nodes that share some coordinates only may be further apart then
+        if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
+            dofs = turned
         free = _numbers(dofs, size)
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
         return Unknowns(free, dofs, layouts, None, reach=reaches(blocks, free, len(dofs)))
@@ -188,26 +191,27 @@ def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     return np.lexsort((np.arange(size), rank[owner]))
 
 
-def _to_support(blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Return the order (size,) of the coordinates, its nodes reversed if it begins closer to a support than it ends.
+def _to_support(blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, held: np.ndarray) -> np.ndarray | None:
+    """Return the unknown coordinates with the nodes reversed if the order begins closer to a support than it ends.
 
-    Elimination from a free end meets the stiffness of single elements only. In the other direction the last pivots are
-    the stiffness of the whole cantilever, a difference of much larger numbers that has no digits in long ones. unknown
-    (size,): mask of the unknown coordinates.
+    None if it does not. Elimination from a free end meets the stiffness of single elements only. In the other
+    direction the last pivots are the stiffness of the whole cantilever, a difference of much larger numbers that has no
+    digits in long ones. order (size,): all coordinates; unknown (size,): mask of the unknown ones.
     """
     if not len(held):
-        return order
+        return None
     owner = _owners(blocks, len(order))
     supported = np.zeros(len(order), dtype=bool)
     supported[owner[held]] = True
     places = np.flatnonzero(supported[owner[order]])
-    unknown = unknown[order]
-    if np.count_nonzero(unknown[: places[0]]) >= np.count_nonzero(unknown[places[-1] + 1 :]):
-        return order
+    left = unknown[order]
+    if np.count_nonzero(left[: places[0]]) >= np.count_nonzero(left[places[-1] + 1 :]):
+        return None
     own = owner[order]
     starts = np.flatnonzero(np.append(True, own[1:] != own[:-1]))
     counts = np.diff(np.append(starts, len(order)))[::-1]
-    return order[np.repeat(starts[::-1] - np.cumsum(counts) + counts, counts) + np.arange(len(order))]
+    turned = order[np.repeat(starts[::-1] - np.cumsum(counts) + counts, counts) + np.arange(len(order))]
+    return np.asarray(turned[unknown[turned]])
 
 
 def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] = ()) -> np.ndarray:

@@ -14,6 +14,7 @@ from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
 
 if TYPE_CHECKING:
+    from beamfem.results.energies import Energy
     from beamfem.results.solution import Solution
 
 _PIECES = 4  # of an element between neighbouring points
@@ -27,7 +28,7 @@ Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 Variables = dict[str, Variable]
 
 
-def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
+def arrays(solution: "Solution", beam: Beam, energy: "Energy | None" = None) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
     The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
@@ -36,10 +37,11 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor,
     number of the beam (with the `names` of all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the
     reference (station,). Adjacent elements each have a station at their common end, where section forces may jump.
+    energy: that of the solution, if it is known already.
     """
     mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
     points, along_beam = stations(solution.model, beam)
-    rows = np.arange(len(solution))
+    rows = slice(None)
     at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
     over = (at[0],)
     along = (*over, "station")
@@ -61,7 +63,7 @@ def arrays(solution: "Solution", beam: Beam) -> tuple[Variables, Variables]:
     for name, label in _STRESSES.items():
         if np.isfinite(stresses[name]).any():
             data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
-    energy = solution.energy()
+    energy = solution.energy() if energy is None else energy
     for name in ("kinetic", "strain", "potential"):
         data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
     return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
@@ -75,7 +77,7 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
     # elements agree on the arc length of their common end, to the last digit
     arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
     arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
-    called = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
+    called = _called(model)
     found = {
         "beam": (np.full(len(points.element), number), about("number of the beam", "1") | called),
         "arc_length": (arc, about("arc length in the reference", "m")),
@@ -83,6 +85,14 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }
     return points, {name: (("station",), *own) for name, own in found.items()}
+
+
+def _called(model: Model) -> dict[str, str]:
+    """Return the names of all beams as an attribute, where there are any; made once for all beams."""
+    known: dict[str, dict[str, str]] = model.__dict__
+    if "_called" not in known:
+        known["_called"] = {"names": ", ".join(names(model.beams))} if any(one.name for one in model.beams) else {}
+    return known["_called"]
 
 
 def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
@@ -132,7 +142,8 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
 
 def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
     """Return the `arrays` of a beam, or of all beams joined along their stations."""
-    parts = [arrays(solution, own) for own in (solution.model.beams if beam is None else (beam,))]
+    energy = solution.energy()
+    parts = [arrays(solution, own, energy) for own in (solution.model.beams if beam is None else (beam,))]
     return side_by_side([data for data, _ in parts]), side_by_side([coordinates for _, coordinates in parts])
 
 

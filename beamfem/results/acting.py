@@ -38,16 +38,15 @@ class Rows:
 
 
 # the last rows of each solution, which the beams of a model ask for one after another
-_KEPT: "WeakKeyDictionary[Solution, tuple[slice, Rows]]" = WeakKeyDictionary()
+_KEPT: "WeakKeyDictionary[Solution, tuple[slice | bytes, Rows]]" = WeakKeyDictionary()
 
 
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
     """Return some rows of a solution with the forces that act in them, which is kept until other rows are asked for."""
-    if not isinstance(rows, slice):
-        return _rows_of(solution, rows)
+    key = rows if isinstance(rows, slice) else np.asarray(rows).tobytes()
     kept = _KEPT.get(solution)
-    if kept is None or kept[0] != rows:
-        kept = _KEPT[solution] = rows, _rows_of(solution, rows)
+    if kept is None or kept[0] != key:
+        kept = _KEPT[solution] = key, _rows_of(solution, rows)
     return kept[1]
 
 

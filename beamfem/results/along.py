@@ -122,7 +122,7 @@ class Quantity:
 
     label: str
     unit: str
-    values: Callable[[AxisPoints, "Solution", np.ndarray], np.ndarray]
+    values: Callable[[AxisPoints, "Solution", slice | np.ndarray], np.ndarray]
     unknown: str = ""
 
     def unknown_of(self, beams: Iterable[Beam]) -> str:
@@ -136,36 +136,36 @@ class Quantity:
 
 
 def _section_force(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
         return section_forces(points, solution, rows)[name]
 
     return values
 
 
-def _axial_strain(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+def _axial_strain(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
     return postprocess.strain_at_axis(points.mesh, points.now(solution.p[rows]), points.element, points.xi).xx
 
 
-def _shear_angle(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+def _shear_angle(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
     return postprocess.shear_angle(points.now(solution.p[rows]))
 
 
-def _displacement(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+def _displacement(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(points.positions(solution.p[rows])[0] - points.reference, axis=-1))
 
 
-def _speed(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+def _speed(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(points.velocities(solution.p[rows], solution.v[rows]), axis=-1))
 
 
 def _stress(name: str) -> Callable[..., np.ndarray]:
-    def values(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+    def values(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
         return stress_at(solution, points.mesh, points.element, points.xi, rows)[name]
 
     return values
 
 
-def _outer(points: AxisPoints, solution: "Solution", rows: np.ndarray) -> np.ndarray:
+def _outer(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
     found = stress_at(solution, points.mesh, points.element, points.xi, rows)
     return np.where(np.abs(found["upper"]) >= np.abs(found["lower"]), found["upper"], found["lower"])
 

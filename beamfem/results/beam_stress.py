@@ -211,13 +211,14 @@ def _of_rows(
 ) -> dict[str, np.ndarray]:
     normal, shear, moment = np.moveaxis(at_points(solution, mesh, Cuts(element, xi), rows), 1, 0)
     own, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()
+    strength = strengths(mesh, element, xi, own.layers.shape[1])
     for layer in range(own.layers.shape[1]):
         low, high = np.moveaxis(own.layers[:, layer], -1, 0)
         y = low[:, None] + (high - low)[:, None] * _HEIGHTS
         along = own.normal_stress(layer, y, normal, moment) + self_stress(solution, mesh, element, xi, layer, y, rows)
         sheared = own.shear_stress(layer, y, shear)
         equivalent = von_mises(along, sheared)
-        fraction = equivalent / strengths(mesh, element, xi, layer)[:, None]
+        fraction = equivalent / strength[layer][:, None]
         found = {
             "lower": along[..., 0],
             "upper": along[..., -1],

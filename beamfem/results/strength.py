@@ -8,18 +8,21 @@ from beamfem.model.reference import sections_at
 from beamfem.section.protocol import CrossSection
 
 
-def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layer: int) -> np.ndarray:
-    """Return the strength (n,) [Pa] of a layer of the sections at points (element, xi); nan if none is given."""
+def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layers: int) -> np.ndarray:
+    """Return the strength (layers, n) [Pa] of each layer of the sections at points (element, xi); nan if none is given.
+
+    Sections with fewer layers repeat the last one.
+    """
     prismatic = isinstance(grid.beam.section, CrossSection)
     sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
-    found = np.array([_strength(grid, section, layer) for section in sections])
-    return np.broadcast_to(found, len(element)) if prismatic else found
+    found = np.array([_strengths(grid, section, layers) for section in sections]).T
+    return np.broadcast_to(found, (layers, len(element))) if prismatic else found
 
 
-def _strength(grid: Grid, section: CrossSection, layer: int) -> float:
+def _strengths(grid: Grid, section: CrossSection, layers: int) -> list[float]:
     try:
-        parts = [material for material, _ in section.moments(grid.beam.material)]
+        known = [material.strength for material, _ in section.moments(grid.beam.material)][:layers]
     except InputError:  # the section is defined by its stiffness and has no materials
-        return np.nan
-    own = parts[min(layer, len(parts) - 1)].strength
-    return np.nan if own is None else own
+        return [np.nan] * layers
+    own = [np.nan if strength is None else strength for strength in known]
+    return own + [own[-1]] * (layers - len(own))

@@ -23,7 +23,7 @@ def names_of(solution: Solution) -> tuple[str, ...]:
     known = set()
     for mesh in solution.model.meshes:
         starts = np.arange(mesh.elements)
-        found = stress_at(solution, mesh, starts, np.zeros(mesh.elements), np.array([len(solution) - 1]))
+        found = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
         known |= {name for name, part in _STRESSES.items() if np.isfinite(found[part]).any()}
     stresses = tuple(name for name in _STRESSES if name in known)
     moved = ("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed")

@@ -7,6 +7,7 @@ import numpy as np
 from beamfem.model.beam import Beam, Point
 from beamfem.model.reference import length_points
 from beamfem.model.shapes import Force, ForcesAlong, LoadShape
+from beamfem.results.nodal import axis_at
 from beamfem.view.frames import one_row
 
 if TYPE_CHECKING:
@@ -30,7 +31,9 @@ class PlacedRow:
 
     def slope(self, point: Point) -> np.ndarray:
         """Return r0' (2,) [-] at a point."""
-        return self.only.fields(point).r_x[0]
+        mesh = self.only.model.mesh_of(point)
+        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        return axis_at(mesh, self.only.p, element, xi).r_s[0, 0]
 
     def stations(self, beam: Beam) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""

@@ -172,7 +172,7 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
     public = import_module("beamfem.public")
-    globals().update({each: getattr(public, each) for each in __all__})
+    globals().update({key: getattr(public, key) for key in __all__})
     return globals()[name]
 
 

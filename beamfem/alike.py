@@ -30,8 +30,8 @@ def equal(one: object, other: object) -> bool:
     """Return whether two items are equal, with all that they have besides what they are compared by."""
     if one is other or by_value(one) == by_value(other):
         return True
-    own, its = getattr(one, "__dict__", None), getattr(other, "__dict__", None)
-    return type(one) is type(other) and own is not None and bool(own) and own == its
+    attributes, other_attributes = getattr(one, "__dict__", None), getattr(other, "__dict__", None)
+    return type(one) is type(other) and attributes is not None and bool(attributes) and attributes == other_attributes
 
 
 def lasting(*items: object) -> bool:
@@ -50,16 +50,16 @@ def lasting(*items: object) -> bool:
 
 def _parts(item: object) -> Iterator[Any]:
     """Return an item and all that it is compared by, but for numbers and text."""
-    known: set[int] = set()
-    found: list[Any] = [item]
-    while found:
-        part = found.pop()
+    seen: set[int] = set()
+    waiting: list[Any] = [item]
+    while waiting:
+        part = waiting.pop()
         if isinstance(part, tuple):
-            found += part
-        elif type(part) not in _PLAIN and id(part) not in known:
-            known.add(id(part))
+            waiting += part
+        elif type(part) not in _PLAIN and id(part) not in seen:
+            seen.add(id(part))
             yield part
-            found += [getattr(part, name) for name in _compared(type(part))]  # type: ignore[arg-type]
+            waiting += [getattr(part, name) for name in _compared(type(part))]  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=256)
@@ -68,7 +68,7 @@ def _compared(kind: type) -> tuple[str, ...]:
     if not is_dataclass(kind):
         return ()
     numbers = (float, float | None) if of_package(kind) else ()
-    return tuple(own.name for own in fields(kind) if own.compare and own.type not in numbers)
+    return tuple(field.name for field in fields(kind) if field.compare and field.type not in numbers)
 
 
 @lru_cache(maxsize=256)

@@ -16,22 +16,22 @@ _LONGEST = 700  # characters of everything
 def brief(item: Any) -> str:
     """Return a dataclass with its fields: arrays by their shape and range, long sequences by their length."""
     parts = (f"{field.name}={_shown(getattr(item, field.name))}" for field in fields(item) if field.repr)
-    said = f"{type(item).__name__}({', '.join(parts)})"
-    return said if len(said) <= _LONGEST else f"{said[:_LONGEST]}...)"
+    text = f"{type(item).__name__}({', '.join(parts)})"
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...)"
 
 
 def _shown(value: Any) -> str:
     if isinstance(value, np.ndarray) and value.size > _FEW:
-        known = value[np.isfinite(value)] if value.dtype.kind == "f" else value
-        span = f" from {known.min():.6g} to {known.max():.6g}" if known.size and value.dtype.kind in "fiu" else ""
+        finite = value[np.isfinite(value)] if value.dtype.kind == "f" else value
+        span = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size and value.dtype.kind in "fiu" else ""
         return f"<array {value.shape}{span}>"
     if isinstance(value, np.ndarray):
         return np.array2string(value, precision=6, separator=", ").replace("\n", "")
     if isinstance(value, tuple | list):
-        one = "," if len(value) == 1 else ""
-        said = f"({', '.join(map(_shown, value[:_FEW]))}{one})"
-        return f"<{len(value)} items>" if len(value) > _FEW or len(said) > _LONG else said
+        comma = "," if len(value) == 1 else ""
+        text = f"({', '.join(map(_shown, value[:_FEW]))}{comma})"
+        return f"<{len(value)} items>" if len(value) > _FEW or len(text) > _LONG else text
     if isinstance(value, Mapping):
-        said = f"{{{', '.join(f'{key!r}: {_shown(value[key])}' for key in list(value)[:_FEW])}}}"
-        return f"<{len(value)} entries>" if len(value) > _FEW or len(said) > _LONG else said
+        text = f"{{{', '.join(f'{key!r}: {_shown(value[key])}' for key in list(value)[:_FEW])}}}"
+        return f"<{len(value)} entries>" if len(value) > _FEW or len(text) > _LONG else text
     return shown(value).replace("\n", " ")

@@ -19,12 +19,12 @@ _STEM = 40  # characters that a file beside its place takes of its name, as syst
 def path_of(path: str | PathLike[str]) -> Path:
     """Return a path. Raises InputError for what is none."""
     try:
-        given = os.fspath(path)
+        text = os.fspath(path)
     except TypeError:
-        given = None
-    if not isinstance(given, str) or not given or "\0" in given:
+        text = None
+    if not isinstance(text, str) or not text or "\0" in text:
         raise InputError(f'a path is a text such as "out/result.h5", or a pathlib.Path, got {shown(path)}')
-    return Path(given)
+    return Path(text)
 
 
 def readable(path: str | PathLike[str]) -> Path:

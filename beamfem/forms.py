@@ -24,8 +24,8 @@ def beam_basis(mesh: BeamMesh, points: int | None = None, elements: slice = _ALL
 
     points: Gauss points along an element; without it those of the beam's elastic forces; elements: a smooth piece.
     """
-    own, chosen = mesh.beam.element, np.arange(mesh.elements)[elements]
-    xi, along = own.quadrature() if points is None else gauss(points)
+    formulation, chosen = mesh.beam.element, np.arange(mesh.elements)[elements]
+    xi, along = formulation.quadrature() if points is None else gauss(points)
     element, at = np.repeat(chosen, len(xi)), np.tile(xi, len(chosen))
     material = mesh.beam.material
     if isinstance(mesh.beam.section, CrossSection):
@@ -37,7 +37,7 @@ def beam_basis(mesh: BeamMesh, points: int | None = None, elements: slice = _ALL
     X = np.stack([np.repeat(at[:, None], y.shape[1], axis=1).reshape(shape), y.reshape(shape)])
     W = (np.tile(along, len(chosen))[:, None] * across).reshape(shape)
     line = mesh.skfem(elements)
-    return Basis(line, FieldElement(own.field), mapping=BeamMapping(line), quadrature=(X, W))
+    return Basis(line, FieldElement(formulation.field), mapping=BeamMapping(line), quadrature=(X, W))
 
 
 def mass_basis(mesh: BeamMesh) -> Basis:

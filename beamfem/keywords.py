@@ -37,8 +37,8 @@ def require_keywords(name: str, given: Iterable[str], known: Iterable[str]) -> N
     known = list(known)
     for keyword in given:
         if keyword not in known:
-            said = nearest(keyword, known) if known else "it takes none"
-            raise UnknownKeywordError(f"{name} has no parameter {keyword!r}; {said}")
+            hint = nearest(keyword, known) if known else "it takes none"
+            raise UnknownKeywordError(f"{name} has no parameter {keyword!r}; {hint}")
 
 
 def check_keywords_of(kind: type) -> None:
@@ -50,8 +50,8 @@ def check_keywords_of(kind: type) -> None:
 
 def _check_keywords_of(kind: type) -> None:
     for name, item in list(vars(kind).items()):
-        made = item.__func__ if isinstance(item, staticmethod) else item
-        if (name.startswith("_") and name != "__init__") or hasattr(made, "__wrapped__"):
+        function = item.__func__ if isinstance(item, staticmethod) else item
+        if (name.startswith("_") and name != "__init__") or hasattr(function, "__wrapped__"):
             continue
         if isinstance(item, FunctionType):
             setattr(kind, name, keywords_checked(item))
@@ -85,15 +85,23 @@ def with_options_listed(own: Signature) -> Signature:
 
 def _refuse_unknown(function: Callable[..., Any], arguments: tuple[Any, ...], given: Iterable[str]) -> None:
     parameters = list(signature(function).parameters.values())
-    named = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
-    placed = [each.name for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.POSITIONAL_ONLY)]
+    named = [
+        parameter.name
+        for parameter in parameters
+        if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+    ]
+    placed = [
+        parameter.name
+        for parameter in parameters
+        if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.POSITIONAL_ONLY)
+    ]
     name = function.__qualname__
     if "." in name and named[:1] == ["self"]:
         name = name_of(function, arguments[0]).removesuffix(".__init__")
         named, placed, arguments = named[1:], placed[1:], arguments[1:]
     if given:
         require_keywords(name, given, named)
-    if len(arguments) > len(placed) and not any(each.kind == each.VAR_POSITIONAL for each in parameters):
+    if len(arguments) > len(placed) and not any(parameter.kind == parameter.VAR_POSITIONAL for parameter in parameters):
         most = f"{len(placed)} at most: {', '.join(placed)}" if placed else "none"
         number = f"{len(arguments)} argument{'s' * (len(arguments) > 1)}"
         raise UnknownKeywordError(f"{name} got {number} by position, but it takes {most}")

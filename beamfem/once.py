@@ -21,5 +21,5 @@ class cached_property(functools.cached_property[_Value]):
     def __get__(self, instance: object | None, owner: type[Any] | None = None) -> Self | _Value:
         if instance is None:
             return self
-        found: _Value = instance.__dict__.setdefault(str(self.attrname), self.func(instance))
-        return found
+        value: _Value = instance.__dict__.setdefault(str(self.attrname), self.func(instance))
+        return value

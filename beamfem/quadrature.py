@@ -11,10 +11,10 @@ def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     """Return Gauss points (points,) and weights (points,) on [0, 1], which cannot be written to."""
     # scikit-fem has no rule of one point
     (xi,), weights = ([[0.5]], np.ones(1)) if points == 1 else get_quadrature_line(2 * points - 1)
-    found = np.array(xi), np.array(weights)
-    for values in found:
+    rule = np.array(xi), np.array(weights)
+    for values in rule:
         values.setflags(write=False)
-    return found
+    return rule
 
 
 def gauss_between(low: float, high: float, points: int) -> tuple[np.ndarray, np.ndarray]:

@@ -41,11 +41,11 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
     module, name = _FUNCTIONS[method].split(":")
     with needed_for(method.__name__):
         function: Callable[..., Any] = getattr(import_module(module), name)
-    known = list(signature(function).parameters)[1:]
+    keywords = list(signature(function).parameters)[1:]
 
     @wraps(function)
     def call(*arguments: Any, **options: Any) -> Any:
-        require_keywords(name_of(method, arguments[0]), options, known)
+        require_keywords(name_of(method, arguments[0]), options, keywords)
         with needed_for(method.__name__):
             return function(*arguments, **options)
 

@@ -38,7 +38,7 @@ class Units:
             "kg": mass or f"{self.force} {self.time}^2/{self.length}",
             "Hz": "Hz" if self.time == "s" else f"1/{self.time}",
         }
-        return re.sub(r"[A-Za-z]+", lambda found: parts.get(found[0], found[0]), unit)
+        return re.sub(r"[A-Za-z]+", lambda match: parts.get(match[0], match[0]), unit)
 
 
 def units_of(given: Any) -> Units:
@@ -48,7 +48,7 @@ def units_of(given: Any) -> Units:
 
 @lru_cache(maxsize=16)
 def _units_of(given: str) -> Units:
-    found: dict[str, str] = {}
+    units: dict[str, str] = {}
     kinds = {"force": FORCES, "length": LENGTHS, "time": TIMES}
     for name in (part.strip() for part in given.split(",")):
         kind = next((kind for kind, names in kinds.items() if name in names), None)
@@ -57,7 +57,7 @@ def _units_of(given: str) -> Units:
             raise InputError(
                 f'units are a force, a length and a time, such as "N, mm, s": {name!r} is none; {nearest(name, known)}'
             )
-        if kind in found:
+        if kind in units:
             raise InputError(f'units are one force, one length and one time, such as "N, mm, s", got {given!r}')
-        found[kind] = name
-    return Units(**found)
+        units[kind] = name
+    return Units(**units)

@@ -116,14 +116,14 @@ def squared(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
     """Return a check that refuses numbers and vectors, other than zero, whose square double precision does not hold."""
 
     def checked(name: str, value: Any) -> Any:
-        found = check(name, value)
-        size = max(map(abs, found)) if isinstance(found, tuple) else abs(found)
+        result = check(name, value)
+        size = max(map(abs, result)) if isinstance(result, tuple) else abs(result)
         if size != 0.0 and not SMALLEST <= size <= LARGEST:
             raise InputError(
                 f"{name} is {size:g}, which double precision cannot square ({SMALLEST:.1g} to {LARGEST:.1g}); "
                 "take zero, or units in which it is closer to 1"
             )
-        return found
+        return result
 
     return checked
 
@@ -136,15 +136,15 @@ def optional(check: Callable[[str, Any], Any]) -> Callable[[str, Any], Any]:
 def number_table(name: str, values: Any, columns: int) -> np.ndarray:
     """Return `values` as an array (n, columns) of finite numbers, or raise InputError naming it."""
     try:
-        found = np.asarray(values)
+        array = np.asarray(values)
     except ValueError:  # rows of different lengths
-        found = np.empty(0)
-    if found.dtype.kind not in "iuf" or found.ndim != 2 or found.shape[1] != columns or not np.isfinite(found).all():
-        size = f" {found.shape}" if found.size else ""
+        array = np.empty(0)
+    if array.dtype.kind not in "iuf" or array.ndim != 2 or array.shape[1] != columns or not np.isfinite(array).all():
+        size = f" {array.shape}" if array.size else ""
         raise InputError(f"{name} must be an array (n, {columns}) of finite numbers, got{size} {shown(values)}")
     if holds_truth_values(values):
         raise InputError(f"{name} must hold numbers only, got truth values among them")
-    return found
+    return array
 
 
 def holds_truth_values(values: Any) -> bool:
@@ -234,9 +234,9 @@ def called(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
     try:
         return function(*arguments)
     except Exception as error:
-        given = ", ".join(map(_argument, arguments))
+        listed = ", ".join(map(_argument, arguments))
         what = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-        raise InputError(f"{name}({given}) cannot be computed: {what}") from error
+        raise InputError(f"{name}({listed}) cannot be computed: {what}") from error
 
 
 def _argument(value: Any) -> str:

@@ -80,9 +80,11 @@ def build_actions(model: Model, block: int) -> Actions:
         joined = dict(parts[0])
     else:
         size = len(model.groups[block].field.nodes) * len(model.groups[block].field.vectors)
-        joined = {name: np.concatenate([own, *(part[name] for part in parts)]) for name, own in _empty(size).items()}
-    own = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
-    return Actions(PointLoads(**joined), **own, loads=(*points, *lines))
+        joined = {
+            name: np.concatenate([values, *(part[name] for part in parts)]) for name, values in _empty(size).items()
+        }
+    values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
+    return Actions(PointLoads(**joined), **values, loads=(*points, *lines))
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:
@@ -136,14 +138,14 @@ def _part(
     mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, unit: np.ndarray, source: int, follower: bool, rule: int = 0
 ) -> dict[str, np.ndarray]:
     """Return the rows of the point loads at points (element, xi) of a beam."""
-    own, count = mesh.beam.element, len(element)
-    scale = scales(own, mesh.lengths[element])
-    position, direction = _tables(own, xi) if count > _FEW else _cached_tables(own, xi.tobytes())
-    if own.forces.turns_with == "r_x":
+    element_type, count = mesh.beam.element, len(element)
+    scale = scales(element_type, mesh.lengths[element])
+    position, direction = _tables(element_type, xi) if count > _FEW else _cached_tables(element_type, xi.tobytes())
+    if element_type.forces.turns_with == "r_x":
         direction = _slope(mesh, element, xi)
     # from the interpolated reference, not the curve: on a curved beam they differ by the interpolation error
     reference = reference_axis(mesh, element, xi)
-    along = reference.r_s if own.forces.turns_with == "r_x" else reference.d
+    along = reference.r_s if element_type.forces.turns_with == "r_x" else reference.d
     (follows, spring), none = np.zeros((2, count, 2)), np.zeros(count, dtype=bool)
     if follower:
         follows[:] = along / np.linalg.norm(along, axis=1, keepdims=True)

@@ -27,7 +27,7 @@ class Arena:
         first = 0
         for (name, shape), size in zip(shapes.items(), sizes, strict=True):
             first += -(address // _ITEM + first) % WIDTH
-            own = memory[first : first + size]
-            self.arrays[name] = own if len(shape) == 1 else own.reshape(shape)
+            array = memory[first : first + size]
+            self.arrays[name] = array if len(shape) == 1 else array.reshape(shape)
             self.addresses[name] = address + _ITEM * first
             first += size

@@ -32,12 +32,12 @@ class Work:
     def rows(self, first: int, count: int) -> np.ndarray:
         """Return `count` rows of all nodes from row `first` on (N, count), in the order of node numbers."""
         nodes = int(self.table[record.NODES])
-        own = self.chunks[:, first : first + count, : record.LANES]
-        found = np.ascontiguousarray(own.transpose(0, 2, 1).reshape(-1, count)[:nodes])
+        chunks = self.chunks[:, first : first + count, : record.LANES]
+        values = np.ascontiguousarray(chunks.transpose(0, 2, 1).reshape(-1, count)[:nodes])
         if self.group.order is None:
-            return found
-        result = np.empty_like(found)
-        result[self.group.order] = found
+            return values
+        result = np.empty_like(values)
+        result[self.group.order] = values
         return result
 
 
@@ -81,33 +81,33 @@ class Assembler:
         self._laws = tuple(group.law for group in groups if group.law is not None)
         count = len(groups)
         which = [_space(group, number, spaces) for number, group in enumerate(groups)]
-        first = {own: number for number, own in reversed(list(enumerate(which)))}
+        first = {space: number for number, space in reversed(list(enumerate(which)))}
         tables, lists = np.array([group.table for group in groups]), np.zeros((5, count), dtype=np.int64)
         addresses, self._values, self._filled = lists[0], lists[1], lists[2:].reshape(count, 3)
         size, at_tables, at_lists = lists.itemsize, address_of(tables), address_of(lists)
         shapes: dict[object, Sequence[int]] = {"factors": (record.FACTOR_COUNT,)}
         self._spaces: dict[object, int] = {}
-        for number, (group, own) in enumerate(zip(groups, which, strict=True)):
-            shapes["chunks", own] = (max(prod(group.chunks), *shapes.get(("chunks", own), (0,))),)
-            self._spaces[own] = max(group.space, self._spaces.get(own, 0))
+        for number, (group, space) in enumerate(zip(groups, which, strict=True)):
+            shapes["chunks", space] = (max(prod(group.chunks), *shapes.get(("chunks", space), (0,))),)
+            self._spaces[space] = max(group.space, self._spaces.get(space, 0))
             if stresses is None:
                 shapes["stress", number] = group.points
         room = Arena(shapes)
         self.works: list[Work] = []
-        for number, (group, own) in enumerate(zip(groups, which, strict=True)):
+        for number, (group, space) in enumerate(zip(groups, which, strict=True)):
             table = tables[number]
             addresses[number] = at_tables + size * record.BLOCK_FIELDS * number
             if stresses is None:
-                stress, place = room.arrays["stress", number], room.addresses["stress", number]
+                stress, stress_address = room.arrays["stress", number], room.addresses["stress", number]
             else:
                 stress = np.ascontiguousarray(stresses[number], dtype=float)
-                place = address_of(stress)
-            rows = room.arrays["chunks", own][: prod(group.chunks)].reshape(group.chunks)
+                stress_address = address_of(stress)
+            rows = room.arrays["chunks", space][: prod(group.chunks)].reshape(group.chunks)
             if group.constant is not None:
                 rows[:] = group.constant
-            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", own], place
+            table[record.CHUNKS], table[record.STRESS] = room.addresses["chunks", space], stress_address
             table[record.SHARED] = int(spaces is not None)
-            table[record.FILLED] = at_lists + size * (2 * count + 3 * first[own])
+            table[record.FILLED] = at_lists + size * (2 * count + 3 * first[space])
             self.works.append(Work(group, table, int(addresses[number]), rows, stress))
         self._which = which
         self.scratch = sum(WIDTH + size for size in self._spaces.values())
@@ -128,13 +128,13 @@ class Assembler:
         """Use scratch memory of at least `scratch` floats; its contents are overwritten."""
         if scratch.user is self and self._scratch is scratch.memory:
             return  # the element tables in it are still valid
-        self._scratch, place, places = scratch.memory, scratch.address, {}
-        for own, size in self._spaces.items():
-            place += -place % (8 * WIDTH)  # vectors of lanes must not straddle two cache lines
-            places[own] = place
-            place += 8 * size
-        for work, own in zip(self.works, self._which, strict=True):
-            work.table[record.SPACE] = places[own]
+        self._scratch, address, addresses = scratch.memory, scratch.address, {}
+        for space, size in self._spaces.items():
+            address += -address % (8 * WIDTH)  # vectors of lanes must not straddle two cache lines
+            addresses[space] = address
+            address += 8 * size
+        for work, space in zip(self.works, self._which, strict=True):
+            work.table[record.SPACE] = addresses[space]
         self._filled[:] = 0
         scratch.user = self
 
@@ -164,25 +164,25 @@ class Assembler:
         self.impose(imposing)
         parts = (body, *values)
         self._acting = (np.concatenate([part.ravel() for part in parts]),)
-        places, address = [], address_of(self._acting[0])
+        addresses, address = [], address_of(self._acting[0])
         for part in parts:
-            places.append(address)
+            addresses.append(address)
             address += 8 * part.size
-        self.table[record.BODY], self.table[record.LOADED] = places[0], int(body.any())
-        self._values[:] = places[1:]
-        return places
+        self.table[record.BODY], self.table[record.LOADED] = addresses[0], int(body.any())
+        self._values[:] = addresses[1:]
+        return addresses
 
     def impose(self, factors: np.ndarray) -> list[int]:
         """Set the factors (..., k) of imposed strains; return the address of the strains of each group, 0 for none."""
         self._taken = None
         if not self._imposes:
             return [0] * len(self.works)
-        found = [_imposed(work.group, factors) for work in self.works]
-        self._natural = tuple(own for own in found if own is not None)
-        places = [0 if own is None else address_of(own) for own in found]
-        for work, place in zip(self.works, places, strict=True):
-            work.table[record.NATURAL] = place
-        return places
+        strains = [_imposed(work.group, factors) for work in self.works]
+        self._natural = tuple(strain for strain in strains if strain is not None)
+        addresses = [0 if strain is None else address_of(strain) for strain in strains]
+        for work, address in zip(self.works, addresses, strict=True):
+            work.table[record.NATURAL] = address
+        return addresses
 
     def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
         """Set the weights ck, cv, ca of p, p', p'' in the tangent; with ca = 0 the residual has no inertia forces.
@@ -260,11 +260,11 @@ class Assembler:
         """Return the nodal vectors e (N, per_node) of each group in a state (n,)."""
         self.require()
         self.table[record.COORDINATES_P] = _address(p, self.size)
-        found = []
+        vectors = []
         for work in self.works:
             node_passes.place_nodes(work.address, self.address, 0)
-            found.append(work.rows(0, 2 * int(work.table[record.VECTORS])))
-        return found
+            vectors.append(work.rows(0, 2 * int(work.table[record.VECTORS])))
+        return vectors
 
     def smallest_jacobian(self, p: np.ndarray) -> float:
         """Return the smallest r0' x d of all quadrature points in a state (n,), at most 1; negative if inverted."""

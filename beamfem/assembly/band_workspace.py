@@ -35,15 +35,15 @@ class BandWorkspace:
                 record.LINEAR: (n,),
             }
         )
-        arrays, place = self._room.arrays, self._room.addresses
+        arrays, addresses = self._room.arrays, self._room.addresses
         self.p, self.residual, self.step, self.limits = (
             arrays[name] for name in ("p", "residual", record.STEP, record.LIMITS)
         )
         self.found, self.linear = arrays[record.FOUND], arrays[record.LINEAR]
         self.prescribed_step, self.prescribed_force = arrays[record.PRESCRIBED_STEP], arrays[record.PRESCRIBED_FORCE]
-        states = place.pop("p"), place[record.STEP], place[record.STEP]
-        self.assembler.place_at(states, place.pop("residual"), place[record.ROWS], arrays[record.ROWS].size)
-        tables = system.solver_table.filled(place), system.solver_table.routines(moving=False)
+        states = addresses.pop("p"), addresses[record.STEP], addresses[record.STEP]
+        self.assembler.place_at(states, addresses.pop("residual"), addresses[record.ROWS], arrays[record.ROWS].size)
+        tables = system.solver_table.filled(addresses), system.solver_table.routines(moving=False)
         self._tables, self.addresses = tables, (self.assembler.address, *map(address_of, tables))
         self._entries = arrays[record.ROWS].size
 
@@ -62,8 +62,8 @@ class BandWorkspace:
 def band_workspace(system: System) -> BandWorkspace:
     """Return a workspace that no other solve uses."""
     try:
-        found: BandWorkspace = system.spare.pop()
+        workspace: BandWorkspace = system.spare.pop()
     except IndexError:
-        found = BandWorkspace(system)
-    found.take(scratch.lend(found.assembler.scratch))
-    return found
+        workspace = BandWorkspace(system)
+    workspace.take(scratch.lend(workspace.assembler.scratch))
+    return workspace

@@ -32,12 +32,12 @@ def build_block(
 
     imposing: loads that impose strains, each with the number of its beam.
     """
-    own = [mesh for _, mesh in meshes]
+    beam_meshes = [mesh for _, mesh in meshes]
     first_kind = 0
     known: dict[Hashable, np.ndarray] = {}  # classes of elements, shared by similar beams
     parts: dict[str, list[np.ndarray]] = {name: [] for name in PER_CLASS}
     kinds = []
-    for mesh, like in zip(own, likenesses(own), strict=True):
+    for mesh, like in zip(beam_meshes, likenesses(beam_meshes), strict=True):
         if like not in known:
             for name in PER_CLASS:
                 parts[name].append(getattr(mesh.classes, name))
@@ -46,13 +46,13 @@ def build_block(
         kinds.append(known[like])
     joined = {name: _joined(values) for name, values in parts.items()}
     joined.update(_numbers(meshes), kind=_joined(kinds))
-    law = own[0].beam.law
+    law = beam_meshes[0].beam.law
     return Block(
         measures=element.forces.code,
         director=_director(element),
         law=None if law is None else LawPass(law),
         imposed=imposed_on(meshes, imposing) if imposing else None,
-        history=_joined([mesh.history for mesh in own]) if own[0].history.size else NO_HISTORY,
+        history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,
     )
 
@@ -60,26 +60,26 @@ def build_block(
 @kept_with_elements
 def _director(element: Element) -> np.ndarray:
     """Return the shape functions (nq, nn) of d at the points of the energy, read-only."""
-    found = np.ascontiguousarray(element.field.director(element.energy_points()[0]))
-    found.setflags(write=False)
-    return found
+    director = np.ascontiguousarray(element.field.director(element.energy_points()[0]))
+    director.setflags(write=False)
+    return director
 
 
 def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
     """Return the fields of `kernels.block.Block` that differ by element or node, for beams (number, mesh)."""
-    own = [mesh for _, mesh in meshes]
-    elements, nodes = [mesh.elements for mesh in own], np.array([mesh.nodes for mesh in own])
-    node = _joined([mesh.node for mesh in own])
-    if len(own) > 1:
+    beam_meshes = [mesh for _, mesh in meshes]
+    elements, nodes = [mesh.elements for mesh in beam_meshes], np.array([mesh.nodes for mesh in beam_meshes])
+    node = _joined([mesh.node for mesh in beam_meshes])
+    if len(beam_meshes) > 1:
         node += np.repeat(np.cumsum(nodes) - nodes, elements)[:, None]
     home = homes(node, int(nodes.sum())) if len(node) > _FEW else _cached_homes(node.tobytes(), node.shape)
-    width = max(mesh.carried.dof.shape[1] for mesh in own)
+    width = max(mesh.carried.dof.shape[1] for mesh in beam_meshes)
     return {
         "node": node,
         "beam": np.array([number for number, _ in meshes]).repeat(elements),
-        "node_kind": _joined([mesh.carried.node_kind for mesh in own]),
-        "frame": _joined([mesh.carried.frame for mesh in own]),
-        "dof": _joined([_widened(mesh.carried.dof, width) for mesh in own]),
+        "node_kind": _joined([mesh.carried.node_kind for mesh in beam_meshes]),
+        "frame": _joined([mesh.carried.frame for mesh in beam_meshes]),
+        "dof": _joined([_widened(mesh.carried.dof, width) for mesh in beam_meshes]),
         "home": home,
     }
 
@@ -87,16 +87,16 @@ def _numbers(meshes: Sequence[tuple[int, BeamMesh]]) -> dict[str, np.ndarray]:
 def homes(node: np.ndarray, nodes: int) -> np.ndarray:
     """Return for each node an element that contains it, and its local number there (nodes, 2)."""
     home = np.empty((nodes, 2), dtype=np.int64)
-    for place, there in enumerate(node.T):
-        home[there, 0], home[there, 1] = np.arange(len(node)), place
+    for local_number, numbers in enumerate(node.T):
+        home[numbers, 0], home[numbers, 1] = np.arange(len(node)), local_number
     home.setflags(write=False)
     return home
 
 
 @lru_cache(maxsize=64)
 def _cached_homes(node: bytes, shape: tuple[int, int]) -> np.ndarray:
-    own = np.frombuffer(node, dtype=np.int64).reshape(shape)
-    return homes(own, int(own.max()) + 1)
+    nodes = np.frombuffer(node, dtype=np.int64).reshape(shape)
+    return homes(nodes, int(nodes.max()) + 1)
 
 
 def _joined(parts: Sequence[np.ndarray]) -> np.ndarray:

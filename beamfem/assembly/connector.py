@@ -53,35 +53,35 @@ class Connector:
     def force(self, at: At) -> np.ndarray:
         """Return the force (3 m + k,). Raises InputError for an invalid result."""
         with np.errstate(all="ignore"):  # far from equilibrium a force may overflow; the iteration recovers from it
-            found = np.asarray(called(f"force of {self.name}", self.item.force, at))
-        if found.shape != (len(self.dofs) + len(self.own),) or found.dtype.kind not in "fic":
+            force = np.asarray(called(f"force of {self.name}", self.item.force, at))
+        if force.shape != (len(self.dofs) + len(self.own),) or force.dtype.kind not in "fic":
             count = len(self.dofs) + len(self.own)
-            flat = "; .ravel() makes it flat" if found.size == count and found.ndim > 1 else ""
+            flat = "; .ravel() makes it flat" if force.size == count and force.ndim > 1 else ""
             raise InputError(
                 f"force of {self.name} must return {count} numbers, fx, fy and moment at each of its "
                 f"{len(self.reference)} points and {len(self.own)} conditions, as an array ({count},), got "
-                f"{found.dtype} {found.shape}{flat}"
+                f"{force.dtype} {force.shape}{flat}"
             )
-        return found
+        return force
 
     def remember(self, at: At) -> np.ndarray:
         """Return the history variables (h,) after an accepted step. Raises InputError for an invalid result."""
         if not isinstance(self.item, Remembering):
             return np.empty(0)
-        found = np.asarray(called(f"remember of {self.name}", self.item.remember, at))
-        if found.shape != self.memory.shape or found.dtype.kind not in "fi" or not np.isfinite(found).all():
-            raise InputError(f"remember of {self.name} must return {len(self.memory)} finite numbers, got {found}")
-        return found
+        history = np.asarray(called(f"remember of {self.name}", self.item.remember, at))
+        if history.shape != self.memory.shape or history.dtype.kind not in "fi" or not np.isfinite(history).all():
+            raise InputError(f"remember of {self.name} must return {len(self.memory)} finite numbers, got {history}")
+        return history
 
     def energy(self, at: At) -> tuple[complex, complex]:
         """Return kinetic and potential energy [J]. Raises InputError for an invalid result."""
-        found = np.asarray(called(f"energy of {self.name}", self.item.energy, at))
-        if found.shape != (2,) or found.dtype.kind not in "fic":
+        energies = np.asarray(called(f"energy of {self.name}", self.item.energy, at))
+        if energies.shape != (2,) or energies.dtype.kind not in "fic":
             raise InputError(
                 f"energy of {self.name} must return two numbers, kinetic and potential energy in this order, "
-                f"got {found}"
+                f"got {energies}"
             )
-        kinetic, potential = found.tolist()
+        kinetic, potential = energies.tolist()
         return kinetic, potential
 
     def tangent(

@@ -28,27 +28,27 @@ def require_workless(item: Connector) -> None:
     multipliers in another unit, but not of the other sign: stability is counted by signs. A condition that contains its
     multiplier, such as that of an open contact, tells nothing.
     """
-    least, place, turned = np.inf, 0, -1
+    least, least_row, wrong = np.inf, 0, -1
     for motion in _on_the_conditions(item) if len(item.own) else ():
-        found = [each for each in (_derivatives(item, motion), _derivatives(item, _reversed(item, motion))) if each]
-        if len(found) == 2:  # a friction that grows with |lambda| has a slope of either sign
-            found.append((0.5 * (found[0][0] + found[1][0]), found[0][1]))
-        for held, conditions in found:
+        pairs = [pair for pair in (_derivatives(item, motion), _derivatives(item, _reversed(item, motion))) if pair]
+        if len(pairs) == 2:  # a friction that grows with |lambda| has a slope of either sign
+            pairs.append((0.5 * (pairs[0][0] + pairs[1][0]), pairs[0][1]))
+        for held, conditions in pairs:
             size, row, opposed = _besides(item, held, conditions)
             if size <= _AGREE and opposed < 0:
                 return
             if size <= _AGREE:
-                turned = opposed
+                wrong = opposed
             if size < least:
-                least, place = size, row
-    if turned >= 0:
+                least, least_row = size, row
+    if wrong >= 0:
         raise InputError(
-            f"force of {item.name}: multiplier {turned} does not act along the derivative of its condition by q; the "
+            f"force of {item.name}: multiplier {wrong} does not act along the derivative of its condition by q; the "
             "force must contain each multiplier times the derivative of its own condition, with this sign"
         )
     if least == np.inf or _knows_what_slides(item):
         return
-    point, direction = divmod(place, 3)
+    point, direction = divmod(least_row, 3)
     raise InputError(
         f"force of {item.name}: the forces of its multipliers do work in motions that its conditions allow; "
         f"{('fx', 'fy', 'the moment')[direction]} at points[{point}] is not the multipliers times the derivatives of "
@@ -64,10 +64,10 @@ def _on_the_conditions(item: Connector) -> Iterator[Motion]:
     rng, units = np.random.default_rng(5), item.units
     last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
     for far in (0.0, _FAR, _FAR):
-        moved, own = far * units * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
+        moved, multipliers = far * units * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
         for side in (1.0, -1.0):  # a contact may be open for one of them
             p, zeros = np.zeros(last), np.zeros(last)
-            p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * own
+            p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * multipliers
             p[item.memory] = remembered(item.item)
             if _meets(item, (p, zeros, zeros)):
                 yield p, zeros, zeros
@@ -115,10 +115,10 @@ def _besides(item: Connector, held: np.ndarray, conditions: np.ndarray) -> tuple
     held, conditions = (table / np.maximum(np.abs(table).max(axis=0), np.finfo(float).tiny) for table in works)
     sizes = np.maximum(np.abs(held), np.abs(conditions)).max(axis=1, keepdims=True)
     held, conditions = (table / np.maximum(sizes, _ACTS) for table in (held, conditions))
-    parts = np.linalg.lstsq(conditions, held, rcond=1e-9)[0]
-    rest = np.abs(held - conditions @ parts).max(axis=1)
-    opposed = np.flatnonzero((np.diag(parts) <= _ROUND_OFF) & held.any(axis=0))
-    return float(rest.max()), int(rest.argmax()), int(opposed[0]) if len(opposed) else -1
+    coefficients = np.linalg.lstsq(conditions, held, rcond=1e-9)[0]
+    residual = np.abs(held - conditions @ coefficients).max(axis=1)
+    opposed = np.flatnonzero((np.diag(coefficients) <= _ROUND_OFF) & held.any(axis=0))
+    return float(residual.max()), int(residual.argmax()), int(opposed[0]) if len(opposed) else -1
 
 
 def _knows_what_slides(item: Connector) -> bool:
@@ -126,23 +126,23 @@ def _knows_what_slides(item: Connector) -> bool:
     number, rng = len(item.dofs), np.random.default_rng(7)
     for motion in _on_the_conditions(item):
         p, v, a = motion
-        others: list[Motion] = []
+        motions: list[Motion] = []
         for speed in _SPEEDS:
             moving = v.copy()
             moving[item.dofs] = speed * item.units * rng.standard_normal(number)
-            others.append((p, moving, a))
+            motions.append((p, moving, a))
         for past in _PASTS if len(item.memory) else ():
             later = p.copy()
             later[item.memory] += past * rng.standard_normal(len(item.memory))
-            others.append((later, v, a))
+            motions.append((later, v, a))
         for turned in (lambda one: one, lambda one: _reversed(item, one)):
             try:
-                known, *found = (
-                    item.tangent(turned(each), _TIME, _GRAVITY, _BY_Q)[:number, number:] for each in (motion, *others)
+                nominal, *tangents = (
+                    item.tangent(turned(each), _TIME, _GRAVITY, _BY_Q)[:number, number:] for each in (motion, *motions)
                 )
             except (InputError, LinAlgError):  # a past that cannot be: it may well be friction
                 return True
-            if any(np.abs(each - known).max() > _ROUND_OFF * np.abs(known).max() for each in found):
+            if any(np.abs(each - nominal).max() > _ROUND_OFF * np.abs(nominal).max() for each in tangents):
                 return True
     return False
 

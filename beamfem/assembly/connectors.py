@@ -81,20 +81,20 @@ class Connectors:
     def energies(self, motion: Motion, time: float) -> tuple[float, float]:
         """Return the total kinetic and potential energy [J]."""
         gravity = self.gravity(time)
-        found = [item.energy(item.at(motion, time, gravity)) for item in self.items]
-        kinetic, potential = np.array(found).reshape(-1, 2).real.sum(axis=0).tolist()
+        energies = [item.energy(item.at(motion, time, gravity)) for item in self.items]
+        kinetic, potential = np.array(energies).reshape(-1, 2).real.sum(axis=0).tolist()
         return kinetic, potential
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
         """Return the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] (3,)."""
         (p, v, a), gravity, result = motion, self.gravity(time), np.zeros(3)
         for item in self.items:
-            own = np.empty(len(item.dofs))
+            momenta = np.empty(len(item.dofs))
             for number, dof in enumerate(item.dofs.tolist()):
                 moved = v.astype(complex)
                 moved[dof] += 1j * COMPLEX_STEP
-                own[number] = np.imag(item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
-            for (x, y), (px, py, turn) in zip(p[item.dofs].reshape(-1, 3)[:, :2], own.reshape(-1, 3), strict=True):
+                momenta[number] = np.imag(item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
+            for (x, y), (px, py, turn) in zip(p[item.dofs].reshape(-1, 3)[:, :2], momenta.reshape(-1, 3), strict=True):
                 result += px, py, x * py - y * px + turn
         return result
 
@@ -102,8 +102,8 @@ class Connectors:
         """Return the residuals (k,) of all constraint conditions in a state p (n,), and their rates for p' (n,)."""
         zeros, gravity = np.zeros(len(p)), np.zeros(2)
         moved = p + 1j * COMPLEX_STEP * rate
-        found = [item.force(item.at((moved, zeros, zeros), 0.0, gravity))[len(item.dofs) :] for item in self.items]
-        values = np.concatenate(found)
+        residuals = [item.force(item.at((moved, zeros, zeros), 0.0, gravity))[len(item.dofs) :] for item in self.items]
+        values = np.concatenate(residuals)
         return values.real, values.imag / COMPLEX_STEP
 
     @cached_property
@@ -115,13 +115,13 @@ class Connectors:
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             turns = np.arange(len(item.all)) % 3 == 2
             turns[len(item.dofs) :] = True
-            for row, chosen in zip(result, (~turns, turns), strict=True):
-                np.add.at(row, item.all, np.abs(stiffness[:, chosen]).sum(axis=1))
+            for row, columns in zip(result, (~turns, turns), strict=True):
+                np.add.at(row, item.all, np.abs(stiffness[:, columns]).sum(axis=1))
         return result
 
     def stopped(self) -> list[tuple[Connector, np.ndarray]]:
         """Return each connector with the normalised motions (r, 3 m) of its points that it resists in the reference."""
-        found = []
+        result = []
         for item, stiffness in zip(self.items, self._stiffness, strict=True):
             forces = stiffness[: len(item.dofs), : len(item.dofs)].copy()
             # makes moments comparable with forces
@@ -132,8 +132,8 @@ class Connectors:
             conditions = stiffness[len(item.dofs) :, : len(item.dofs)]
             rows = np.vstack([forces, conditions])
             sizes = np.abs(rows).max(axis=1, initial=0.0)
-            found.append((item, rows[sizes > 0.0] / sizes[sizes > 0.0, None]))
-        return found
+            result.append((item, rows[sizes > 0.0] / sizes[sizes > 0.0, None]))
+        return result
 
     @cached_property
     def _stiffness(self) -> list[np.ndarray]:
@@ -147,22 +147,22 @@ class Connectors:
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
-    first, found = model.coordinates, []
+    first, connectors = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:
-        dofs, places = [], []
+        dofs, positions = [], []
         for point in item.points:
             mesh = model.mesh_of(point)
             node = mesh.node_at(point.fraction)
             numbers = mesh.coordinates_of(node)
             dofs += [numbers[name] for name in _COORDINATES]
-            places.append([*mesh.position[node].tolist(), 0.0])
-        own = np.arange(first, first + item.unknowns)
+            positions.append([*mesh.position[node].tolist(), 0.0])
+        multipliers = np.arange(first, first + item.unknowns)
         first += item.unknowns
         memory = np.arange(behind, behind + len(remembered(item)))
         behind += len(memory)
-        found.append(Connector(item, np.array(dofs, dtype=np.int64), own, memory, np.array(places)))
-        require_analytic(found[-1])
-        require_workless(found[-1])
-        require_energies(found[-1])
-    return Connectors(model, static, tuple(found))
+        connectors.append(Connector(item, np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)))
+        require_analytic(connectors[-1])
+        require_workless(connectors[-1])
+        require_energies(connectors[-1])
+    return Connectors(model, static, tuple(connectors))

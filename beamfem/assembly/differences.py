@@ -25,7 +25,7 @@ def differentiated(
     size = np.max(np.abs(step) / system.strain_scale[some], axis=-1, initial=0.0)
     width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
     result = np.zeros(1)
-    for at, weight in _DIFFERENCE:
-        found = values(p + at * width[..., None] * step)
-        result = result + weight * found / width.reshape(width.shape + (1,) * (found.ndim - width.ndim))
+    for offset, weight in _DIFFERENCE:
+        sample = values(p + offset * width[..., None] * step)
+        result = result + weight * sample / width.reshape(width.shape + (1,) * (sample.ndim - width.ndim))
     return result

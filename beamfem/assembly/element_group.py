@@ -62,13 +62,13 @@ def stored(block: Block, order: np.ndarray | None) -> Block:
         return block
     number = np.empty_like(order)
     number[order] = np.arange(len(order))
-    own = {name: getattr(block, name)[order] for name in ("node_kind", "frame", "dof", "home")}
-    return block._replace(node=number[block.node], **own)
+    reordered = {name: getattr(block, name)[order] for name in ("node_kind", "frame", "dof", "home")}
+    return block._replace(node=number[block.node], **reordered)
 
 
 def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
     """Return the group of a block."""
-    structure, own = structure_of(block, layout, loads), _routines(block)
+    structure, element_routines = structure_of(block, layout, loads), _routines(block)
     classes, nodes = len(block.scale), block.node.shape[1]
     vectors, order = block.scale.shape[1] // nodes, structure.order
     upper = _UPPER[block.reference.shape[2]]
@@ -92,8 +92,8 @@ def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
         record.FRAME: np.concatenate((frame.T.ravel(), _PADDING)),
     }
     slot, history = np.ascontiguousarray(layout.slot, dtype=np.int32), np.ascontiguousarray(block.history)
-    kept = [*structure.kept, slot, own.addresses, history]
-    table[record.SLOT], table[record.ROUTINES], table[record.HISTORY] = (address_of(each) for each in kept[-3:])
+    kept = [*structure.kept, slot, element_routines.addresses, history]
+    table[record.SLOT], table[record.ROUTINES], table[record.HISTORY] = (address_of(array) for array in kept[-3:])
     table[record.VARIABLES] = history.shape[-1]
     for field, values in arrays.items():
         kept.append(np.ascontiguousarray(values, dtype=float))
@@ -102,7 +102,9 @@ def make_group(block: Block, layout: Layout, loads: PointLoads) -> ElementGroup:
         kept.append(_add_loads(table, loads))
     constant, space = _constant(structure, 2 * vectors, frame), structure.used * ROW
     needs, law = structure.needs, block.law
-    return ElementGroup(table, tuple(kept), structure.chunks, space, order, constant, own, needs, law, block.imposed)
+    return ElementGroup(
+        table, tuple(kept), structure.chunks, space, order, constant, element_routines, needs, law, block.imposed
+    )
 
 
 def _add_loads(table: np.ndarray, loads: PointLoads) -> np.ndarray:

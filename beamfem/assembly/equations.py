@@ -105,10 +105,10 @@ def _add_connectors(
     coefficients: tuple[float, float, float],
 ) -> None:
     """Add the tangents of connectors to the entries of a sparse matrix."""
-    found = system.connectors.tangents(state, time, coefficients)
-    for place, own in zip(system.unknowns.coupled, found, strict=True):
-        known = place >= 0
-        np.add.at(matrix, place[known], own[known])
+    tangents = system.connectors.tangents(state, time, coefficients)
+    for positions, tangent in zip(system.unknowns.coupled, tangents, strict=True):
+        mask = positions >= 0
+        np.add.at(matrix, positions[mask], tangent[mask])
 
 
 def _entries(system: System) -> np.ndarray:
@@ -137,8 +137,8 @@ def with_stresses(
 ) -> MixedTangent:
     """Return the mixed form of the tangent `plain` in p, p', p'': with stress resultants as additional unknowns."""
     p = state[0]
-    known = stresses or _sure_stresses(system, p, time)
-    loads, zeros = linearise(system, *state, time, coefficients, known, system.without_stiffness)
+    resultants = stresses or _sure_stresses(system, p, time)
+    loads, zeros = linearise(system, *state, time, coefficients, resultants, system.without_stiffness)
     return mixed(system, p, time, coefficients[0], loads[system.free_dofs], zeros, plain)
 
 
@@ -159,7 +159,7 @@ def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], at least the size of the model, and the largest other coordinate, at least 1."""
     size, others = np.abs(p), ~system.positions
     others[system.history.numbers] = False
-    reach, turn = (float(size.max(where=own, initial=0.0)) for own in (system.positions, others))
+    reach, turn = (float(size.max(where=mask, initial=0.0)) for mask in (system.positions, others))
     return max(reach, system.extent), max(turn, 1.0)
 
 

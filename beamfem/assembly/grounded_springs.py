@@ -16,14 +16,14 @@ def grounded_springs(model: Model, unknowns: Unknowns, reference: np.ndarray) ->
     for support in model.point_supports:
         if springs := support.springs():
             mesh = model.mesh_of(support.point)
-            known = mesh.coordinates_of(mesh.node_at(support.point.fraction))
+            coordinates = mesh.coordinates_of(mesh.node_at(support.point.fraction))
             for direction, value in springs.items():
-                dofs.append(known[COORDINATES[direction]])
+                dofs.append(coordinates[COORDINATES[direction]])
                 stiffness.append(value)
     if not dofs:
         return _NONE
     where = np.array(dofs, dtype=np.int64)
     free = unknowns.free[where]
-    place = free.copy()
-    place[free >= 0] = unknowns.diagonal(free[free >= 0])
-    return Springs(where, np.array(stiffness, dtype=float), reference[where], place)
+    positions = free.copy()
+    positions[free >= 0] = unknowns.diagonal(free[free >= 0])
+    return Springs(where, np.array(stiffness, dtype=float), reference[where], positions)

@@ -111,10 +111,10 @@ def storage_order(node: np.ndarray, nodes: int) -> np.ndarray | None:
     last = node.shape[1] - 1
     if last == 1:
         return None
-    place = np.zeros(nodes, dtype=np.int64)
+    rank = np.zeros(nodes, dtype=np.int64)
     for inner in range(1, last):
-        place[node[:, inner]] = inner
-    return np.argsort(place, kind="stable")
+        rank[node[:, inner]] = inner
+    return np.argsort(rank, kind="stable")
 
 
 def _structure(given: Numbers, sizes: Sizes) -> Structure:
@@ -123,8 +123,8 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     if order is not None:
         number = np.empty_like(order)
         number[order] = np.arange(len(order))
-        own = {name: getattr(given, name)[order] for name in ("node_kind", "dof", "home")}
-        given = given._replace(node=number[given.node], **own)
+        reordered = {name: getattr(given, name)[order] for name in ("node_kind", "dof", "home")}
+        given = given._replace(node=number[given.node], **reordered)
     elements, nodes = given.node.shape
     count, coordinates = given.dof.shape
     size = 2 * sizes.vectors
@@ -145,13 +145,13 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     batch = LANES
     while batch > _SMALLEST and used * batch > _CACHE * LANES:
         batch //= 2
-    place = given.node // LANES * (chunk_rows * ROW) + given.node % LANES
+    offsets = given.node // LANES * (chunk_rows * ROW) + given.node % LANES
     number = np.where(given.dof >= 0, given.free[given.dof], -1)[given.node].reshape(elements, -1)
     runs = _runs(given.node_kind)
     arrays = {
         record.CLASS: given.kind,
         record.BEAM: given.beam,
-        record.PLACE: place.T,
+        record.PLACE: offsets.T,
         record.DOF: given.dof.T,
         record.SOURCE: np.append(np.maximum(given.dof.T, 0), np.zeros(WIDTH, dtype=np.int64)),
         record.RUNS: runs,
@@ -159,7 +159,7 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
         record.FREE: given.free,
         record.HOME: given.home,
         record.LOAD_ELEMENT: given.element,
-        record.LOAD_PLACE: place[given.element].T,
+        record.LOAD_PLACE: offsets[given.element].T,
         record.LOAD_NUMBER: number[given.element].T,
         record.COUNTED: np.arange(elements) if sizes.half_width < 0 else np.empty(0, dtype=np.int64),
     }

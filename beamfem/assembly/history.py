@@ -23,20 +23,20 @@ class History:
     @cached_property
     def laws(self) -> tuple[tuple[ConstitutiveLaw, Block], ...]:
         """Section laws with history, each with its block."""
-        known = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
-        return tuple((law, self.blocks[number]) for number, law in known.items() if law is not None and law.remembers)
+        laws = {mesh.block: mesh.beam.law for mesh in self.connectors.model.meshes}
+        return tuple((law, self.blocks[number]) for number, law in laws.items() if law is not None and law.remembers)
 
     @cached_property
     def numbers(self) -> np.ndarray:
         """Numbers (h,) of all history variables among the coordinates."""
-        own = [block.history.ravel() for _, block in self.laws]
-        return np.concatenate([self.connectors.memory, *own]) if own else self.connectors.memory
+        numbers = [block.history.ravel() for _, block in self.laws]
+        return np.concatenate([self.connectors.memory, *numbers]) if numbers else self.connectors.memory
 
     @cached_property
     def start(self) -> np.ndarray:
         """Initial values (h,) of all history variables."""
-        own = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
-        return np.concatenate([self.connectors.start, *own]) if own else self.connectors.start
+        values = [np.broadcast_to(law.start, block.history.shape).ravel() for law, block in self.laws]
+        return np.concatenate([self.connectors.start, *values]) if values else self.connectors.start
 
     @property
     def holders(self) -> tuple[tuple[str, str], ...]:
@@ -52,13 +52,13 @@ class History:
         p = motion[0]
         if not len(self.numbers):
             return p
-        found = p.copy()
-        found[self.connectors.memory] = self.connectors.remember(motion, time)
+        result = p.copy()
+        result[self.connectors.memory] = self.connectors.remember(motion, time)
         for (law, block), group in zip(self.laws, self.strains, strict=True):
             strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
-            known, past = strain[..., :3].reshape(-1, 3), p[block.history]
-            found[block.history] = law.remember(known, past.reshape(len(known), -1), dt).reshape(past.shape)
-        return found
+            flat, past = strain[..., :3].reshape(-1, 3), p[block.history]
+            result[block.history] = law.remember(flat, past.reshape(len(flat), -1), dt).reshape(past.shape)
+        return result
 
     def in_equilibrium(self, p: np.ndarray, load_factor: float, imposing: np.ndarray) -> np.ndarray:
         """Return p (n,) with the history variables after an accepted load step to this equilibrium."""
@@ -71,5 +71,5 @@ class History:
     def strains(self) -> tuple[ElementGroup, ...]:
         """Elements of each law with unit stiffness: their resultants are the strains from the stress-free state."""
         unit = [np.broadcast_to(np.eye(block.reference.shape[-1]), block.stiffness.shape) for _, block in self.laws]
-        blocks = [block.resisting(own) for (_, block), own in zip(self.laws, unit, strict=True)]
+        blocks = [block.resisting(stiffness) for (_, block), stiffness in zip(self.laws, unit, strict=True)]
         return tuple(free_group(block, self.connectors.model.size) for block in blocks)

@@ -15,25 +15,25 @@ def imposed_on(meshes: Sequence[tuple[int, BeamMesh]], loads: Sequence[tuple[int
     by_beam: dict[int, list[int]] = {}
     for number, (beam, _) in enumerate(loads):
         by_beam.setdefault(beam, []).append(number)
-    own = [by_beam.get(beam, []) for beam, _ in meshes]
-    most = max(map(len, own))
+    loads_of_mesh = [by_beam.get(beam, []) for beam, _ in meshes]
+    most = max(map(len, loads_of_mesh))
     if most == 0:
         return None
     parts = [
-        free_strains(mesh, [loads[i][1] for i in mine]) if mine else None
-        for mine, (_, mesh) in zip(own, meshes, strict=True)
+        free_strains(mesh, [loads[i][1] for i in numbers]) if numbers else None
+        for numbers, (_, mesh) in zip(loads_of_mesh, meshes, strict=True)
     ]
     points, measures = next(part[0].shape[2:] for part in parts if part is not None)
     ends = np.cumsum([mesh.elements for _, mesh in meshes])
     pairs = most if any(part is not None and part[1].any() for part in parts) else 0
     load = np.full((most, ends[-1]), -1)
     first, second = np.zeros((most, ends[-1], points, measures)), np.zeros((pairs, pairs, ends[-1], points, measures))
-    for mine, part, (_, mesh), end in zip(own, parts, meshes, ends.tolist(), strict=True):
+    for numbers, part, (_, mesh), end in zip(loads_of_mesh, parts, meshes, ends.tolist(), strict=True):
         if part is None:
             continue
-        here, count = slice(end - mesh.elements, end), len(mine)
-        load[:count, here] = np.array(mine)[:, None]
-        first[:count, here] = part[0]
+        elements, count = slice(end - mesh.elements, end), len(numbers)
+        load[:count, elements] = np.array(numbers)[:, None]
+        first[:count, elements] = part[0]
         if pairs:
-            second[:count, :count, here] = part[1]
+            second[:count, :count, elements] = part[1]
     return Imposed(load, first, second)

@@ -11,7 +11,7 @@ def imposed_forces(system: System, loads: LoadsAt) -> np.ndarray:
     """Return the forces (n,) that would hold the beams in their reference against the strains imposed on them."""
     result, p, zeros = np.empty(system.model.size), system.reference, np.zeros(system.model.size)
     assembler = system.assembler()
-    assembler.load(np.zeros_like(loads.body), [np.zeros_like(own) for own in loads.points], loads.imposing)
+    assembler.load(np.zeros_like(loads.body), [np.zeros_like(values) for values in loads.points], loads.imposing)
     assembler.weigh(STATICS)
     assembler.balance(p, zeros, zeros, result, np.empty(0), False)
     return result

@@ -34,10 +34,10 @@ class LawPass:
 
     def linearised(self, strain: np.ndarray, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return resultants (..., 4) and their derivatives (..., 4, 4) at strains (..., 4) and history (..., k)."""
-        shape, known = strain.shape[:-1], strain[..., :3].reshape(-1, 3)
-        found, slope = self._law.linearised(known, history.reshape(len(known), -1))
+        shape, flat = strain.shape[:-1], strain[..., :3].reshape(-1, 3)
+        resultants, slope = self._law.linearised(flat, history.reshape(len(flat), -1))
         result, stiffness = np.zeros((*shape, _MEASURES)), np.zeros((*shape, _MEASURES, _MEASURES))
-        result[..., :3], stiffness[..., :3, :3] = found.reshape(*shape, 3), slope.reshape(*shape, 3, 3)
+        result[..., :3], stiffness[..., :3, :3] = resultants.reshape(*shape, 3), slope.reshape(*shape, 3, 3)
         return result, stiffness
 
     def raise_error(self) -> None:
@@ -61,15 +61,15 @@ class LawPass:
         x: int,
     ) -> None:
         try:
-            own = _rows(x, POINT_ROWS)[:, :count]
+            point_rows = _rows(x, POINT_ROWS)[:, :count]
             try:
                 past = _NOTHING
                 if self._law.remembers:
                     past = _past(group, system, slice(first, first + count), number)
                 rows = _rows(weight, 1)[0, :count], _rows(reference, 3)[:, :count]
-                self._fill_rows(own, *rows, past, tangent != 0)
+                self._fill_rows(point_rows, *rows, past, tangent != 0)
             except BaseException:
-                own[RESULTANT : RESULTANT + _MEASURES] = np.nan
+                point_rows[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise
         except BaseException as error:
             self._errors.append(error)
@@ -82,8 +82,8 @@ class LawPass:
         if not tangent:
             own[RESULTANT : RESULTANT + 3] = weight * self._law.resultants(strain, *past).T
             return
-        found, slope = self._law.linearised(strain, *past)
-        own[RESULTANT : RESULTANT + 3] = weight * found.T
+        resultants, slope = self._law.linearised(strain, *past)
+        own[RESULTANT : RESULTANT + 3] = weight * resultants.T
         own[STIFFNESS : STIFFNESS + len(_PAIRS[0])] = 0.0
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 

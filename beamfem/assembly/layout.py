@@ -57,8 +57,8 @@ class Unknowns:
             half = self.layouts[0].half_width
             return numbers * (2 * half + 1) + half
         starts, rows = self.pattern.indptr, self.pattern.indices
-        found = [starts[i] + np.searchsorted(rows[starts[i] : starts[i + 1]], i) for i in numbers.tolist()]
-        return np.array(found, dtype=np.int64)
+        positions = [starts[i] + np.searchsorted(rows[starts[i] : starts[i + 1]], i) for i in numbers.tolist()]
+        return np.array(positions, dtype=np.int64)
 
 
 def order_unknowns(
@@ -128,7 +128,7 @@ def _order(
     last = np.isin(dofs, multipliers)
     dofs = np.concatenate([dofs[~last], dofs[last]])
     free = _numbers(dofs, size)
-    numbers = [*(_numbers_of(block, free) for block in blocks), *(free[own][None] for own in coupled)]
+    numbers = [*(_numbers_of(block, free) for block in blocks), *(free[coordinates][None] for coordinates in coupled)]
     pattern, slots = _pattern(numbers, len(dofs))
     layouts = tuple(Layout(free, -1, slot) for slot in slots[: len(blocks)])
     return Unknowns(free, dofs, layouts, pattern, tuple(slot[0] for slot in slots[len(blocks) :]))
@@ -150,10 +150,10 @@ def _half_width(blocks: Sequence[Mesh], free: np.ndarray) -> int:
     """Return the largest difference between two equation numbers of an element."""
     widest = 0
     for block in blocks:
-        numbers, known = np.where(block.dof >= 0, free[block.dof], -1), len(free)
-        high, low = numbers.max(axis=1), np.where(numbers >= 0, numbers, known).min(axis=1)
-        ends = high[block.node].max(axis=1) - low[block.node].min(axis=1)
-        widest = max(widest, int(ends.max(initial=0)))
+        numbers, size = np.where(block.dof >= 0, free[block.dof], -1), len(free)
+        high, low = numbers.max(axis=1), np.where(numbers >= 0, numbers, size).min(axis=1)
+        widths = high[block.node].max(axis=1) - low[block.node].min(axis=1)
+        widest = max(widest, int(widths.max(initial=0)))
     return widest
 
 
@@ -165,11 +165,11 @@ def reaches(blocks: Sequence[Mesh], free: np.ndarray, unknown: int) -> np.ndarra
     numbers = np.arange(unknown, dtype=np.int32)
     end, begin = numbers + 1, numbers.copy()
     for block in blocks:
-        own = _numbers_of(block, free)
-        high, low = own.max(axis=1), np.where(own >= 0, own, unknown).min(axis=1)
-        known = high >= 0
-        np.maximum.at(end, low[known], (high[known] + 1).astype(np.int32))
-        np.minimum.at(begin, high[known], low[known].astype(np.int32))
+        equations = _numbers_of(block, free)
+        high, low = equations.max(axis=1), np.where(equations >= 0, equations, unknown).min(axis=1)
+        mask = high >= 0
+        np.maximum.at(end, low[mask], (high[mask] + 1).astype(np.int32))
+        np.minimum.at(begin, high[mask], low[mask].astype(np.int32))
     first = np.minimum.accumulate(begin[::-1])[::-1]
     return np.stack([np.maximum.accumulate(end), unknown - first])
 
@@ -220,14 +220,14 @@ def _scattered(blocks: Sequence[Mesh], size: int, coupled: Sequence[np.ndarray] 
     nodes, number = np.unique(owner, return_inverse=True)
     pairs = []
     for block in blocks:
-        own = number[block.dof[block.node, 0]]
-        i, j = np.triu_indices(own.shape[1], 1)
-        pairs.append((own[:, i].ravel(), own[:, j].ravel()))
+        node = number[block.dof[block.node, 0]]
+        i, j = np.triu_indices(node.shape[1], 1)
+        pairs.append((node[:, i].ravel(), node[:, j].ravel()))
     for dofs in coupled:
-        own = number[dofs]
-        i, j = np.triu_indices(len(own), 1)
-        apart = own[i] != own[j]
-        pairs.append((own[i[apart]], own[j[apart]]))
+        node = number[dofs]
+        i, j = np.triu_indices(len(node), 1)
+        apart = node[i] != node[j]
+        pairs.append((node[i[apart]], node[j[apart]]))
     ends = np.concatenate(pairs, axis=1)
     shape = len(nodes), len(nodes)
     graph = coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=shape)
@@ -242,9 +242,9 @@ def _owners(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     """Return the first coordinate (size,) of the node of each coordinate, by which those of a node stay together."""
     owner = np.arange(size)
     for block in blocks:
-        for own in block.dof.T[1:]:
-            known = own >= 0
-            owner[own[known]] = np.minimum(owner[own[known]], block.dof[known, 0])
+        for dof in block.dof.T[1:]:
+            mask = dof >= 0
+            owner[dof[mask]] = np.minimum(owner[dof[mask]], block.dof[mask, 0])
     return np.asarray(owner[owner])
 
 
@@ -253,13 +253,13 @@ def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, li
 
     It includes the diagonal.
     """
-    rows, columns, filled = [], [], []
-    for number in (own.astype(np.int32) for own in numbers):
+    rows, columns, masks = [], [], []
+    for number in (table.astype(np.int32) for table in numbers):
         i, j = np.broadcast_arrays(number[:, :, None], number[:, None, :])
-        known = (i >= 0) & (j >= 0)
-        rows.append(i[known])
-        columns.append(j[known])
-        filled.append(known)
+        mask = (i >= 0) & (j >= 0)
+        rows.append(i[mask])
+        columns.append(j[mask])
+        masks.append(mask)
     diagonal = np.arange(unknown, dtype=np.int32)
     row, column = np.concatenate([*rows, diagonal]), np.concatenate([*columns, diagonal])
     order = _sorted_by(row, unknown)
@@ -267,15 +267,15 @@ def _pattern(numbers: Sequence[np.ndarray], unknown: int) -> tuple[csc_array, li
     row, column = row[order], column[order]
     new = np.ones(len(order), dtype=bool)
     new[1:] = (row[1:] != row[:-1]) | (column[1:] != column[:-1])
-    place = np.empty(len(order), dtype=np.int32)
-    place[order] = np.cumsum(new, dtype=np.int32) - 1
+    position = np.empty(len(order), dtype=np.int32)
+    position[order] = np.cumsum(new, dtype=np.int32) - 1
     starts = np.concatenate([[0], np.cumsum(np.bincount(column[new], minlength=unknown))])
     entries = np.ones(int(new.sum()), dtype=np.int8), row[new], starts.astype(np.int32)
     slots, begin = [], 0
-    for known in filled:
-        end = begin + int(known.sum())
-        slot = np.full(known.shape, -1, dtype=np.int32)
-        slot[known] = place[begin:end]
+    for mask in masks:
+        end = begin + int(mask.sum())
+        slot = np.full(mask.shape, -1, dtype=np.int32)
+        slot[mask] = position[begin:end]
         slots.append(slot)
         begin = end
     return csc_array(entries, shape=(unknown, unknown)), slots

@@ -27,12 +27,12 @@ class LoadsAt:
     @cached_property
     def largest(self) -> tuple[float, float]:
         """Largest component of a force [N] and largest moment [N m] at points."""
-        found = [(0.0, 0.0, 0.0)]
-        found += [np.abs(own.reshape(-1, 3)).max(axis=0).tolist() for own in self.points if own.size]
-        x, y, moment = (max(values) for values in zip(*found, strict=True))
+        maxima = [(0.0, 0.0, 0.0)]
+        maxima += [np.abs(forces.reshape(-1, 3)).max(axis=0).tolist() for forces in self.points if forces.size]
+        x, y, moment = (max(values) for values in zip(*maxima, strict=True))
         return max(x, y), moment
 
     @property
     def any(self) -> bool:
         """Whether any load is not zero."""
-        return any(bool(own.any()) for own in self.arrays)
+        return any(bool(array.any()) for array in self.arrays)

@@ -47,10 +47,10 @@ class MixedFactors:
 
         Each positive eigenvalue of a section stiffness gives the mixed matrix one more, which is subtracted.
         """
-        found = negative_eigenvalues(csr_array(self.matrix))
-        if found is None or found < self.tangent.positive:  # round-off prevents a count
+        count = negative_eigenvalues(csr_array(self.matrix))
+        if count is None or count < self.tangent.positive:  # round-off prevents a count
             return self.tangent.plain.factorised(self.rotated).negative_pivots
-        return found - self.tangent.positive
+        return count - self.tangent.positive
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return x (n,) with A x = right, zero along the normals of inclined rollers. Raises LinAlgError."""
@@ -62,29 +62,29 @@ class MixedFactors:
         Raises LinAlgError.
         """
         tangent = self.tangent
-        x, found = self._solve(-tangent.loads, -tangent.weight * tangent.strain)
+        x, resultants = self._solve(-tangent.loads, -tangent.weight * tangent.strain)
         stresses, first = [], 0
         for shape, resists in tangent.places:
             table = np.zeros(shape)
             last = first + table[..., resists].size
-            table[..., resists] = found[first:last].reshape(*shape[:2], -1)
+            table[..., resists] = resultants[first:last].reshape(*shape[:2], -1)
             stresses.append(table)
             first = last
         return x, tuple(stresses)
 
     def _solve(self, right: np.ndarray, strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         turn, n = self.turn, int(self.kept.sum())
-        known = np.concatenate([(right if turn is None else turn @ right)[self.kept], strain])
-        known = self.scale * known
-        found = self.lu.solve(known)
+        rhs = np.concatenate([(right if turn is None else turn @ right)[self.kept], strain])
+        rhs = self.scale * rhs
+        solution = self.lu.solve(rhs)
         for _ in range(_REFINEMENTS):
-            found += self.lu.solve(known - self.matrix @ found)
-        found *= self.scale
-        if not np.isfinite(found).all():
+            solution += self.lu.solve(rhs - self.matrix @ solution)
+        solution *= self.scale
+        if not np.isfinite(solution).all():
             raise LinAlgError("the tangent is singular")
         x = np.zeros(len(right))
-        x[self.kept] = found[:n]
-        return x if turn is None else np.asarray(turn.T @ x), found[n:]
+        x[self.kept] = solution[:n]
+        return x if turn is None else np.asarray(turn.T @ x), solution[n:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,5 +192,5 @@ def mixed(
     inverse = np.concatenate(flexible_at) / factor
     flexible = coo_array((inverse, (above, below)), shape=(len(weight),) * 2)
     places = tuple((table.shape, table.resists) for table in tables)
-    own = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
-    return MixedTangent(*own, system.scale[system.free_dofs])
+    fields = zeros.sparse(none), slopes, flexible, weight, loads, np.concatenate(strain), places, sum(positive), plain
+    return MixedTangent(*fields, system.scale[system.free_dofs])

@@ -55,13 +55,13 @@ class MotionWorkspace:
                 record.LIMITS: (2,),
             }
         )
-        self.arrays, places = room.arrays, room.addresses
+        self.arrays, addresses = room.arrays, room.addresses
         self.arrays[record.INVERSE_SCALE][system.free_dofs] = 1.0 / system.scale[system.free_dofs]
-        self.residual, self.rows = places.pop("residual"), places[record.ROWS]
+        self.residual, self.rows = addresses.pop("residual"), addresses[record.ROWS]
         if in_place:  # unknowns in a row are solved for where the residual is
-            places[record.RIGHT] = self.residual + 8 * first
+            addresses[record.RIGHT] = self.residual + 8 * first
             self.arrays[record.RIGHT] = self.arrays["residual"][first : first + unknown]
-        self.solver = system.solver_table.filled(places)
+        self.solver = system.solver_table.filled(addresses)
         self._prescribed = system.prescribed_dofs
         for field, values in (
             (record.PAIR_TABLE, pairs),

@@ -30,12 +30,12 @@ def resultants(
 
     imposing (k,): factors of the loads that impose strains.
     """
-    assembler, found = Assembler(Equations((group,), _NO_SPRINGS, len(p))), []
+    assembler, result = Assembler(Equations((group,), _NO_SPRINGS, len(p))), []
     assembler.impose(imposing)
     for step in steps:
         assembler.predict(p, np.ascontiguousarray(step))
-        found.append(assembler.stresses[0].copy())
-    return found
+        result.append(assembler.stresses[0].copy())
+    return result
 
 
 def elastic_forces(

@@ -34,7 +34,7 @@ class PrescribedCoordinate(NamedTuple):
 
 def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
     """Return the prescribed coordinates ordered by number. Raises InputError if two supports prescribe the same one."""
-    found: dict[int, PrescribedCoordinate] = {}
+    coordinates: dict[int, PrescribedCoordinate] = {}
     for support in model.point_supports:
         mesh = model.mesh_of(support.point)
         dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
@@ -43,30 +43,30 @@ def prescribed_coordinates(model: Model) -> tuple[PrescribedCoordinate, ...]:
             if name is None:
                 continue
             dof = dofs[name]
-            if dof in found:
+            if dof in coordinates:
                 what = type(support).__name__
                 raise InputError(
                     f"{what} at {support.point}: another support already prescribes {direction} there; one is enough"
                 )
-            found[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
-    return tuple(found[dof] for dof in sorted(found))
+            coordinates[dof] = PrescribedCoordinate(dof, value, direction == "rotation", support.point)
+    return tuple(coordinates[dof] for dof in sorted(coordinates))
 
 
 def inclined_rollers(model: Model, prescribed: set[int]) -> tuple[tuple[int, np.ndarray], ...]:
     """Return first coordinate of r and unit normal of each roller not along x or y. Raises InputError."""
-    found = []
+    rollers = []
     for support in model.point_supports:
         normal = support.direction
         if normal is not None and _axis_of(normal) is None:
             mesh = model.mesh_of(support.point)
             dofs = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-            found.append((dofs["r^x"], normal))
-    if len({dof for dof, _ in found}) < len(found):
+            rollers.append((dofs["r^x"], normal))
+    if len({dof for dof, _ in rollers}) < len(rollers):
         raise InputError("two inclined Rollers stand at the same point; a Pin constrains both directions")
-    for dof, _ in found:
+    for dof, _ in rollers:
         if dof in prescribed or dof + 1 in prescribed:
             raise InputError("an inclined Roller stands where another support already constrains the displacement")
-    return tuple(found)
+    return tuple(rollers)
 
 
 def coordinate_of(support: PointSupport, direction: str) -> str | None:

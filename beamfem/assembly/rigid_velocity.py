@@ -49,13 +49,13 @@ def rigid_rates(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.nd
 def set_rigid_rates(mesh: BeamMesh, velocity: RigidVelocity, p: np.ndarray, rates: np.ndarray) -> None:
     """Write the rates of the coordinates of a beam that moves rigidly from the state p (n,) into `rates` (n,)."""
     columns = coordinate_columns(mesh)
-    for place, (label, _, dofs) in enumerate(columns):
+    for index, (label, _, dofs) in enumerate(columns):
         if label == "theta":
             rates[dofs] = velocity.angular
         elif label != "s":
             name, axis = label.split("^")
             component = "xy".index(axis)
-            other = columns[place + 1 - 2 * component][2]
+            other = columns[index + 1 - 2 * component][2]
             lever = p[other] - (velocity.about[1 - component] if name == "r" else 0.0)
             rates[dofs] = (-1.0 if axis == "x" else 1.0) * velocity.angular * lever
             if name == "r":

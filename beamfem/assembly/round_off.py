@@ -55,8 +55,8 @@ def change(system: System, p: np.ndarray, step: np.ndarray, load_factor: float) 
 def digits_of(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the number of reliable digits of the forces in a state p (n,); all if nothing acts."""
     zeros = np.zeros(len(p))
-    found = residual(system, p, zeros, zeros, load_factor)
-    return _digits(system, p, found, load_factor)
+    unbalanced = residual(system, p, zeros, zeros, load_factor)
+    return _digits(system, p, unbalanced, load_factor)
 
 
 def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
@@ -76,12 +76,12 @@ def remainder(system: System, p: np.ndarray, load_factor: float) -> Remainder:
 def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
     """Return the best result of corrections with the current kind of tangent, plain or mixed."""
     zeros, free = np.zeros(len(p)), system.free_dofs
-    found = residual(system, p, zeros, zeros, load_factor)
-    best = Remainder(np.zeros(len(p)), _digits(system, p, found, load_factor))
-    step, unbalanced = np.zeros(len(p)), found
+    initial = residual(system, p, zeros, zeros, load_factor)
+    best = Remainder(np.zeros(len(p)), _digits(system, p, initial, load_factor))
+    step, unbalanced = np.zeros(len(p)), initial
     try:
         factors = linearise(system, p, zeros, zeros, load_factor, STATICS)[1].factorised(system.rotated)
-        _, stresses = factors.correction(found[free])
+        _, stresses = factors.correction(initial[free])
         if stresses is not None:
             # the stresses of the state itself are as inaccurate as its last digits
             factors = linearise(system, p, zeros, zeros, load_factor, STATICS, stresses)[1].factorised(system.rotated)
@@ -89,7 +89,7 @@ def _refined(system: System, p: np.ndarray, load_factor: float) -> Remainder:
             step[free] += factors.solve(-unbalanced[free])
             if not np.max(np.abs(step) / system.scale, initial=0.0) <= LAST_DIGITS:
                 break
-            unbalanced = found + change(system, p, step, load_factor)
+            unbalanced = initial + change(system, p, step, load_factor)
             digits = _digits(system, p, unbalanced, load_factor)
             if digits <= best.digits:
                 break

@@ -110,17 +110,17 @@ class Routines:
         self._ready.add((tasks, kinds))
 
     def _fill(self, task: str, kind: int) -> None:
-        own = MEASURE_PASSES[self._measures]
-        found = dict(_TASKS[task]) if kind < 0 else {}
+        passes = MEASURE_PASSES[self._measures]
+        by_number = dict(_TASKS[task]) if kind < 0 else {}
         if kind < 0:
-            found |= {number: getattr(own, name) for number, name in _PASSES.get(task, {}).items()}
+            by_number |= {number: getattr(passes, name) for number, name in _PASSES.get(task, {}).items()}
             if task == "forces":
-                linear = linear_law.six_resultants if own is green_lagrange else linear_law.four_resultants
+                linear = linear_law.six_resultants if passes is green_lagrange else linear_law.four_resultants
                 self.addresses[record.LAW] = self._law or linear.address
         elif task in _OF_KINDS:
             name, step = _OF_KINDS[task]
-            found[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
-        for number, routine in found.items():
+            by_number[record.PLACE_KIND + 3 * kind + step] = getattr(_KINDS[kind], name)
+        for number, routine in by_number.items():
             self.addresses[number] = routine.fixed(**self._sizes).address
 
 

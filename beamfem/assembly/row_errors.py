@@ -34,15 +34,15 @@ def residual_errors(
         nodes = _of_nodes(block, _of_slots(block, names))
         if loads.spring.any():
             for i in np.flatnonzero(loads.spring.any(axis=1)):
-                own = block.node[loads.element[i]]
-                nodes[0][own] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(own), -1)
+                loaded = block.node[loads.element[i]]
+                nodes[0][loaded] += loads.spring[i].max() * np.abs(loads.position[i]).reshape(len(loaded), -1)
         for entries in _entries(block, names):
             values = nodes[:, entries.nodes, entries.slots]
             if len(entries.turning):  # the angle turns r_x as well
                 values[:, entries.turning] += nodes[:, entries.nodes[entries.turning], 1]
             # contributions of nodes that share a coordinate add up
-            for part, own in zip(result, values, strict=True):
-                part += np.bincount(entries.dofs, own, size)
+            for total, contribution in zip(result, values, strict=True):
+                total += np.bincount(entries.dofs, contribution, size)
     if len(springs.dof):
         np.add.at(result[0], springs.dof, springs.stiffness)
     return result
@@ -67,14 +67,14 @@ def _entries(block: Block, names: tuple[str, ...]) -> list[Entries]:
 
 
 def _entries_of(node_kind: np.ndarray, dof: np.ndarray, names: tuple[str, ...]) -> list[Entries]:
-    found = []
+    entries = []
     for kind in np.unique(node_kind).tolist():
-        here, columns = np.flatnonzero(node_kind == kind), labels(kind, names)
-        slots = np.tile([_slot(label, names) for label in columns], len(here))
+        nodes, columns = np.flatnonzero(node_kind == kind), labels(kind, names)
+        slots = np.tile([_slot(label, names) for label in columns], len(nodes))
         turns = [kind in (STRETCH, SHEAR_RIGID) and label == "theta" for label in columns]
-        dofs = dof[here, : len(columns)].ravel()
-        found.append(Entries(dofs, here.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(here)))))
-    return found
+        dofs = dof[nodes, : len(columns)].ravel()
+        entries.append(Entries(dofs, nodes.repeat(len(columns)), slots, np.flatnonzero(np.tile(turns, len(nodes)))))
+    return entries
 
 
 @lru_cache(maxsize=64)
@@ -168,16 +168,16 @@ def depends(measures: int) -> tuple[tuple[tuple[int, ...], ...], tuple[tuple[int
 def _of_nodes(block: Block, errors: np.ndarray) -> np.ndarray:
     """Return the force (k, N, vpn) on the vectors of each node; errors (k, nc, nv): forces by class of elements."""
     count, nodes = block.node.shape[1], len(block.node_kind)
-    own = errors.reshape(len(errors), errors.shape[1], count, -1)
-    if own.shape[1] == 1:  # all elements are of one class
-        places = (block.node + nodes * np.arange(count)).ravel()
-        times = np.bincount(places, minlength=count * nodes).reshape(count, nodes)
-        return np.einsum("jn,pjv->pnv", times, own[:, 0])
-    result = np.zeros((len(errors), nodes, own.shape[3]))
-    for place in range(count):
-        here, found = block.node[:, place], own[:, :, place]
-        for part, values in zip(result, found, strict=True):
+    forces = errors.reshape(len(errors), errors.shape[1], count, -1)
+    if forces.shape[1] == 1:  # all elements are of one class
+        positions = (block.node + nodes * np.arange(count)).ravel()
+        times = np.bincount(positions, minlength=count * nodes).reshape(count, nodes)
+        return np.einsum("jn,pjv->pnv", times, forces[:, 0])
+    result = np.zeros((len(errors), nodes, forces.shape[3]))
+    for local in range(count):
+        numbers, local_forces = block.node[:, local], forces[:, :, local]
+        for total, values in zip(result, local_forces, strict=True):
             spread = values[block.kind]
-            for slot in range(own.shape[3]):
-                part[:, slot] += np.bincount(here, spread[:, slot], nodes)
+            for slot in range(forces.shape[3]):
+                total[:, slot] += np.bincount(numbers, spread[:, slot], nodes)
     return result

@@ -28,10 +28,10 @@ _kept: list[Scratch] = []
 def lend(size: int) -> Scratch:
     """Return memory of at least `size` floats that is not in use; its contents are arbitrary."""
     try:
-        found = _kept.pop()
+        scratch = _kept.pop()
     except IndexError:
         return new(size)
-    return found if len(found.memory) >= size else new(size)
+    return scratch if len(scratch.memory) >= size else new(size)
 
 
 def new(size: int) -> Scratch:

@@ -32,8 +32,8 @@ class SolverTable:
     def __init__(self, unknowns: Unknowns, rotated: tuple[np.ndarray, np.ndarray], scale: np.ndarray) -> None:
         free_dofs, self.half_width = unknowns.dofs, unknowns.layouts[0].half_width
         self._kept = (
-            *(np.ascontiguousarray(each, dtype=np.int64) for each in (free_dofs, rotated[0])),
-            *(np.ascontiguousarray(each, dtype=float) for each in (rotated[1], scale)),
+            *(np.ascontiguousarray(array, dtype=np.int64) for array in (free_dofs, rotated[0])),
+            *(np.ascontiguousarray(array, dtype=float) for array in (rotated[1], scale)),
             unknowns.reach,
         )
         self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
@@ -59,7 +59,7 @@ class SolverTable:
 @cache
 def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -> np.ndarray:
     """Return the addresses of the routines that the static or dynamic driver calls for a band of this half width."""
-    found = {
+    routines = {
         record.BALANCE: model_passes.balance,
         record.PREDICT_RESULTANTS: model_passes.predict_resultants,
         record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
@@ -68,12 +68,12 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.ROTATE_BACK: rollers.rotate_back,
     }
     if moving:
-        found |= _of_motions()
-        found |= _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
+        routines |= _of_motions()
+        routines |= _of_halves(band_halves(half_width)) if in_two else _of_all(two_sided(half_width, short))
     else:
-        found |= _of_statics(band(half_width))
+        routines |= _of_statics(band(half_width))
     table = np.zeros(record.SOLVER_ROUTINES, dtype=np.int64)
-    for number, routine in found.items():
+    for number, routine in routines.items():
         table[number] = routine.address
     return table
 

@@ -50,21 +50,21 @@ class StrainRates:
         singular stiffness.
         """
         at = np.where(self.dof >= 0, p[self.dof], 0.0)
-        places = np.arange(len(at)) % self.coordinates
-        steps = (1.0 * (places == place) for place in range(self.coordinates + 1))
+        local = np.arange(len(at)) % self.coordinates
+        steps = (1.0 * (local == number) for number in range(self.coordinates + 1))
         *measured, zeros = resultants(self.group, at, steps, imposing)
         strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
         moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
         rates = moved[self.place, self.point] - strain[self.point]
         if self.law is None:
             return StrainsAt(rates, strain, self.flexibility[2], len(strain))
-        found, slope = self.law.linearised(zeros, p[self.history])
-        own = slope[:, :, self.resists[:, None], self.resists]
-        inverse = np.linalg.inv(own)
+        stress, slope = self.law.linearised(zeros, p[self.history])
+        stiffness = slope[:, :, self.resists[:, None], self.resists]
+        inverse = np.linalg.inv(stiffness)
         # strains for which a linear law with the stiffness of this state has the same resultants
-        strain = (inverse @ found[:, :, self.resists, None]).ravel()
-        flexible = (self.weight.reshape(*own.shape[:3], 1) * inverse).ravel()
-        return StrainsAt(rates, strain, flexible, int(np.sum(np.linalg.eigvalsh(own) > 0.0)))
+        strain = (inverse @ stress[:, :, self.resists, None]).ravel()
+        flexible = (self.weight.reshape(*stiffness.shape[:3], 1) * inverse).ravel()
+        return StrainsAt(rates, strain, flexible, int(np.sum(np.linalg.eigvalsh(stiffness) > 0.0)))
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -76,13 +76,13 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
     """Return the strain rates of a block; free (n,): equation numbers, negative for prescribed coordinates."""
     (elements, nodes), width = block.node.shape, block.dof.shape[1]
     points, strains = block.reference.shape[1:]
-    own = block.node.ravel()
-    dof = block.dof[own]
+    node = block.node.ravel()
+    dof = block.dof[node]
     free_elements = block._replace(
-        node=np.arange(len(own)).reshape(elements, nodes),
+        node=np.arange(len(node)).reshape(elements, nodes),
         dof=np.where(dof >= 0, np.arange(dof.size).reshape(dof.shape), -1),
-        node_kind=block.node_kind[own],
-        frame=block.frame[own],
+        node_kind=block.node_kind[node],
+        frame=block.frame[node],
         home=np.indices((elements, nodes)).reshape(2, -1).T,
     )
     part = free_elements.resisting(np.broadcast_to(np.eye(strains), block.stiffness.shape))

@@ -19,9 +19,9 @@ def stress_free(model: Model, blocks: Sequence[Block]) -> np.ndarray:
     """Return the coordinates (n,) of a model in its reference; multipliers and history variables are zero."""
     p = np.zeros(model.size)
     for number, (element, block) in enumerate(zip(model.groups, blocks, strict=True)):
-        own = [mesh for mesh in model.meshes if mesh.block == number]
+        meshes = [mesh for mesh in model.meshes if mesh.block == number]
         position, tangent, speed = (
-            np.concatenate([getattr(mesh, name) for mesh in own]) for name in ("position", "tangent", "speed")
+            np.concatenate([getattr(mesh, name) for mesh in meshes]) for name in ("position", "tangent", "speed")
         )
         speed = speed[:, None]
         table = np.concatenate((position, tangent * speed, across(tangent), speed), axis=1)
@@ -38,9 +38,13 @@ def _places(block: Block, vectors: tuple[str, ...]) -> Places:
 
 
 def _places_of(node_kind: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...]) -> Places:
-    found = [own for own in columns_of(node_kind, dof, vectors) if own[0] != "theta"]
-    sources = [np.full(len(nodes), _SOURCES.index(label)) for label, nodes, _ in found]
-    return np.concatenate([own[2] for own in found]), np.concatenate([own[1] for own in found]), np.concatenate(sources)
+    columns = [column for column in columns_of(node_kind, dof, vectors) if column[0] != "theta"]
+    sources = [np.full(len(nodes), _SOURCES.index(label)) for label, nodes, _ in columns]
+    return (
+        np.concatenate([column[2] for column in columns]),
+        np.concatenate([column[1] for column in columns]),
+        np.concatenate(sources),
+    )
 
 
 @lru_cache(maxsize=64)

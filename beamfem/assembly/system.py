@@ -91,7 +91,7 @@ class System:
     @cached_property
     def without_stiffness(self) -> Equations:
         """The equations with zero section stiffness."""
-        return self.equations_of([own.resisting(np.zeros_like(own.stiffness)) for own in self.blocks])
+        return self.equations_of([block.resisting(np.zeros_like(block.stiffness)) for block in self.blocks])
 
     @cached_property
     def strain_rates(self) -> tuple[StrainRates, ...]:
@@ -100,7 +100,7 @@ class System:
 
     def equations_of(self, blocks: Sequence[Block]) -> Equations:
         """Return the equations with other blocks in place of those of the system."""
-        groups = [make_group(*own) for own in zip(blocks, self.layouts, self.point_loads, strict=True)]
+        groups = [make_group(*parts) for parts in zip(blocks, self.layouts, self.point_loads, strict=True)]
         return Equations(groups, self.springs, self.model.size)
 
     def assembler(self, lent: bool = False) -> Assembler:
@@ -116,14 +116,14 @@ class System:
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
-        own = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
-        return own + self.connectors.errors
+        errors = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
+        return errors + self.connectors.errors
 
     @cached_property
     def stress_errors(self) -> tuple[np.ndarray, ...]:
         """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
-        return tuple(stress_errors(*own) for own in zip(self.blocks, vectors, strict=True))
+        return tuple(stress_errors(*parts) for parts in zip(self.blocks, vectors, strict=True))
 
     @cached_property
     def positions(self) -> np.ndarray:
@@ -156,12 +156,12 @@ class System:
         """Return the loads at a time, in statics at a load factor."""
         if self.varying:
             return self._loads_at(time)
-        asked = time if self.static else 0.0
-        found = self.known_loads.get(asked)
+        key = time if self.static else 0.0
+        found = self.known_loads.get(key)
         if found is None:
             if len(self.known_loads) >= _KEPT_LOADS:
                 self.known_loads.clear()
-            found = self.known_loads[asked] = self._loads_at(asked)
+            found = self.known_loads[key] = self._loads_at(key)
         return found
 
     def _loads_at(self, time: float) -> LoadsAt:
@@ -234,7 +234,7 @@ class System:
         Gradients elsewhere on the beam cannot distinguish a full turn from none, so a large change needs several steps.
         """
         static = self.static
-        return max((abs(own.change(after, static) - own.change(before, static)) for own in self._rotated), default=0.0)
+        return max((abs(dof.change(after, static) - dof.change(before, static)) for dof in self._rotated), default=0.0)
 
     @cached_property
     def _rotated(self) -> tuple[PrescribedCoordinate, ...]:
@@ -285,7 +285,7 @@ class System:
         consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
         left out.
         """
-        free, found, first = self.unknowns.free, [], 0
+        free, tables, first = self.unknowns.free, [], 0
         for numbered in self.blocks:
             block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
             vectors = block.scale.shape[1] // block.node.shape[1]
@@ -293,10 +293,10 @@ class System:
                 turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
                 nodes = np.flatnonzero(np.isin(block.node_kind, turning))
                 x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
-                known = (x >= 0) & (y >= 0)
-                found.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[known])
+                mask = (x >= 0) & (y >= 0)
+                tables.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[mask])
             first += len(block.dof)
-        pairs = np.concatenate(found)
+        pairs = np.concatenate(tables)
         _, once = np.unique(pairs[:, 0], return_index=True)
         inclined = np.isin(pairs[once, 0], self.rotated[0])
         return np.ascontiguousarray(pairs[once[~inclined]])
@@ -344,7 +344,7 @@ def system_of(model: Model, static: bool) -> System:
     """Return the system of a model, which is created once since models do not change. Raises InputError."""
     if not isinstance(model, Model):
         raise InputError(f"a Model is asked for, such as Model([beam], supports=[...]), got {shown(model)}")
-    known: dict[bool, System] = model.__dict__.setdefault("_systems", {})
-    if static not in known:
-        known[static] = System(model, static)
-    return known[static]
+    systems: dict[bool, System] = model.__dict__.setdefault("_systems", {})
+    if static not in systems:
+        systems[static] = System(model, static)
+    return systems[static]

@@ -53,32 +53,32 @@ def tiles_of(system: System) -> Tiles | None:
     if not is_long(system):
         return None
     (block,), (loads,), (layout,) = system.blocks, system.point_loads, system.layouts
-    known = layout.half_width in KNOWN and len(system.free_dofs) >= _FEWEST * layout.half_width
-    middle = _middle(block, system.free_dofs) if known else None
+    suitable = layout.half_width in KNOWN and len(system.free_dofs) >= _FEWEST * layout.half_width
+    middle = _middle(block, system.free_dofs) if suitable else None
     if middle is None:
         return None
     size = max(_NODES // (block.node.shape[1] - 1), 1)
     halves = _cut(0, middle - 1, size), _cut(middle, len(block.node), size)
     slices = (*halves[0], *halves[1], slice(middle - 1, middle))
-    tiles = [_Tile(block, own, layout, loads) for own in slices]
+    tiles = [_Tile(block, part, layout, loads) for part in slices]
     first = len(halves[0])
-    place, stored = np.empty(len(block.dof), dtype=np.int64), np.cumsum([0, *(len(own.nodes) for own in tiles)])
+    position, stored = np.empty(len(block.dof), dtype=np.int64), np.cumsum([0, *(len(part.nodes) for part in tiles)])
     # of nodes that two tiles share, the one that completes their equations comes last
     for number in (*range(first), *range(len(tiles) - 2, first - 1, -1), len(tiles) - 1):
-        place[tiles[number].nodes] = stored[number] + np.arange(len(tiles[number].nodes))
+        position[tiles[number].nodes] = stored[number] + np.arange(len(tiles[number].nodes))
     springs = Springs(*(values[np.argsort(system.springs.dof, kind="stable")] for values in system.springs))
     spaces = [*[0] * len(halves[0]), *[1] * len(halves[1]), 0]
-    groups = [own.group for own in tiles]
+    groups = [part.group for part in tiles]
     assembler = Assembler(Equations(groups, springs, system.model.size), spaces=spaces)
     turning, order = system.turning.copy(), storage_order(block.node, len(block.node_kind))
-    turning[:, 2] = place[turning[:, 2] if order is None else order[turning[:, 2]]]
-    ranges = _nested(np.array([own.range for own in tiles]), first)
+    turning[:, 2] = position[turning[:, 2] if order is None else order[turning[:, 2]]]
+    ranges = _nested(np.array([part.range for part in tiles]), first)
     # what one half needs to solve for its unknowns, the other must not have rotated: half of it lies between them
     rows_down = int(np.searchsorted(system.free_dofs, ranges[-1]).sum()) // 2 - layout.half_width
     bounds, table = _tables(system, springs.dof, ranges, first, rows_down)
     table[:, record.TILE_NODE] = stored[table[:, record.TILE_GROUP]]
     pairs = _pairs(turning, table)
-    return Tiles(assembler, tuple(own.loaded for own in tiles), bounds, table, pairs, rows_down)
+    return Tiles(assembler, tuple(part.loaded for part in tiles), bounds, table, pairs, rows_down)
 
 
 class _Tile:
@@ -94,8 +94,8 @@ class _Tile:
         free = layout.free[begin:end]
         number = int(free[free >= 0].min(initial=len(layout.free)))
         points, self.loaded = loads_of(loads, elements)
-        own = layout._replace(free=np.where(free >= 0, free - number, -1))
-        self.group, self.range = make_group(block_of(block, elements, begin), own, points), (begin, end)
+        tile_layout = layout._replace(free=np.where(free >= 0, free - number, -1))
+        self.group, self.range = make_group(block_of(block, elements, begin), tile_layout, points), (begin, end)
         self.group.table[record.FIRST_OF_STATE] = begin
         self.group.table[record.FIRST_OF_MATRIX] = number * (2 * layout.half_width + 1)
         self.nodes = nodes if self.group.order is None else nodes[self.group.order]
@@ -103,14 +103,14 @@ class _Tile:
 
 def _pairs(turning: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, ...]:
     """Fill the pairs of vectors that rotate into the table of tiles, and return their tables, which tiles share."""
-    known: dict[bytes, np.ndarray] = {}
+    shared: dict[bytes, np.ndarray] = {}
     for tile in table:
         unknown, end, node = tile[[record.DONE_UNKNOWN, record.END_DONE_UNKNOWN, record.TILE_NODE]]
         first, last = np.searchsorted(turning[:, 0], (unknown, end))
-        own = runs_of(turning[first:last] - [unknown, unknown, node, 0])
-        own = known.setdefault(own.tobytes(), own)
-        tile[record.TILE_RUNS_OF_PAIRS], tile[record.TILE_PAIR_TABLE] = len(own), address_of(own)
-    return tuple(known.values())
+        pairs = runs_of(turning[first:last] - [unknown, unknown, node, 0])
+        pairs = shared.setdefault(pairs.tobytes(), pairs)
+        tile[record.TILE_RUNS_OF_PAIRS], tile[record.TILE_PAIR_TABLE] = len(pairs), address_of(pairs)
+    return tuple(shared.values())
 
 
 def _nested(ranges: np.ndarray, first: int) -> np.ndarray:
@@ -138,18 +138,18 @@ def _tables(
     for part in range(3):
         table = np.zeros((len(order[part]), record.TILE_FIELDS), dtype=np.int64)
         table[:, record.TILE_GROUP] = order[part]
-        known = np.searchsorted(free, done[part])
+        done_unknowns = np.searchsorted(free, done[part])
         for field, limits in (
             (record.NEW_COORDINATE, new[part]),
             (record.NEW_UNKNOWN, np.searchsorted(free, new[part])),
             (record.DONE_COORDINATE, done[part]),
-            (record.DONE_UNKNOWN, known),
+            (record.DONE_UNKNOWN, done_unknowns),
             (record.DONE_SPRING, np.searchsorted(springs, done[part])),
         ):
             table[:, field : field + 2] = _ranges(limits)
         if part < 2:
-            own = rows_down if part == 0 else len(free) - 2 * half - rows_down
-            rows = [whole_blocks(abs(int(row - known[0])), own, half) for row in known]
+            row_count = rows_down if part == 0 else len(free) - 2 * half - rows_down
+            rows = [whole_blocks(abs(int(row - done_unknowns[0])), row_count, half) for row in done_unknowns]
             table[:, record.ROWS_BEFORE], table[:, record.ROWS_WITH] = rows[:-1], rows[1:]
         parts.append(table)
         limits = [0, middle] if part == 0 else [middle, size] if part == 1 else [size, size]
@@ -162,8 +162,8 @@ def _tables(
 
 def _ranges(limits: Iterable[int] | Sequence[int]) -> np.ndarray:
     """Return the ranges (k, 2) between limits (k + 1,) that increase or decrease."""
-    own = np.asarray(limits)
-    return np.sort(np.column_stack([own[:-1], own[1:]]), axis=1)
+    values = np.asarray(limits)
+    return np.sort(np.column_stack([values[:-1], values[1:]]), axis=1)
 
 
 def _cut(first: int, end: int, size: int) -> list[slice]:

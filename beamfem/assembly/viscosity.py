@@ -14,7 +14,7 @@ def viscous_tangent(system: System, p: np.ndarray, v: np.ndarray, time: float, s
 
     For Kelvin and Voigt's law it is step D, with the damping matrix D. None if no section law with history is viscous.
     """
-    found, imposing, unknown = None, system.imposing(time), len(system.free_dofs)
+    total, imposing, unknown = None, system.imposing(time), len(system.free_dofs)
     for (law, block), group in zip(system.history.laws, system.history.strains, strict=True):
         (strain,) = resultants(group, p, [step * v], imposing)
         past = p[block.history]
@@ -22,16 +22,16 @@ def viscous_tangent(system: System, p: np.ndarray, v: np.ndarray, time: float, s
         if not stiffness.any():
             continue
         measures = strain.shape[-1]
-        own = np.zeros((len(stiffness), measures, measures))
-        own[:, :3, :3] = step**2 * block.weight[block.kind].reshape(-1, 1, 1) * stiffness
-        weights = bsr_array((own, np.arange(len(own)), np.arange(len(own) + 1)))
+        entries = np.zeros((len(stiffness), measures, measures))
+        entries[:, :3, :3] = step**2 * block.weight[block.kind].reshape(-1, 1, 1) * stiffness
+        weights = bsr_array((entries, np.arange(len(entries)), np.arange(len(entries) + 1)))
         unit = np.broadcast_to(np.eye(measures), block.stiffness.shape)
         table = strain_rates(block.resisting(unit), system.unknowns.free)
         rates = table.at(p, imposing).rates
         slopes = csr_array((rates, (table.point, table.column)), shape=(strain.size, unknown))
         part = csr_array(slopes.T @ weights @ slopes)
-        found = part if found is None else found + part
-    return found
+        total = part if total is None else total + part
+    return total
 
 
 def viscous_stiffness(law: ConstitutiveLaw, strain: np.ndarray, history: np.ndarray, step: float) -> np.ndarray:

@@ -23,25 +23,25 @@ _NOT_SHOWN = ("all", "test", "bench", "docs")
 def doctor(as_json: AsJson = False) -> None:
     """Check the installation: versions, compiled kernels, a first solve, pictures of bodies and missing extras."""
     with reported(as_json):
-        begun = time.perf_counter()
+        start = time.perf_counter()
         from beamfem.cli import targets
         from beamfem.kernels.cache import cache_folder, kept
 
         cache = cache_folder()
-        found: dict[str, Any] = {
+        report: dict[str, Any] = {
             "versions": versions(),
             "cache": {
                 "folder": cache,
                 "writable": cache is not None and targets.writable(cache),
                 "compiled_kernels": kept(),
-                "import_seconds": time.perf_counter() - begun,
+                "import_seconds": time.perf_counter() - start,
             },
             "first_solve": first_solve(),
             "rendering": rendering(),
             "extras": extras(),
         }
-        print_json(found) if as_json else _print(found)
-        if not found["first_solve"]["right"]:
+        print_json(report) if as_json else _print(report)
+        if not report["first_solve"]["right"]:
             raise typer.Exit(FAILED)
 
 
@@ -82,9 +82,9 @@ def first_solve() -> dict[str, Any]:
     before = len(compiled_here())
     seconds = []
     for _ in range(2):
-        begun = time.perf_counter()
+        start = time.perf_counter()
         deflection = float(solve_static(model).displacement(beam.end)[-1, 1])
-        seconds.append(time.perf_counter() - begun)
+        seconds.append(time.perf_counter() - start)
     return {
         "seconds": seconds[0],
         "again_seconds": seconds[1],
@@ -97,24 +97,26 @@ def first_solve() -> dict[str, Any]:
 def rendering() -> dict[str, Any]:
     """Return whether VTK can draw, tested in a separate process because a missing library may crash it."""
     try:
-        done = subprocess.run([sys.executable, "-c", _RENDER], capture_output=True, text=True, timeout=120, check=False)
+        process = subprocess.run(
+            [sys.executable, "-c", _RENDER], capture_output=True, text=True, timeout=120, check=False
+        )
     except subprocess.TimeoutExpired:
         return {"possible": False, "reason": "no picture within 120 s"}
-    if done.returncode == 0:
+    if process.returncode == 0:
         return {"possible": True, "reason": ""}
-    if done.returncode < 0:
-        reason = f"VTK was killed by signal {-done.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
+    if process.returncode < 0:
+        reason = f"VTK was killed by signal {-process.returncode}; on Debian: apt-get install libegl1 libgl1-mesa-dri"
     else:
-        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        reason = (process.stderr.strip().splitlines() or ["no reason given"])[-1]
     return {"possible": False, "reason": reason}
 
 
 def extras() -> list[dict[str, Any]]:
     """Return for each optional extra its missing packages and how to install them."""
-    wanted: dict[str, list[str]] = {}
+    packages: dict[str, list[str]] = {}
     for name, extra in _requirements():
         if extra and extra not in _NOT_SHOWN:
-            wanted.setdefault(extra, []).append(name)
+            packages.setdefault(extra, []).append(name)
     return [
         {
             "extra": extra,
@@ -122,7 +124,7 @@ def extras() -> list[dict[str, Any]]:
             "missing": [name for name in names if not _installed(name)],
             "install": f'pip install "beamfem[{extra}]"',
         }
-        for extra, names in sorted(wanted.items())
+        for extra, names in sorted(packages.items())
     ]
 
 
@@ -130,12 +132,12 @@ def _requirements() -> list[tuple[str, str]]:
     """Return the requirements of beamfem, each with the extra it belongs to, or ""."""
     from importlib.metadata import requires
 
-    found = []
+    requirements = []
     for line in requires("beamfem") or ():
         name = re.match(r"[A-Za-z0-9._-]+", line)
         extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)['\"]", line)
-        found.append((name[0] if name else line, extra[1] if extra else ""))
-    return found
+        requirements.append((name[0] if name else line, extra[1] if extra else ""))
+    return requirements
 
 
 def _installed(name: str) -> bool:

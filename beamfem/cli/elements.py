@@ -14,15 +14,15 @@ _TEXT = re.compile(r"(?P<name>\w+)(?:\((?P<order>\d+)\))?")
 
 def element_from_text(text: str) -> Element:
     """Return the element of a text such as "ANCFCRBF" or "CRBF(4)". Raises InputError."""
-    found = _TEXT.fullmatch(text.strip())
-    name = found["name"] if found else text
-    if not found or name not in PRESETS:
+    match = _TEXT.fullmatch(text.strip())
+    name = match["name"] if match else text
+    if not match or name not in PRESETS:
         raise InputError(f"there is no element {name!r}; {nearest(name, PRESETS)}")
     if PRESETS[name] is CRBF:
-        if found["order"] is None:
+        if match["order"] is None:
             raise InputError('CRBF needs its order, such as "CRBF(4)"')
-        return CRBF(int(found["order"]))
-    if found["order"] is not None:
+        return CRBF(int(match["order"]))
+    if match["order"] is not None:
         raise InputError(f"{name} has no order, only CRBF has")
     element = PRESETS[name]()
     assert isinstance(element, Element)

@@ -19,11 +19,11 @@ Results = Annotated[Path, typer.Argument(help="A results file (.h5).", show_defa
 def info(results: Results, code: OwnCode = None, as_json: AsJson = False, quiet: Quiet = False) -> None:
     """Show the contents of a results file: model, states, statistics; with --quiet, check that it can be read."""
     with reported(as_json, quiet):
-        found = _described(results, loaded(results, code))
+        contents = _described(results, loaded(results, code))
         if as_json:
-            print_json(found)
+            print_json(contents)
         elif not quiet:
-            _print(found)
+            _print(contents)
 
 
 def export(
@@ -47,8 +47,8 @@ def export(
 
         require_target("vtk", target)
         solution = loaded(results, code)
-        shown = solution if every == 1 else solution[::every]
-        shown.to_vtk(target, geometry="reference" if reference else "deformed", fields=field or None, single=single)
+        selected = solution if every == 1 else solution[::every]
+        selected.to_vtk(target, geometry="reference" if reference else "deformed", fields=field or None, single=single)
         _wrote(target, as_json, quiet)
 
 

@@ -45,9 +45,9 @@ def command_of(
     a parameter of that name. Raises InputError for a parameter without default that cannot be given as text.
     """
     hints = typing.get_type_hints(function)
-    own = inspect.signature(function).parameters
+    parameters = inspect.signature(function).parameters
     options = []
-    for name, parameter in own.items():
+    for name, parameter in parameters.items():
         if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             continue
         option = _option(name, parameter, hints.get(name), _help(function, name))
@@ -55,8 +55,8 @@ def command_of(
             options.append(option)
         elif parameter.default is parameter.empty:
             raise InputError(f"{name} of {function.__name__} has no default and cannot be given as text")
-    taken = [option.name for option in options]
-    options += [parameter for name, parameter in extra.items() if name not in taken]
+    option_names = [option.name for option in options]
+    options += [parameter for name, parameter in extra.items() if name not in option_names]
 
     def command(**arguments: Any) -> None:
         run(arguments)
@@ -108,8 +108,8 @@ def _item(hint: Any, default: Any) -> Any:
     """Return the type of the items of a list, None if the parameter is not a list."""
     kind = _kind(hint, default)
     if kind in (tuple, list) and isinstance(default, tuple | list) and default:
-        found = type(default[0])
-        return found if found in _ITEMS and all(type(value) is found for value in default) else None
+        item_type = type(default[0])
+        return item_type if item_type in _ITEMS and all(type(value) is item_type for value in default) else None
     if typing.get_origin(kind) not in _SEQUENCES:
         return None
     parts = {part for part in typing.get_args(kind) if part is not Ellipsis}
@@ -167,10 +167,10 @@ def _help(function: Callable[..., Any], name: str) -> str:
         kind, words = listed[1] or "", " ".join(listed[2].split()).rstrip(".")
     else:
         short = rf"(?<![\w.])`*{re.escape(name)}`*(\s*\[[^\]]*\])?(\s*\([^)]*\))?:\s*([^;]+?)(?=;|\.\s|\.?$)"
-        found = re.search(short, " ".join(sections[""].split()))
-        if found is None:
+        match = re.search(short, " ".join(sections[""].split()))
+        if match is None:
             return ""
-        kind, words = found[1] or "", found[3]
+        kind, words = match[1] or "", match[3]
     unit = _UNIT.search(kind)
     if unit is not None:  # rich reads the help of an option as markup twice, so that escaping does not save brackets
         first, *more = re.split(r"(?=[;,])", words, maxsplit=1)

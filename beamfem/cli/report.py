@@ -39,8 +39,8 @@ def _fail(error: BaseException, code: int, as_json: bool) -> None:
     notes = list(getattr(error, "__notes__", ()))
     message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
     if as_json:
-        known = {name: getattr(error, name) for name in ("message", "file", "line", "key") if hasattr(error, name)}
-        fields = {"type": type(error).__name__, "message": message} | known
+        details = {name: getattr(error, name) for name in ("message", "file", "line", "key") if hasattr(error, name)}
+        fields = {"type": type(error).__name__, "message": message} | details
         print_json({"error": fields | ({"notes": notes} if notes else {}), "exit_code": code})
     else:
         print("\n".join([f"error: {message}", *notes]), file=sys.stderr)

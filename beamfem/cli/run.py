@@ -66,7 +66,7 @@ def run(
             require_saved(job.model)
         if not quiet:
             tell_of_compilation()
-        begun = time.perf_counter()
+        start = time.perf_counter()
         try:
             job = job.imperfect()
             found = job.solve()
@@ -78,7 +78,7 @@ def run(
                 at = f"load factor {last:g}" if found_before.static else f"{last:g} {job.model.unit('s')}"
                 error.add_note(f"The states found before, up to {at}, are saved in {out}.")
             raise
-        seconds = time.perf_counter() - begun
+        seconds = time.perf_counter() - start
         with told_in_keys():
             written = _write(found.solution, out, vtk, plot, colour)
             for curve in job.curves:
@@ -155,8 +155,8 @@ def _print(result: dict[str, Any], solution: "Solution") -> None:
         for critical in ("limit_points", "bifurcations"):
             if output.get(critical):
                 print_table(f"{output['name']}, at {critical.replace('_', ' ')}", output[critical], output["units"])
-    told = len(statistics.warnings)  # as they were found
-    for warning in result["warnings"][told:]:
+    already_printed = len(statistics.warnings)  # as they were found
+    for warning in result["warnings"][already_printed:]:
         print(f"warning: {warning}", file=sys.stderr)
     if result["written"]:
         print()

@@ -31,34 +31,34 @@ def run_sweep(
             )
     require_target("table", out)
     require_target("curve", plot)
-    if plot is not None and not any(all(map(_is_number, each.values)) for each in job.varied):
+    if plot is not None and not any(all(map(_is_number, parameter.values)) for parameter in job.varied):
         raise InputError(f"--plot draws over a key whose values are numbers, and {job.file} varies none")
     if not quiet:
         tell_of_compilation()
-    begun = time.perf_counter()
+    start = time.perf_counter()
     try:
-        found = solve_sweep(job)
+        sweep = solve_sweep(job)
     except KeyboardInterrupt as error:
         partial = getattr(error, "sweep", None)
         if partial is not None and out is not None:
             partial.to_csv(out)
             error.add_note(f"The points computed before are in {out}.")
         raise
-    seconds = time.perf_counter() - begun
+    seconds = time.perf_counter() - start
     if out is not None:
-        found.to_csv(out)
+        sweep.to_csv(out)
     if plot is not None:
-        found.plot(path=plot)
+        sweep.plot(path=plot)
     written = [str(path) for path in (out, plot) if path is not None]
     if as_json:
-        print_json(_result(job, found, seconds, written))
+        print_json(_result(job, sweep, seconds, written))
     elif not quiet:
         print(job.title)
         print(f"{job.kind}: {seconds:.2f} s; numbers are in {job.model.units}")
-        print(found.report())
+        print(sweep.report())
         for path in written:
             print(f"wrote {path}")
-    if found.failures:
+    if sweep.failures:
         raise typer.Exit(FAILED)
 
 

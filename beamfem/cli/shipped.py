@@ -8,4 +8,4 @@ _PACKAGE = Path(__file__).parents[1]
 def shipped(name: str) -> Path | None:
     """Return the folder "studies", "examples" or "meshes" that comes with beamfem, None if it came without."""
     places = (_PACKAGE / "shipped" / name, _PACKAGE.parent / name)
-    return next((place for place in places if place.is_dir()), None)
+    return next((folder for folder in places if folder.is_dir()), None)

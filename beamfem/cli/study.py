@@ -58,8 +58,8 @@ def _folder() -> Path:
     """Return the folder of studies here, else that which comes with beamfem."""
     from beamfem.cli.shipped import shipped
 
-    here = Path("studies")
-    return here if here.is_dir() else shipped("studies") or here
+    local = Path("studies")
+    return local if local.is_dir() else shipped("studies") or local
 
 
 def find_studies(folder: Path) -> list[Study]:
@@ -69,7 +69,7 @@ def find_studies(folder: Path) -> list[Study]:
     right = "give the folder of the studies with --folder, or start beamfem where it is"
     if not folder.is_dir():
         raise InputError(f"there is no folder {folder} here ({Path.cwd()}): {right}")
-    found = []
+    studies = []
     for file in sorted(folder.rglob("*.py")):
         try:
             tree = ast.parse(file.read_bytes())
@@ -77,10 +77,10 @@ def find_studies(folder: Path) -> list[Study]:
             continue
         if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in tree.body):
             title = (ast.get_docstring(tree) or "").strip().split("\n")[0]
-            found.append(Study(file.relative_to(folder).with_suffix("").as_posix(), title, file))
-    if not found:
+            studies.append(Study(file.relative_to(folder).with_suffix("").as_posix(), title, file))
+    if not studies:
         raise InputError(f"no file in {folder} has a function main, which makes a study: {right}")
-    return found
+    return studies
 
 
 def _named(name: str, studies: list[Study], folder: Path) -> Study:
@@ -88,13 +88,13 @@ def _named(name: str, studies: list[Study], folder: Path) -> Study:
     from beamfem.validation import nearest
 
     wanted = name.removesuffix(".py")
-    found = [item for item in studies if wanted in (item.name, item.file.stem)]
-    if len(found) > 1 and not any(item.name == wanted for item in found):
-        raise InputError(f"{name!r} may be {' or '.join(item.name for item in found)}; give it with its folder")
-    if not found:
-        known, short = [item.name for item in studies], [item.file.stem for item in studies]
-        raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, known, short)}")
-    return min(found, key=lambda item: item.name != wanted)
+    matches = [item for item in studies if wanted in (item.name, item.file.stem)]
+    if len(matches) > 1 and not any(item.name == wanted for item in matches):
+        raise InputError(f"{name!r} may be {' or '.join(item.name for item in matches)}; give it with its folder")
+    if not matches:
+        names, short = [item.name for item in studies], [item.file.stem for item in studies]
+        raise InputError(f"there is no study {name!r} in {folder}; {nearest(name, names, short)}")
+    return min(matches, key=lambda item: item.name != wanted)
 
 
 def _main_of(item: Study, folder: Path) -> Any:
@@ -102,17 +102,17 @@ def _main_of(item: Study, folder: Path) -> Any:
 
     Studies share code: the folder of the study and the parent of the folder of all studies are put on the path.
     """
-    for place in (str(folder.resolve().parent), str(item.file.parent.resolve())):
-        if place not in sys.path:
-            sys.path.insert(0, place)
+    for path in (str(folder.resolve().parent), str(item.file.parent.resolve())):
+        if path not in sys.path:
+            sys.path.insert(0, path)
     return _imported(item).main
 
 
 def _imported(item: Study) -> ModuleType:
     name = item.file.stem
-    known = sys.modules.get(name)
-    if known is not None and Path(getattr(known, "__file__", None) or "").resolve() == item.file.resolve():
-        return known
+    loaded = sys.modules.get(name)
+    if loaded is not None and Path(getattr(loaded, "__file__", None) or "").resolve() == item.file.resolve():
+        return loaded
     spec = importlib.util.spec_from_file_location(name, item.file)
     assert spec is not None
     assert spec.loader is not None

@@ -85,24 +85,26 @@ def judge(
 
     highest: orders above it are not accepted.
     """
-    found = extrapolate(size, value, highest) if reference is None else Extrapolation(reference, np.nan, True, "")
-    error = errors(value, found.limit)
-    fit = fit_order(size, error, highest) if found.settled else None
-    notes = [found.note] if found.note else _notes(refinement, size, error, fit, highest)
+    extrapolated = (
+        extrapolate(size, value, highest) if reference is None else Extrapolation(reference, np.nan, True, "")
+    )
+    error = errors(value, extrapolated.limit)
+    fit = fit_order(size, error, highest) if extrapolated.settled else None
+    notes = [extrapolated.note] if extrapolated.note else _notes(refinement, size, error, fit, highest)
     order = neighbour_orders(size, error)
-    estimate = found.error if reference is None else float(error[-1])
-    if reference is None and found.limit == value[-1]:
+    estimate = extrapolated.error if reference is None else float(error[-1])
+    if reference is None and extrapolated.limit == value[-1]:
         error[-1] = np.nan
     return Curve(
         refinement=refinement,
         size=size,
         value=value,
         error=error,
-        relative=is_relative(found.limit, value),
+        relative=is_relative(extrapolated.limit, value),
         order=order,
         gci=grid_convergence_index(size, value, highest),
         fit=fit,
-        limit=found.limit,
+        limit=extrapolated.limit,
         estimated_error=estimate,
         notes=tuple(notes),
     )

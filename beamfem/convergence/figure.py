@@ -25,12 +25,12 @@ def plot_errors(study: "Convergence", path: str | PathLike[str] | None = None) -
     for i, curve in enumerate(study.curves):
         colour, marker = COLOURS[i % len(COLOURS)], _MARKERS[i % len(_MARKERS)]
         x, y = np.array(curve.refinement, dtype=float), curve.error
-        shown = y > 0.0
+        positive = y > 0.0
         label = curve.label if curve.fit is None else f"{curve.label}: order {_order(curve)}"
-        axes.plot(x[shown], y[shown], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
+        axes.plot(x[positive], y[positive], color=colour, marker=marker, markersize=5, linewidth=1.4, label=label)
         if curve.fit is None:
             continue
-        noise = shown & (np.arange(len(x)) > curve.fit.last)
+        noise = positive & (np.arange(len(x)) > curve.fit.last)
         axes.plot(x[noise], y[noise], marker, markersize=5, color=colour, markerfacecolor="white")
         other = triangles.get(round(curve.fit.order))
         if other is None or np.nanmin(y) < np.nanmin(other[0].error):

@@ -30,8 +30,8 @@ def as_grid(study: "Convergence") -> Any:
     for name, column in zip(header, zip(*rows, strict=True), strict=True):
         if name != study.refine and all(value is None or isinstance(value, Real) for value in column):
             grid = np.full(shape, np.nan)
-            for place, value in zip(places, column, strict=True):
-                grid[place] = np.nan if value is None else value
+            for index, value in zip(places, column, strict=True):
+                grid[index] = np.nan if value is None else value
             title = f"{name} (result)" if name in data or name == "curve" else name
             data[title] = ("curve", study.refine), grid
     coordinates = {"curve": [curve.label for curve in study.curves], study.refine: refinement}

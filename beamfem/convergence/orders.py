@@ -138,8 +138,8 @@ def fit_order(h: np.ndarray, error: np.ndarray, highest: float = HIGHEST_ORDER) 
     """
     from scipy.special import stdtrit  # slow to import
 
-    known = np.nan_to_num(error, nan=0.0)
-    first, clean = _finest_run(clean_points(h, known, highest), chance_hits(h, known, highest))
+    finite_error = np.nan_to_num(error, nan=0.0)
+    first, clean = _finest_run(clean_points(h, finite_error, highest), chance_hits(h, finite_error, highest))
     if clean - first < 2:
         return None
     orders = neighbour_orders(h[:clean], error[:clean])

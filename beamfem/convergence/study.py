@@ -99,8 +99,8 @@ def converge(
     refinement, counts = _from_coarse_to_fine(refine, varied.pop(refine))
     reference, goal = optional(finite)("reference", reference), optional(positive)("until", until)
     lines = _lines(function, varied, fixed)
-    given = lines[0].parameters | {refine: refinement[0]}
-    check_call(function, given, ("quantity", "refine", "reference", "until", "executor"))
+    first_point = lines[0].parameters | {refine: refinement[0]}
+    check_call(function, first_point, ("quantity", "refine", "reference", "until", "executor"))
     with TaskRunner(function, executor) as runner:
         quantity = _call(runner, [(line, value) for line in lines for value in refinement], refine, quantity)
         last, doublings = refinement[-1], 0
@@ -126,13 +126,13 @@ def _from_coarse_to_fine(refine: str, values: Sequence[Any]) -> tuple[tuple[Any,
     Raises InputError unless it is increasing counts or decreasing step sizes.
     """
     numbers = np.array([positive(refine, value) for value in values])
-    whole = all(isinstance(value, int | np.integer) for value in values)
-    steps = np.diff(np.sort(numbers) if whole else numbers)
-    if whole and (steps > 0).all():
+    integers = all(isinstance(value, int | np.integer) for value in values)
+    steps = np.diff(np.sort(numbers) if integers else numbers)
+    if integers and (steps > 0).all():
         return tuple(sorted(values)), True
-    if not whole and (steps < 0).all():
+    if not integers and (steps < 0).all():
         return tuple(values), False
-    if not whole and (steps > 0).all() and (numbers % 1.0 == 0.0).all():
+    if not integers and (steps > 0).all() and (numbers % 1.0 == 0.0).all():
         return tuple(values), True
     raise InputError(
         f"{refine} must be counts (whole numbers, each once) or falling step sizes, got {', '.join(map(str, values))}"
@@ -191,16 +191,16 @@ def _refuse_arrays(outcome: Outcome, quantity: str | None) -> Outcome:
 
 def _curve(line: _Line, quantity: str | None, counts: bool, reference: float | None) -> Curve | None:
     """Assess the values found so far; None if every call failed."""
-    found = {value: outcome for value, outcome in line.found.items() if outcome.error is None}
-    if not found:
+    by_value = {value: outcome for value, outcome in line.found.items() if outcome.error is None}
+    if not by_value:
         return None
     # workers answer in any order
-    found = dict(sorted(found.items(), key=lambda item: item[0], reverse=not counts))
-    sizes = np.array([1.0 / value if counts else value for value in found], dtype=float)
-    outcomes = list(found.values())
+    by_value = dict(sorted(by_value.items(), key=lambda item: item[0], reverse=not counts))
+    sizes = np.array([1.0 / value if counts else value for value in by_value], dtype=float)
+    outcomes = list(by_value.values())
     names = [] if quantity is None else [name for name in outcomes[0].value if name != quantity]
     curve = judge(
-        refinement=tuple(found),
+        refinement=tuple(by_value),
         size=sizes,
         value=np.array([_number(outcome.value, quantity) for outcome in outcomes], dtype=float),
         reference=reference,

@@ -126,13 +126,13 @@ def _refuse_standstill(speed: Speed, breaks: np.ndarray, panels: np.ndarray, whe
         least, at = values[i], u[i]
         if least > _ZERO * largest[span[i]]:
             # relative to `begin`, so that the minimum is found to a fraction of the bracket
-            found = minimize_scalar(
+            minimum = minimize_scalar(
                 lambda step, begin=begin: float(speed(np.array([begin + step]))[0]) ** 2,
                 bounds=(0.0, end - begin),
                 method="bounded",
                 options={"xatol": 1e-12 * (end - begin)},
             )
-            least, at = np.sqrt(found.fun), begin + found.x
+            least, at = np.sqrt(minimum.fun), begin + minimum.x
         if least <= _ZERO * largest[span[i]]:
             raise InputError(
                 f"the curve stands still at {where(float(at))} (a cusp, or points that coincide): it has no tangent "

@@ -63,11 +63,11 @@ class Chain:
     @cached_property
     def corners(self) -> tuple[float, ...]:
         """Arc lengths (k,) [m] of the corners between the two ends, at which the tangent jumps."""
-        found = [self._ends[i] + corner for i, curve in enumerate(self.curves) for corner in curve.corners]
+        corners = [self._ends[i] + corner for i, curve in enumerate(self.curves) for corner in curve.corners]
         for one, other, joint in zip(self.curves, self.curves[1:], self._ends[1:-1], strict=False):
             if turned(one.tangent(np.array([one.length])), other.tangent(np.array([0.0])))[0]:
-                found.append(joint)
-        return tuple(sorted(float(corner) for corner in found))
+                corners.append(joint)
+        return tuple(sorted(float(corner) for corner in corners))
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
@@ -95,6 +95,6 @@ class Chain:
         piece = np.clip(np.searchsorted(self._ends, arc_length, side="right") - 1, 0, len(self.curves) - 1)
         values = np.empty((len(arc_length), 2))
         for i in np.unique(piece):
-            here = piece == i
-            values[here] = ask(int(i), np.clip(arc_length[here] - self._ends[i], 0.0, self.curves[i].length))
+            mask = piece == i
+            values[mask] = ask(int(i), np.clip(arc_length[mask] - self._ends[i], 0.0, self.curves[i].length))
         return values

@@ -113,13 +113,13 @@ def _spline(u: np.ndarray, bezier: np.ndarray, multiplicities: np.ndarray) -> BS
     gives the same value; the longest needs the least extrapolation.
     """
     times = np.concatenate([[4], multiplicities, [4]])
-    place = np.repeat(np.arange(len(u)), times)
+    indices = np.repeat(np.arange(len(u)), times)
     control = []
-    for triple in zip(place[1:-3], place[2:-2], place[3:-1], strict=True):
+    for triple in zip(indices[1:-3], indices[2:-2], indices[3:-1], strict=True):
         spans = np.arange(triple[0], triple[2]) if triple[2] > triple[0] else np.array([min(triple[0], len(u) - 2)])
         span = int(spans[np.argmax(np.diff(u)[spans])])
         control.append(_polar(bezier[span], (u[list(triple)] - u[span]) / (u[span + 1] - u[span])))
-    return BSpline(3, tuple(u[place]), points("control_points", control))
+    return BSpline(3, tuple(u[indices]), points("control_points", control))
 
 
 def _polar(bezier: np.ndarray, arguments: np.ndarray) -> np.ndarray:

@@ -70,10 +70,8 @@ class _Body:
             thickness * reference.d_s - curvature * along,
         )
         count, start = len(free), (reference.r_s, reference.d, reference.d_s)
-        first = np.array([_slope(start, [own[i] for own in change]) for i in range(count)])
-        second = [
-            [_slope([own[i] for own in change], [own[j] for own in change]) for j in range(count)] for i in range(count)
-        ]
+        first = np.array([_slope(start, [v[i] for v in change]) for i in range(count)])
+        second = [[_slope([v[i] for v in change], [v[j] for v in change]) for j in range(count)] for i in range(count)]
         return first, 0.5 * np.array(second)
 
     def points(self, degree: int, director_degree: int) -> int:
@@ -230,5 +228,5 @@ def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _slope(at: Sequence[np.ndarray], change: Sequence[np.ndarray]) -> np.ndarray:
     """Return the derivative (n, 6) of the measures at r0', d and d' (n, 2) along a change of these."""
-    moved = [one + 1j * _STEP * own for one, own in zip(at, change, strict=True)]
+    moved = [vector + 1j * _STEP * rate for vector, rate in zip(at, change, strict=True)]
     return evaluate(green_lagrange, *moved).imag / _STEP

@@ -112,9 +112,9 @@ def nodal_rates(
 
 def _carried(kind: kinematics.Kinematics, p: np.ndarray, c: np.ndarray, s: np.ndarray, frame: np.ndarray) -> np.ndarray:
     """Return the nodal vectors (steps, nodes, vectors, 2) of nodes with the section normal (c, s)."""
-    own = len(kind.coordinates)
-    turned = kind.vectors(tuple(np.moveaxis(p[..., -own:], -1, 0)), c, s, frame[:, 2])
-    components = np.concatenate([p[..., :-own], np.stack(turned, axis=-1)], axis=-1)
+    count = len(kind.coordinates)
+    vectors = kind.vectors(tuple(np.moveaxis(p[..., -count:], -1, 0)), c, s, frame[:, 2])
+    components = np.concatenate([p[..., :-count], np.stack(vectors, axis=-1)], axis=-1)
     return components.reshape(*p.shape[:2], components.shape[-1] // 2, 2)  # no -1, which fails for zero steps
 
 

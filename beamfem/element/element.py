@@ -171,13 +171,13 @@ def has_stations(field: Field) -> bool:
 def _energy_points(element: Element) -> tuple[np.ndarray, np.ndarray]:
     """Return the points and weights (nq,) of the strain energy, read-only."""
     if element.integration == "lobatto":
-        found = lobatto.energy_points(element.forces)
+        result = lobatto.energy_points(element.forces)
     else:
         rules = element.energy_rules()
-        found = np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
-    for values in found:
+        result = np.concatenate([rule[0] for rule in rules]), np.concatenate([rule[1] for rule in rules])
+    for values in result:
         values.setflags(write=False)
-    return found
+    return result
 
 
 @kept_with_elements

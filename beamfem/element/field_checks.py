@@ -74,8 +74,8 @@ def _require(field: Field) -> None:
 
 def _nodes(field: Field) -> np.ndarray:
     nodes: Any = field.nodes
-    known = isinstance(nodes, np.ndarray) and nodes.dtype.kind in "fiu" and nodes.ndim == 1 and len(nodes) > 1
-    if not known or not np.isfinite(nodes).all() or np.any(np.diff(nodes) <= 0.0):
+    valid = isinstance(nodes, np.ndarray) and nodes.dtype.kind in "fiu" and nodes.ndim == 1 and len(nodes) > 1
+    if not valid or not np.isfinite(nodes).all() or np.any(np.diff(nodes) <= 0.0):
         _refuse(field, f"nodes must be an array of two or more increasing numbers, got {shown(nodes)}")
     if np.abs(nodes[[0, -1]] - [0.0, 1.0]).max() > _ENDS:
         _refuse(field, f"nodes must begin at 0 and end at 1, the ends of an element, got {nodes[0]:g} to {nodes[-1]:g}")
@@ -87,15 +87,15 @@ def _table(field: Field, name: str, xi: np.ndarray, order: int) -> np.ndarray:
     kind = type(field).__name__
     width = len(field.nodes) * (1 if name == "director" else len(field.vectors) - 1)
     # a copy, as it may change its argument
-    found = np.asarray(called(f"{name} of the field {kind}", getattr(field, name), xi.copy(), order))
-    if found.shape != (len(xi), width) or found.dtype.kind != "f" or not np.isfinite(found).all():
-        said = f"{found.dtype} {found.shape}"
+    table = np.asarray(called(f"{name} of the field {kind}", getattr(field, name), xi.copy(), order))
+    if table.shape != (len(xi), width) or table.dtype.kind != "f" or not np.isfinite(table).all():
+        said = f"{table.dtype} {table.shape}"
         _refuse(
             field,
             f"{name}(xi, derivative={order}) of {len(xi)} points must be an array ({len(xi)}, {width}) of finite "
-            f"numbers, got {said if found.shape != (len(xi), width) or found.dtype.kind != 'f' else shown(found)}",
+            f"numbers, got {said if table.shape != (len(xi), width) or table.dtype.kind != 'f' else shown(table)}",
         )
-    return found
+    return table
 
 
 def _require_nodal(field: Field, name: str, order: int, columns: slice, right: np.ndarray) -> None:
@@ -117,8 +117,8 @@ def _require_nodal(field: Field, name: str, order: int, columns: slice, right: n
 def _require_sum(field: Field, said: str, right: str, found: np.ndarray, wanted: np.ndarray | float) -> None:
     wrong = np.abs(found - wanted)
     if wrong.max() > _EXACT:
-        place = int(wrong.argmax())
-        _refuse(field, f"the sum of {said} must be {right}, got {found[place]:.6g} at xi = {_PLACES[place]:g}")
+        worst = int(wrong.argmax())
+        _refuse(field, f"the sum of {said} must be {right}, got {found[worst]:.6g} at xi = {_PLACES[worst]:g}")
 
 
 def _require_derivative(field: Field, name: str, order: int) -> None:
@@ -127,25 +127,25 @@ def _require_derivative(field: Field, name: str, order: int) -> None:
     slopes = (ends[0] - ends[1]) / (2.0 * _STEP)
     wrong = np.abs(exact - slopes) > _SLOPES * max(1.0, np.abs(slopes).max())
     if wrong.any():
-        place, column = np.argwhere(wrong)[0].tolist()
+        index, column = np.argwhere(wrong)[0].tolist()
         _refuse(
             field,
             f"{_called(name, order)}[:, {column}] is no derivative of {_called(name, order - 1)}[:, {column}]: at "
-            f"xi = {_PLACES[place]:g} it is {exact[place, column]:.6g}, by differences {slopes[place, column]:.6g}",
+            f"xi = {_PLACES[index]:g} it is {exact[index, column]:.6g}, by differences {slopes[index, column]:.6g}",
         )
 
 
 def _require_rule(field: Field, nodes: np.ndarray) -> None:
-    found = called(f"director_rule of the field {type(field).__name__}", field.director_rule)
+    rule = called(f"director_rule of the field {type(field).__name__}", field.director_rule)
     said = (
         f"director_rule() must return the nodes ({len(nodes)},) and weights ({len(nodes)},) of a quadrature on [0, 1]"
     )
     try:
-        points, weights = (np.asarray(part, dtype=float) for part in found)
+        points, weights = (np.asarray(part, dtype=float) for part in rule)
     except (TypeError, ValueError):
-        _refuse(field, f"{said}, got {shown(found)}")
+        _refuse(field, f"{said}, got {shown(rule)}")
     if points.shape != nodes.shape or weights.shape != nodes.shape or np.abs(points - nodes).max() > _EXACT:
-        _refuse(field, f"{said}, got {shown(found)}")
+        _refuse(field, f"{said}, got {shown(rule)}")
     for power, right in ((0, 1.0), (1, 0.5)):
         mean = float(weights @ points**power)
         if not abs(mean - right) <= _EXACT:

@@ -47,10 +47,10 @@ def d_slots(field: Field) -> np.ndarray:
 @lru_cache(maxsize=64)
 def slots(vectors: tuple[str, ...], nodes: int, wanted: tuple[str, ...]) -> np.ndarray:
     """Return the indices (k,) of the wanted nodal vectors among those of an element, read-only."""
-    found = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
-    found = found.astype(np.int64)
-    found.setflags(write=False)
-    return found
+    indices = np.array([n * len(vectors) + i for n in range(nodes) for i, name in enumerate(vectors) if name in wanted])
+    indices = indices.astype(np.int64)
+    indices.setflags(write=False)
+    return indices
 
 
 @dataclass(frozen=True)
@@ -107,14 +107,14 @@ def _table(order: int, points: bytes, shape: tuple[int, ...], derivative: int) -
     nodes = _lobatto(order)
     factors = np.subtract.outer(np.frombuffer(points).reshape(shape), nodes)
     columns = []
-    for i, own in enumerate(nodes):
+    for i, node in enumerate(nodes):
         others = np.delete(np.arange(len(nodes)), i)
         # the k-th derivative of a product is the sum over all ordered choices of k factors that are left out
         parts = [
             factors[..., [j for j in others if j not in left_out]].prod(axis=-1)
             for left_out in combinations(others, derivative)
         ]
-        columns.append(factorial(derivative) * sum(parts) / np.prod(own - nodes[others]))
+        columns.append(factorial(derivative) * sum(parts) / np.prod(node - nodes[others]))
     return np.stack(np.broadcast_arrays(*columns, factors[..., 0])[:-1], axis=-1)
 
 

@@ -107,7 +107,7 @@ def read_abaqus(path: Path) -> MeshFile:
             if isinstance(error, InputError):
                 raise
             raise InputError(f"{section.place}: the lines below *{section.keyword} cannot be read: {error}") from error
-    found = _assembled(path, nodes, cells, node_sets, element_sets)
+    content = _assembled(path, nodes, cells, node_sets, element_sets)
     if others:
         named, more = list(others)[:_NAMED], len(others) - _NAMED
         warn(
@@ -116,7 +116,7 @@ def read_abaqus(path: Path) -> MeshFile:
             "supports and loads to Model(...)",
             NotReadWarning,
         )
-    return found
+    return content
 
 
 def _shown(section: _Section) -> str:
@@ -165,21 +165,21 @@ def _assembled(
     element_sets: _Sets,
 ) -> MeshFile:
     points = np.array(list(nodes.values()), dtype=float).reshape(-1, 3)
-    place = {number: i for i, number in enumerate(nodes)}
+    node_index = {number: i for i, number in enumerate(nodes)}
     blocks, order = [], []
     for kind in dict.fromkeys(name for name, _ in cells.values()):
-        own = {number: corners for number, (name, corners) in cells.items() if name == kind}
-        order += list(own)
-        for number, corners in own.items():
-            if any(corner not in place for corner in corners):
+        elements = {number: corners for number, (name, corners) in cells.items() if name == kind}
+        order += list(elements)
+        for number, corners in elements.items():
+            if any(corner not in node_index for corner in corners):
                 raise InputError(f"{path}: element {number} has nodes that the file does not give: {corners}")
         if kind in ("line", "line3"):
-            table = np.array([[place[corner] for corner in corners] for corners in own.values()])
+            table = np.array([[node_index[corner] for corner in corners] for corners in elements.values()])
             blocks.append((kind, _middle_last(table, points) if kind == "line3" else table))
         else:
-            blocks.append((kind, np.empty((len(own), 0), dtype=np.int64)))
-    cell_place = {number: i for i, number in enumerate(order)}
-    return MeshFile(points, tuple(blocks), element_sets.placed(cell_place), node_sets.placed(place))
+            blocks.append((kind, np.empty((len(elements), 0), dtype=np.int64)))
+    cell_index = {number: i for i, number in enumerate(order)}
+    return MeshFile(points, tuple(blocks), element_sets.placed(cell_index), node_sets.placed(node_index))
 
 
 def _middle_last(table: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -53,8 +53,8 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
             r = points.positions(solution.p[rows])[0][:, ends]
             x[rows], y[rows] = r[..., 0], r[..., 1]
             turned[rows] = rotation(points, solution, rows)[:, ends]
-            for name, found in section_forces(points, solution, rows).items() if forces else ():
-                forces[name][rows] = found
+            for name, values in section_forces(points, solution, rows).items() if forces else ():
+                forces[name][rows] = values
             require_written()
 
 
@@ -63,7 +63,7 @@ def _forces(group: Any, points: AxisPoints, solution: Solution, over: Any) -> di
     unit, shape = solution.model.unit, (len(solution), len(points.xi))
     ends = _scale(group, "element_end", points.arc_length, "arc length of the ends of each element", unit("m"))
     about = {name: (QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in ("normal", "shear", "moment")}
-    return {name: _variable(group, name, *each, shape, (over, ends)) for name, each in about.items()}
+    return {name: _variable(group, name, *texts, shape, (over, ends)) for name, texts in about.items()}
 
 
 def _scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:

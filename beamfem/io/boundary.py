@@ -63,7 +63,7 @@ class Boundary:
         """Cell data (cells,) by name."""
         kind = [self.kinds.index(group.kind) for group in self.groups]
         values = {"beam": self._beam, "kind": kind, "role": [group.role for group in self.groups]}
-        return {name: np.repeat(np.array(each, dtype=np.int64), self._sizes) for name, each in values.items()}
+        return {name: np.repeat(np.array(value, dtype=np.int64), self._sizes) for name, value in values.items()}
 
     @property
     def legend(self) -> dict[str, list[str]]:
@@ -83,33 +83,33 @@ class Boundary:
         """
         part, chosen = solution[rows], self.content.chosen(self.names)
         position = self._positions(part.p)
-        found = {"points": position, "displacement": position - self._reference}
+        result = {"points": position, "displacement": position - self._reference}
         if self.content.geometry == "reference":
-            found["points"] = np.repeat(self._reference[None], len(part), axis=0)
-        wanted = [name for name in chosen if name in _COMPONENTS]
-        values = [group.values(part) for group in self.groups] if wanted else []
-        for name in wanted:
-            found[name] = self._table(name, values, len(part))
-        return by_precision({name: found[name] for name in ("points", *chosen)}, self.content)
+            result["points"] = np.repeat(self._reference[None], len(part), axis=0)
+        names = [name for name in chosen if name in _COMPONENTS]
+        values = [group.values(part) for group in self.groups] if names else []
+        for name in names:
+            result[name] = self._table(name, values, len(part))
+        return by_precision({name: result[name] for name in ("points", *chosen)}, self.content)
 
     def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
         components = _COMPONENTS[name]
         sizes = zip(values, self._sizes, strict=True)
-        parts = [each[name] if name in each else np.zeros((steps, size, components)) for each, size in sizes]
+        parts = [fields[name] if name in fields else np.zeros((steps, size, components)) for fields, size in sizes]
         table = np.concatenate(parts, axis=1)
         return table if components == 3 else table[..., 0]
 
     def _positions(self, p: np.ndarray) -> np.ndarray:
         """Return the positions (steps, points, 3) [m] of the vertices in states p (steps, n)."""
         result = np.zeros((len(p), self.points, 3))
-        for mesh, own in self._places:
+        for mesh, indices in self._places:
             vectors = postprocess.nodal_vectors(mesh, p)
-            result[:, own, :2] = postprocess.axis(mesh, vectors, self._element[own], self._xi[own]).r
+            result[:, indices, :2] = postprocess.axis(mesh, vectors, self._element[indices], self._xi[indices]).r
         return result
 
     @cached_property
     def _reference(self) -> np.ndarray:
         result = np.zeros((self.points, 3))
-        for mesh, own in self._places:
-            result[own, :2] = reference_position(mesh, self._element[own], self._xi[own])
+        for mesh, indices in self._places:
+            result[indices, :2] = reference_position(mesh, self._element[indices], self._xi[indices])
         return result

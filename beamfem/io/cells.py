@@ -110,7 +110,7 @@ class Cells:
         self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
         numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
         pieces = [1 if whole else part.points.pieces for part in self.samples]
-        cells = [len(part.element) * each for part, each in zip(self.samples, pieces, strict=True)]
+        cells = [len(part.element) * per_element for part, per_element in zip(self.samples, pieces, strict=True)]
         self.beam = np.repeat(numbers, cells)
         self.materials = _distinct(_materials(model))
         self.sections = _distinct([beam.section for beam in model.beams])
@@ -152,8 +152,8 @@ class Cells:
         unit = self.unit
         return {
             **legend_of_beams(self.beams),
-            "materials": [material_in_words(each, unit) for each in self.materials],
-            "sections": [section_in_words(each, unit) for each in self.sections],
+            "materials": [material_in_words(item, unit) for item in self.materials],
+            "sections": [section_in_words(item, unit) for item in self.sections],
         }
 
     def warn_of_unknown_stress(self) -> None:
@@ -175,11 +175,11 @@ class Cells:
         known = {name for part in self.samples for name, told in part.known.items() if told}
         names = [name for name in parts[0] if "stress" not in name or name in known]
         chosen = self.content.chosen(names)
-        found = {name: np.concatenate([part[name] for part in parts], axis=1) for name in chosen}
+        result = {name: np.concatenate([part[name] for part in parts], axis=1) for name in chosen}
         if self.content.geometry == "reference":
-            still = np.concatenate([part.at_rest for part in self.samples], axis=1)
-            found["points"] = np.repeat(still, len(found["points"]), axis=0)
-        return by_precision(found, self.content)
+            at_rest = np.concatenate([part.at_rest for part in self.samples], axis=1)
+            result["points"] = np.repeat(at_rest, len(result["points"]), axis=0)
+        return by_precision(result, self.content)
 
 
 def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, np.ndarray]:
@@ -189,12 +189,12 @@ def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, n
 
 def _materials(model: Model) -> list[Material | None]:
     """Return the materials of beams and layers; last, so that lines count as bodies do, None for what has its own."""
-    found: list[Material | None] = []
+    materials: list[Material | None] = []
     for beam in model.beams:
         layers = beam.section.layers if isinstance(beam.section, Layered) else ()
-        found += [layer.material for layer in layers] or [beam.material]
+        materials += [layer.material for layer in layers] or [beam.material]
     lines = [None for beam in model.beams if beam.material is None or isinstance(beam.section, Layered)]
-    return [*(material for material in found if material is not None), *lines]
+    return [*(material for material in materials if material is not None), *lines]
 
 
 def _distinct(items: Sequence[Any]) -> list[Any]:

@@ -32,13 +32,13 @@ def load_path(file: Any, rows: Solution) -> Solution:
     """Return the rows as the saved path with its critical points, or unchanged if no path was saved."""
     if "limit_points" not in file:
         return rows
-    model, rest = rows.model, np.zeros(rows.model.size)
+    model, zeros = rows.model, np.zeros(rows.model.size)
     states = tuple(
-        PathState(p, rest, rest, float(at), model, stability=False, turned=turned)
+        PathState(p, zeros, zeros, float(at), model, stability=False, turned=turned)
         for at, p, turned in _rows(file["limit_points"], _STATE)
     )
     crossings = tuple(
-        Bifurcation(p, rest, rest, float(at), model, mode, tangent, stability=False, turned=turned)
+        Bifurcation(p, zeros, zeros, float(at), model, mode, tangent, stability=False, turned=turned)
         for at, p, mode, tangent, turned in _rows(file["bifurcations"], _CROSSING)
     )
     return Path(**_parts(rows), limit_points=states, bifurcations=crossings)

@@ -108,7 +108,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
     """Return a load along a beam with its functions as samples: those that were used, and more for drawing."""
     if not isinstance(load, AlongBeam):
         return load
-    kept: Any = load
+    original: Any = load
     saved: dict[str, Any] = {}
     for name in functions_along(load):
         mesh = model.mesh_of(load.beam.start)
@@ -118,7 +118,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
         saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
-    return replace(kept, **saved)
+    return replace(original, **saved)
 
 
 class _Writer:
@@ -138,13 +138,13 @@ class _Writer:
         """Describe a user-defined part. Raises InputError for a function with an unknown argument."""
         described: dict[str, Any] = {"class": name_of(value)}
         for field in fields(value):
-            given = getattr(value, field.name)
-            if field.name != _OF_TIME and self.has_function(given):
+            member = getattr(value, field.name)
+            if field.name != _OF_TIME and self.has_function(member):
                 what = f"a {type(value).__name__} cannot be saved: its field {field.name} is a function"
                 if isinstance(value, AlongBeam):
                     raise InputError(f"{what}; if it is one of the arc length, name it in `along`")
                 raise InputError(f"{what}; make it a method of the class")
-            described[field.name] = self.own_field(given)
+            described[field.name] = self.own_field(member)
         return described
 
     def own_field(self, given: Any) -> Any:

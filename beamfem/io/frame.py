@@ -118,9 +118,9 @@ class Frame:
         InputError
             If no line ends there.
         """
-        wanted = np.array(vector("point", (x, y)))
-        nodes = np.array([node for node, here in enumerate(self.places) if here])
-        distance = np.linalg.norm(self.mesh.nodes[nodes] - wanted, axis=1)
+        position = np.array(vector("point", (x, y)))
+        nodes = np.array([node for node, points in enumerate(self.places) if points])
+        distance = np.linalg.norm(self.mesh.nodes[nodes] - position, axis=1)
         nearest = nodes[int(np.argmin(distance))]
         if distance.min() > 1e-6 * float(np.max(np.ptp(self.mesh.nodes, axis=0))):
             near = self.mesh.nodes[nearest]
@@ -144,7 +144,7 @@ def build_frame(
     for hinge in (hinges,) if isinstance(hinges, str) else items("hinges", hinges):
         nodes = _named(mesh.point_sets, "point", hinge)
         hinged[nodes[nodes >= 0]] = True
-    given = {
+    by_cell = {
         what: _each(mesh, what, value)
         for what, value in (("elements", elements), ("element", element), ("section", section), ("material", material))
     }
@@ -155,11 +155,11 @@ def build_frame(
     beams = []
     for number, line in enumerate(lines):
         first = line[0][0]
-        own = {what: values[first] for what, values in given.items()}
+        arguments = {what: values[first] for what, values in by_cell.items()}
         curve, ends = _axis([_curve(points, cells, piece) for piece in line])
-        parts = count("elements", own.pop("elements"))
-        called = None if name is None else f"{name}[{number + 1}]"
-        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **own, name=called)
+        parts = count("elements", arguments.pop("elements"))
+        beam_name = None if name is None else f"{name}[{number + 1}]"
+        beam = Beam(curve, parts if len(line) == 1 else _divided(ends, parts), **arguments, name=beam_name)
         beams.append(beam)
         owner[[cell for cell, _ in line]] = number
         for (cell, backwards), fraction in zip(line, ends.tolist(), strict=False):
@@ -167,9 +167,11 @@ def build_frame(
         cell, backwards = line[-1]
         places[cells[cell][0 if backwards else 1]].append(Point(beam, 1.0))
     joints = tuple(
-        (Hinge if hinged[node] else Rigid)(here[0], other) for node, here in enumerate(places) for other in here[1:]
+        (Hinge if hinged[node] else Rigid)(at_node[0], other)
+        for node, at_node in enumerate(places)
+        for other in at_node[1:]
     )
-    return Frame(tuple(beams), joints, mesh, owner, tuple(tuple(here) for here in places))
+    return Frame(tuple(beams), joints, mesh, owner, tuple(tuple(at_node) for at_node in places))
 
 
 def _named(sets: Mapping[str, np.ndarray], kind: str, name: str) -> np.ndarray:

@@ -15,7 +15,7 @@ def material_in_words(material: Material | None, unit: Unit) -> str:
     """Return a material with its numbers and units; what is left at its default is left out."""
     if material is None:
         return "of the section"
-    said = [
+    parts = [
         f"E = {material.youngs_modulus:g} {unit('Pa')}",
         f"nu = {material.poisson_ratio:g}",
         f"density {material.density:g} {unit('kg/m^3')}",
@@ -24,8 +24,8 @@ def material_in_words(material: Material | None, unit: Unit) -> str:
     for field in fields(material):
         value = getattr(material, field.name)
         if field.name in further and value != field.default:
-            said.append(f"{field.name.replace('_', ' ')} {value:g} {unit(further[field.name])}")
-    return ", ".join(said)
+            parts.append(f"{field.name.replace('_', ' ')} {value:g} {unit(further[field.name])}")
+    return ", ".join(parts)
 
 
 def section_in_words(section: Any, unit: Unit) -> str:

@@ -76,8 +76,8 @@ class LineMesh:
             sets = getattr(self, name)
             if not isinstance(sets, Mapping):
                 raise InputError(f"{name} of LineMesh must be a mapping from names to numbers, got {shown(sets)}")
-            own = {text(f"a name in {name} of LineMesh", key): numbers for key, numbers in sets.items()}
-            checked = {key: _set(f"{name}[{key!r}] of LineMesh", own[key], size, lowest) for key in own}
+            by_name = {text(f"a name in {name} of LineMesh", key): numbers for key, numbers in sets.items()}
+            checked = {key: _set(f"{name}[{key!r}] of LineMesh", by_name[key], size, lowest) for key in by_name}
             object.__setattr__(self, name, checked)
 
     def frame(
@@ -192,9 +192,9 @@ def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
     counted = 0
     for kind, table in content.blocks:
         if table.ndim != 2 or table.shape[1] != _NODES[kind]:
-            found = table.shape[1] if table.ndim == 2 else table.shape
+            columns = table.shape[1] if table.ndim == 2 else table.shape
             raise InputError(
-                f"a {kind} has {_NODES[kind]} nodes, here {found}: damaged, or an ASCII file: save it as a binary one"
+                f"a {kind} has {_NODES[kind]} nodes, here {columns}: damaged, or an ASCII file: save it as a binary one"
             )
         if kind == "vertex":
             vertices.update(zip(range(counted, counted + len(table)), table[:, 0].tolist(), strict=True))
@@ -211,9 +211,9 @@ def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
         _numbers_below(f"it is damaged: nodes of its set {name}", chosen, len(content.points), 0)
     used = np.unique(cells[cells >= 0])
     points = content.points[used]
-    place = np.full(len(content.points) + 1, -1)
-    place[used] = np.arange(len(used))
-    cells = place[cells]  # the last place keeps -1
+    node_of = np.full(len(content.points) + 1, -1)
+    node_of[used] = np.arange(len(used))
+    cells = node_of[cells]  # the last entry keeps -1
     size = float(np.max(np.ptp(points, axis=0)))
     _check_nodes(points, size)
     nodes = points[:, :2].copy()
@@ -222,7 +222,7 @@ def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
         first = merged(nodes, np.unique(cells[:, :2]), near)
         kept, number_of = np.unique(first, return_inverse=True)
         nodes, cells = nodes[kept], np.append(number_of, -1)[cells]
-        place[used] = number_of
+        node_of[used] = number_of
     _check_ends(nodes, cells, near)
     parts, owner = divided(nodes, cells, near)
     warn_of_gaps(nodes, parts, _GAPS * near)
@@ -234,11 +234,11 @@ def _line_mesh(content: MeshFile, merge: bool) -> LineMesh:
         lines = member[chosen]
         if np.any(lines >= 0):
             member_sets[name] = lines[lines >= 0]
-        own = np.array([vertices[i] for i in chosen.tolist() if i in vertices], dtype=np.int64)
-        if len(own):
-            point_sets[name] = np.unique(place[own])
+        set_points = np.array([vertices[i] for i in chosen.tolist() if i in vertices], dtype=np.int64)
+        if len(set_points):
+            point_sets[name] = np.unique(node_of[set_points])
     for name, chosen in content.point_sets.items():
-        point_sets[name] = np.unique(place[chosen])
+        point_sets[name] = np.unique(node_of[chosen])
     return LineMesh(nodes, parts, parts_of(member_sets, owner), point_sets)
 
 
@@ -286,9 +286,9 @@ def _check_ends(nodes: np.ndarray, cells: np.ndarray, near: float) -> None:
     pairs = cKDTree(nodes[ends]).query_pairs(near, output_type="ndarray")
     if len(pairs):
         one, other = ends[pairs[0]]
-        apart = np.linalg.norm(nodes[one] - nodes[other])
+        distance = np.linalg.norm(nodes[one] - nodes[other])
         raise InputError(
-            f"two nodes are at {_at(nodes, one)}, {apart:.1g} apart, so that lines which meet there are not joined "
+            f"two nodes are at {_at(nodes, one)}, {distance:.1g} apart, so that lines which meet there are not joined "
             f"(and {len(pairs) - 1} more pair(s) elsewhere); merge them, by `merge` or in Gmsh by Coherence; for "
             "a hinge, name it"
         )
@@ -315,9 +315,9 @@ def _refuse_repeated(nodes: np.ndarray, cells: np.ndarray, owner: np.ndarray, si
 
 
 def _set(name: str, values: Any, size: int, lowest: int) -> np.ndarray:
-    given = items(name, values)
-    numbers = np.array(given)
-    if numbers.ndim != 1 or holds_truth_values(given):
+    entries = items(name, values)
+    numbers = np.array(entries)
+    if numbers.ndim != 1 or holds_truth_values(entries):
         raise InputError(f"{name} must be a list of whole numbers, got {shown(values)}")
     return _numbers_below(name, numbers, size, lowest)
 

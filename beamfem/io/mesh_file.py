@@ -35,13 +35,13 @@ def read_through_meshio(path: Path) -> MeshFile:
     with needed_for("reading mesh files"):
         import meshio  # slow to import, and seldom needed
 
-    known = {
+    formats = {
         ending: "gmsh" if ending == ".msh" else kinds[0] for ending, kinds in meshio.extension_to_filetypes.items()
     }
-    kind = known.get(path.suffix.lower())
+    kind = formats.get(path.suffix.lower())
     if kind is None or kind in _WITHOUT_LINES:
         holds = f"; those of {kind} hold {_WITHOUT_LINES[kind]} only" if kind else ""
-        endings = ", ".join(sorted(ending for ending in known if known[ending] not in _WITHOUT_LINES))
+        endings = ", ".join(sorted(ending for ending in formats if formats[ending] not in _WITHOUT_LINES))
         raise InputError(f"{path}: mesh files end in {endings}{holds}")
     silence = contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO())
     try:
@@ -88,8 +88,8 @@ def _groups(mesh: Any) -> dict[str, np.ndarray]:
         if tag != 0:
             # a group of curves and one of points may have the same number
             name = names.get((tag, size), str(tag))
-            own = np.flatnonzero((tags == tag) & (dimension == size))
-            result[name] = np.concatenate([result.get(name, own[:0]), own])
+            cells = np.flatnonzero((tags == tag) & (dimension == size))
+            result[name] = np.concatenate([result.get(name, cells[:0]), cells])
     return result
 
 

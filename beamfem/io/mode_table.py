@@ -43,15 +43,15 @@ def buckling_to_xarray(buckling: "Buckling", beam: Beam | None = None) -> Any:
         "kind": (_OVER, np.array(buckling.kinds, dtype=object), {"long_name": "kind of critical point"}),
         "uncertainty": (_OVER, buckling.uncertainty, about("relative error of the load factor", "1")),
     }
-    found = _with_shapes(buckling.model, buckling.states, buckling.modes, beam, data)
-    return found.assign_attrs(ended=buckling.ended, status=buckling.status.name)
+    dataset = _with_shapes(buckling.model, buckling.states, buckling.modes, beam, data)
+    return dataset.assign_attrs(ended=buckling.ended, status=buckling.status.name)
 
 
 def _with_shapes(model: Model, p: np.ndarray, shapes: np.ndarray, beam: Beam | None, data: Variables) -> Any:
     """Return the data with ux, uy of shapes (modes, n) about states p (modes, n) along one beam or all."""
     moved, places = [], []
-    for own in model.beams if beam is None else (beam,):
-        points, along_beam = stations(model, own)
+    for one_beam in model.beams if beam is None else (beam,):
+        points, along_beam = stations(model, one_beam)
         rates = points.velocities(p, shapes)
         about = [{"long_name": f"shape {axis}"} for axis in "xy"]
         both: Variables = {f"u{name}": ((*_OVER, "station"), rates[..., i], about[i]) for i, name in enumerate("xy")}

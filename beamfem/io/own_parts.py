@@ -56,14 +56,14 @@ def made(name: str, members: dict[str, Any]) -> Any:
 
 def dataclasses_of(module: ModuleType) -> list[type]:
     """Return the dataclasses that a module defines."""
-    own = (kind for kind in vars(module).values() if isinstance(kind, type) and kind.__module__ == module.__name__)
-    return [kind for kind in own if is_dataclass(kind)]
+    classes = (kind for kind in vars(module).values() if isinstance(kind, type) and kind.__module__ == module.__name__)
+    return [kind for kind in classes if is_dataclass(kind)]
 
 
 def find(name: str) -> Any:
     """Return the attribute "module:name" of a loaded module, None if there is none."""
     module, _, attribute = name.partition(":")
-    found: Any = sys.modules.get(module)
+    result: Any = sys.modules.get(module)
     for part in attribute.split("."):
-        found = getattr(found, part, None)
-    return found
+        result = getattr(result, part, None)
+    return result

@@ -154,8 +154,8 @@ def _read(file: Any) -> Solution:
         ended = f"{statistics.ended}; the file holds {rows} of {all_rows} rows because its writing was cut off"
         statistics = replace(statistics, ended=ended, status=Status.STOPPED)
     _require_whole(file, rows, (at, p, v, a))
-    known = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
-    return load_path(file, Solution(model, static, at, p, v, a, statistics, **known))
+    optional_arrays = {name: read_checked(file, name)[:rows] for name in _OPTIONAL if name in file}
+    return load_path(file, Solution(model, static, at, p, v, a, statistics, **optional_arrays))
 
 
 def _text(item: Any) -> np.ndarray:

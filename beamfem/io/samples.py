@@ -40,8 +40,8 @@ class Samples:
             low, high = np.moveaxis(self.distributions.layers[:, layer], -1, 0)
             self.y = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, across + 1)
             self.y[:, -1] = high
-            there = (self.distributions.number > layer).reshape(self.mesh.elements, -1)
-            self.element = np.flatnonzero(there.any(axis=1))
+            has_layer = (self.distributions.number > layer).reshape(self.mesh.elements, -1)
+            self.element = np.flatnonzero(has_layer.any(axis=1))
         self.axis = reference_axis(self.mesh, self.points.element, self.points.xi)
         self.reference = self._at_heights(self.points.reference, self.axis.d)
 
@@ -80,8 +80,8 @@ class Samples:
         for component in ("xx", "yy", "xy"):
             result[f"green_strain_{component}"] = getattr(strain, component)
         forces = section_forces(self.points, solution, rows)
-        own = self_stress(solution, self.mesh, element, xi, self.layer, self.y, rows)
-        result |= self._stress(forces, own)
+        eigenstress = self_stress(solution, self.mesh, element, xi, self.layer, self.y, rows)
+        result |= self._stress(forces, eigenstress)
         result["cauchy_stress"] = in_the_plane(
             result["stress_xx"], result["stress_xy"], postprocess.direction(self.mesh, now)
         )
@@ -95,19 +95,19 @@ class Samples:
     @cached_property
     def known(self) -> dict[str, bool]:
         """Whether there is a place along the beam where a component of stress is known at all heights of a cell."""
-        one = np.ones((1, len(self.points.xi)))
-        unit = self._stress({"normal": one, "shear": one, "moment": one})
-        told = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
-        return told | dict.fromkeys(("cauchy_stress", "second_piola_kirchhoff_stress"), told["von_mises_stress"])
+        ones = np.ones((1, len(self.points.xi)))
+        unit = self._stress({"normal": ones, "shear": ones, "moment": ones})
+        finite = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
+        return finite | dict.fromkeys(("cauchy_stress", "second_piola_kirchhoff_stress"), finite["von_mises_stress"])
 
     def _stress(self, forces: dict[str, np.ndarray], self_stress: np.ndarray | float = 0.0) -> dict[str, np.ndarray]:
         """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis).
 
         self_stress: what layers do against each other, of the same shape.
         """
-        own = self.distributions
-        along = own.normal_stress(self.layer, self.y, forces["normal"], forces["moment"]) + self_stress
-        sheared = own.shear_stress(self.layer, self.y, forces["shear"])
+        distributions = self.distributions
+        along = distributions.normal_stress(self.layer, self.y, forces["normal"], forces["moment"]) + self_stress
+        sheared = distributions.shear_stress(self.layer, self.y, forces["shear"])
         return {"stress_xx": along, "stress_xy": sheared, "von_mises_stress": von_mises(along, sheared)}
 
     def _at_heights(self, r: np.ndarray, d: np.ndarray) -> np.ndarray:

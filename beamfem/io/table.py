@@ -77,14 +77,14 @@ def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
     # elements agree on the arc length of their common end, to the last digit
     arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
     arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
-    called = _called(model)
-    found = {
-        "beam": (np.full(len(points.element), number), about("number of the beam", "1") | called),
+    attributes = _called(model)
+    coordinates = {
+        "beam": (np.full(len(points.element), number), about("number of the beam", "1") | attributes),
         "arc_length": (arc, about("arc length in the reference", "m")),
         "x0": (points.reference[:, 0], about("reference x", "m")),
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }
-    return points, {name: (("station",), *own) for name, own in found.items()}
+    return points, {name: (("station",), *variable) for name, variable in coordinates.items()}
 
 
 def _called(model: Model) -> dict[str, str]:
@@ -114,14 +114,14 @@ def as_dataset(data: Variables, coordinates: Variables, attributes: dict[str, An
     """Return an xarray.Dataset over stations, or, of a single beam, over its arc length, where none is twice."""
     with needed_for("to_xarray"):
         import xarray
-    found = xarray.Dataset(data, coordinates, attributes)
+    dataset = xarray.Dataset(data, coordinates, attributes)
     if not single:
-        return found
-    arc = found["arc_length"].to_numpy()
+        return dataset
+    arc = dataset["arc_length"].to_numpy()
     before = np.append(arc[:-1] == arc[1:], False)
-    found["arc_length"] = "station", np.where(before, np.nextafter(arc, -np.inf), arc), found["arc_length"].attrs
-    found["beam"] = (), found["beam"].to_numpy()[0], found["beam"].attrs
-    return found.swap_dims(station="arc_length")
+    dataset["arc_length"] = "station", np.where(before, np.nextafter(arc, -np.inf), arc), dataset["arc_length"].attrs
+    dataset["beam"] = (), dataset["beam"].to_numpy()[0], dataset["beam"].attrs
+    return dataset.swap_dims(station="arc_length")
 
 
 def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
@@ -143,7 +143,7 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
 def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
     """Return the `arrays` of a beam, or of all beams joined along their stations."""
     energy = solution.energy()
-    parts = [arrays(solution, own, energy) for own in (solution.model.beams if beam is None else (beam,))]
+    parts = [arrays(solution, one_beam, energy) for one_beam in (solution.model.beams if beam is None else (beam,))]
     return side_by_side([data for data, _ in parts]), side_by_side([coordinates for _, coordinates in parts])
 
 
@@ -154,8 +154,8 @@ def side_by_side(parts: list[Variables]) -> Variables:
     for name, (over, values, about) in joined.items():
         if "station" in over and len(parts) > 1:
             missing = [np.full((*values.shape[:-1], count), np.nan) for count in counts]
-            own = [part[name][1] if name in part else empty for part, empty in zip(parts, missing, strict=True)]
-            joined[name] = over, np.concatenate(own, axis=-1), about
+            filled = [part[name][1] if name in part else empty for part, empty in zip(parts, missing, strict=True)]
+            joined[name] = over, np.concatenate(filled, axis=-1), about
     return joined
 
 

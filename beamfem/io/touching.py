@@ -38,9 +38,9 @@ def divided(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndarr
     rows, owner = [], []
     order = np.lexsort((fraction, cell))
     inside = np.split(node[order], np.searchsorted(cell[order], np.arange(1, len(cells))))
-    for number, (own, between) in enumerate(zip(cells, inside, strict=True)):
-        stops = [own[0], *between, own[1]]
-        rows += [(a, b, own[2]) for a, b in pairwise(stops)]
+    for number, (row, between) in enumerate(zip(cells, inside, strict=True)):
+        stops = [row[0], *between, row[1]]
+        rows += [(a, b, row[2]) for a, b in pairwise(stops)]
         owner += [number] * (len(stops) - 1)
     return np.array(rows, dtype=np.int64), np.array(owner)
 
@@ -56,8 +56,8 @@ def warn_of_gaps(nodes: np.ndarray, cells: np.ndarray, reach: float) -> None:
 
     ends = np.unique(cells[:, :2])
     pairs = ends[cKDTree(nodes[ends]).query_pairs(reach, output_type="ndarray")]
-    _, beside, _ = _touches(nodes, cells, reach)
-    loose = np.unique(np.concatenate([pairs[:, 0], beside]))
+    _, touching, _ = _touches(nodes, cells, reach)
+    loose = np.unique(np.concatenate([pairs[:, 0], touching]))
     if not len(loose):
         return
     x, y = nodes[loose[0]]
@@ -81,10 +81,10 @@ def _touches(nodes: np.ndarray, cells: np.ndarray, near: float) -> tuple[np.ndar
     middle = np.where(cells[:, 2] >= 0, cells[:, 2], cells[:, 0])
     rise = np.abs(_cross(chord, nodes[middle] - start)) / length
     within = cKDTree(nodes[ends]).query_ball_point(0.5 * (start + end), 0.5 * length + rise + near)
-    cell = np.repeat(np.arange(len(cells)), [len(found) for found in within])
+    cell = np.repeat(np.arange(len(cells)), [len(hits) for hits in within])
     node = ends[np.concatenate(within).astype(np.int64)]
-    own = (node == cells[cell, 0]) | (node == cells[cell, 1])
-    cell, node = cell[~own], node[~own]
+    at_end = (node == cells[cell, 0]) | (node == cells[cell, 1])
+    cell, node = cell[~at_end], node[~at_end]
     away = nodes[node] - start[cell]
     fraction = np.einsum("ni,ni->n", away, chord[cell]) / length[cell] ** 2
     off = _cross(chord[cell], away) / length[cell]

@@ -70,8 +70,8 @@ def _supports(model: Model) -> Iterator[Vertices]:
     """Yield one vertex for each point that is supported, since its reaction is that of all supports there."""
     at_node: dict[tuple[int, int], list[PointSupport]] = {}
     for support in model.point_supports:
-        own, fraction = support.point.beam, support.point.fraction
-        at_node.setdefault((id(own), model.mesh_of(support.point).node_at(fraction)), []).append(support)
+        beam, fraction = support.point.beam, support.point.fraction
+        at_node.setdefault((id(beam), model.mesh_of(support.point).node_at(fraction)), []).append(support)
     for supports in at_node.values():
         kind = " + ".join(dict.fromkeys(type(support).__name__ for support in supports))
         fixed = _fixed(supports)
@@ -93,14 +93,14 @@ def _fixed(supports: list[PointSupport]) -> _Values:
                 prescribed[DIRECTIONS.index(name)] = 1.0
         for name, value in support.springs().items():
             stiffness[DIRECTIONS.index(name)] += value
-    return {name: each for name, each in (("prescribed", prescribed), ("stiffness", stiffness)) if each.any()}
+    return {name: array for name, array in (("prescribed", prescribed), ("stiffness", stiffness)) if array.any()}
 
 
 def _reaction(supports: list[PointSupport], fixed: _Values) -> Callable[["Solution"], _Values]:
     def values(part: "Solution") -> _Values:
-        found = reaction_of(part, supports)[:, None]
-        constant = {name: np.tile(each, (len(part), 1, 1)) for name, each in fixed.items()}
-        return {"force": flat(found[..., :2]), "moment": found[..., 2:], **constant}
+        reactions = reaction_of(part, supports)[:, None]
+        constant = {name: np.tile(array, (len(part), 1, 1)) for name, array in fixed.items()}
+        return {"force": flat(reactions[..., :2]), "moment": reactions[..., 2:], **constant}
 
     return values
 
@@ -184,7 +184,7 @@ def _connectors(model: Model) -> Iterator[Vertices]:
 
 def _of_connector(connector: Contribution, number: int) -> Callable[["Solution"], _Values]:
     def values(part: "Solution") -> _Values:
-        found = part.connector_force(connector)[:, number : number + 1]
-        return {"force": flat(found[..., :2]), "moment": found[..., 2:]}
+        forces = part.connector_force(connector)[:, number : number + 1]
+        return {"force": flat(forces[..., :2]), "moment": forces[..., 2:]}
 
     return values

@@ -51,14 +51,14 @@ def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_wri
     for first in range(0, steps, chunk):
         rows = slice(first, min(first + chunk, steps))
         for array, values in cells.arrays(solution, rows).items():
-            place = root if array == "points" else point_data
+            group = root if array == "points" else point_data
             key = "Points" if array == "points" else array
-            if key not in place:
+            if key not in group:
                 tail = values.shape[2:]
                 size = max(
                     1, min(_CHUNK_BYTES // (values.itemsize * int(np.prod(tail, dtype=int))), steps * cells.points)
                 )
-                place.create_dataset(
+                group.create_dataset(
                     key,
                     (steps * cells.points, *tail),
                     values.dtype,
@@ -67,9 +67,9 @@ def _write(root: Any, solution: "Solution", cells: Grid, chunk: int, require_wri
                     shuffle=True,
                 )
                 if array in UNITS:
-                    place[key].attrs["units"] = cells.unit(UNITS[array])
+                    group[key].attrs["units"] = cells.unit(UNITS[array])
             flat = values.reshape(-1, *values.shape[2:])
-            place[key][first * cells.points : first * cells.points + len(flat)] = flat
+            group[key][first * cells.points : first * cells.points + len(flat)] = flat
         root.file.flush()
         require_written()
     _write_steps(root.create_group("Steps"), solution, cells, list(point_data), list(cell_data), name)

@@ -39,10 +39,10 @@ def band(half_width: int) -> Band:
 @operation
 def push(build: Build, window: Value, count: Value, value: Value) -> None:
     """Move the numbers of a window one place down, and put a value at its end."""
-    places = [build.place(window, Value(WHOLE, WHOLE.llvm(place))) for place in range(count.llvm.constant)]
-    for to, source in pairwise(places):
+    addresses = [build.place(window, Value(WHOLE, WHOLE.llvm(index))) for index in range(count.llvm.constant)]
+    for to, source in pairwise(addresses):
         build.builder.store(build.builder.load(source), to)
-    build.builder.store(value.llvm, places[-1])
+    build.builder.store(value.llvm, addresses[-1])
 
 
 @cache

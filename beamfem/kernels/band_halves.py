@@ -48,13 +48,13 @@ def band_halves(w: int) -> BandHalves:
         """Store whole blocks of rows; way -1: first is the last entry of the matrix, and all is counted backwards."""
         space = room(entries)
         for block in range(start // BLOCK, stop // BLOCK):
-            own = at(first, way * block * BLOCK * width)
+            rows = at(first, way * block * BLOCK * width)
             for i in range(BLOCK * width):
-                space[i] = own[way * i]
-            above = at(own, way * BLOCK * w)
+                space[i] = rows[way * i]
+            above = at(rows, way * BLOCK * w)
             for row in range(BLOCK):
                 for j in range(w):
-                    own[way * (row * w + j)] = space[row * width + j]
+                    rows[way * (row * w + j)] = space[row * width + j]
                 for j in range(w + 1):
                     above[way * (row * (w + 1) + j)] = space[row * width + w + j]
 
@@ -142,8 +142,8 @@ def band_halves(w: int) -> BandHalves:
             if stop == other:
                 for i in range(middle, middle + w):
                     space[i] = abs(ab[i * width + w])
-            bottom, own = at(ab, n * width - 1), at(space, middle + w)
-            worst = _up(other + 2 * w, other, start, stop, w, 0, at(reach, 2 * n - 1), bottom, ab, own)
+            bottom, part_space = at(ab, n * width - 1), at(space, middle + w)
+            worst = _up(other + 2 * w, other, start, stop, w, 0, at(reach, 2 * n - 1), bottom, ab, part_space)
             _store(-1, start, stop, bottom)
         else:
             worst = _factor_middle(m, ab, space)

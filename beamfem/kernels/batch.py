@@ -23,6 +23,6 @@ def rows_of(nodes, vectors, points, gathered, table_rows):
     x = t + table_rows
     h = x + POINT_ROWS
     z = h + 21 * points
-    own = z + 6 * size * points
-    k = own + size * size
-    return body, e, f, g, t, x, h, z, own, k, k + 4 * slots * slots
+    pair = z + 6 * size * points
+    k = pair + size * size
+    return body, e, f, g, t, x, h, z, pair, k, k + 4 * slots * slots

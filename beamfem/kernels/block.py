@@ -49,10 +49,10 @@ class Imposed(NamedTuple):
 
     def at(self, factors: np.ndarray) -> np.ndarray:
         """Return the measures (ne, nq, ns) imposed by loads with given factors (k,)."""
-        own = np.append(factors, 0.0)[self.load]
-        result = np.einsum("me,meqs->eqs", own, self.first)
+        weights = np.append(factors, 0.0)[self.load]
+        result = np.einsum("me,meqs->eqs", weights, self.first)
         if self.second.size:
-            result += np.einsum("me,ke,mkeqs->eqs", own, own, self.second)
+            result += np.einsum("me,ke,mkeqs->eqs", weights, weights, self.second)
         return np.asarray(result)
 
     def of(self, elements: slice | np.ndarray) -> "Imposed":

@@ -90,12 +90,12 @@ class Routine:
     def fixed(self, **values: int) -> "Routine":
         """Return a routine with some arguments fixed at compile time; names that are not arguments are ignored."""
         code = self.function.__code__
-        own = tuple((name, values[name]) for name in code.co_varnames[: code.co_argcount] if name in values)
-        if not own:
+        constants = tuple((name, values[name]) for name in code.co_varnames[: code.co_argcount] if name in values)
+        if not constants:
             return self
-        if own not in self._others:
-            self._others[own] = Routine(self.function, self.kinds, self.returns, self.fastmath, own)
-        return self._others[own]
+        if constants not in self._others:
+            self._others[constants] = Routine(self.function, self.kinds, self.returns, self.fastmath, constants)
+        return self._others[constants]
 
     @property
     def loaded(self) -> bool:
@@ -115,10 +115,10 @@ class Routine:
                 code, self.compiled_here = machine.object_code(self.module()), True
                 if of_this_package:
                     cache.keep(self.name, code)
-            place = machine.linked(code)
+            address = machine.linked(code)
             self.seconds = process_time() - begun
-            vars(self)["address"] = place
-            return place
+            vars(self)["address"] = address
+            return address
 
     def module(self) -> Any:
         """Return the routine as an LLVM module, before optimisation."""

@@ -30,13 +30,13 @@ def form_matrices(group, system, count, x):
     )
     points, bends, coordinates = b[r.POINTS], b[r.BENDS], b[r.COORDINATES]
     size, slots_, rows = 2 * vectors, nodes * vectors, nodes * coordinates
-    _, e, _, _, t, _, h, z, own, k, _ = rows_of(nodes, vectors, points, gathered, b[r.TABLE_ROWS])
-    e, t, h, z, own, k = (
+    _, e, _, _, t, _, h, z, pair, k, _ = rows_of(nodes, vectors, points, gathered, b[r.TABLE_ROWS])
+    e, t, h, z, pair, k = (
         at(x, e * ROW),
         at(x, t * ROW),
         at(x, h * ROW),
         at(x, z * ROW),
-        at(x, own * ROW),
+        at(x, pair * ROW),
         at(x, k * ROW),
     )
     ck, linear = factors[0], size - turned
@@ -80,7 +80,7 @@ def form_matrices(group, system, count, x):
                     second,
                     at(director, n),
                     z,
-                    own,
+                    pair,
                 )
                 to = at(k, (rows * m + n) * coordinates * ROW)
                 _store(
@@ -92,7 +92,7 @@ def form_matrices(group, system, count, x):
                     count,
                     rows,
                     at(transform, n * gathered * ROW),
-                    own,
+                    pair,
                     to,
                 )
         _mirror(call[r.MIRROR], rows, count, k)
@@ -148,8 +148,10 @@ def add_matrices(group, system, first, count, k):
             matrix,
         )
     else:
-        own = at(wholes(b[r.COUNTED]), first)
-        _add_to_sparse(call[r.ADD_TO_SPARSE], nodes, coordinates, coordinates, count, own, slots(b[r.SLOT]), k, matrix)
+        elements = at(wholes(b[r.COUNTED]), first)
+        _add_to_sparse(
+            call[r.ADD_TO_SPARSE], nodes, coordinates, coordinates, count, elements, slots(b[r.SLOT]), k, matrix
+        )
 
 
 @routine("iiiir")
@@ -175,5 +177,5 @@ def reduce_and_add(group, system, first, count, x):
         number = at(wholes(b[r.LOAD_NUMBER]), first)
         _add_to_band(call[r.ADD_TO_BAND], nodes, size, coordinates, count, b[r.LOADS], number, half, k, matrix)
     else:
-        own = at(wholes(b[r.LOAD_ELEMENT]), first)
-        _add_to_sparse(call[r.ADD_TO_SPARSE], nodes, size, coordinates, count, own, slots(b[r.SLOT]), k, matrix)
+        elements = at(wholes(b[r.LOAD_ELEMENT]), first)
+        _add_to_sparse(call[r.ADD_TO_SPARSE], nodes, size, coordinates, count, elements, slots(b[r.SLOT]), k, matrix)

@@ -53,7 +53,7 @@ def add_elements(group, system):
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         apart = _collect(call[r.COLLECT], group, system, first, count, rows, tangent)
-        given = copied if apart == 0 else at(chunks, place[first])
+        nodal = copied if apart == 0 else at(chunks, place[first])
         stride = rows * ROW if apart == 0 else apart
         _add_inertia(
             call[r.ADD_INERTIA],
@@ -68,7 +68,7 @@ def add_elements(group, system):
             at(t, b[r.GRAVITY] * ROW),
             at(t, b[r.LENGTH] * ROW),
             body,
-            given,
+            nodal,
             f,
         )
         if predicted != 0:
@@ -78,7 +78,7 @@ def add_elements(group, system):
             second = at(t, (b[r.SECOND] + number * slots_ * bends) * ROW)
             factor = at(director, number * nodes)
             weight = at(t, (b[r.WEIGHT] + number) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, given, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
             _measure(call[r.STRAINS], count, q)
             if b[r.NATURAL] != 0:
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
@@ -96,7 +96,7 @@ def add_elements(group, system):
                 q,
             )
             if damped:
-                rate, velocity = at(q, RATE * ROW), at(given, b[r.VELOCITY] * ROW)
+                rate, velocity = at(q, RATE * ROW), at(nodal, b[r.VELOCITY] * ROW)
                 _interpolate(
                     call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, velocity, rate
                 )
@@ -117,9 +117,9 @@ def add_elements(group, system):
             if predicted != 0:
                 stress = reals(b[r.STRESS])
                 for i in range(count):
-                    known = at(stress, ((first + i) * b[r.POINTS] + number) * measures)
+                    resultants = at(stress, ((first + i) * b[r.POINTS] + number) * measures)
                     for measure in range(measures):
-                        q[(RESULTANT + measure) * ROW + i] = weight[i] * known[measure]
+                        q[(RESULTANT + measure) * ROW + i] = weight[i] * resultants[measure]
                 _measure(call[r.FORCES], count, q)
                 _spread(
                     call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g

@@ -23,18 +23,18 @@ def interpolate(nodes, vectors, bends, count, stride, slope, second, director, e
     for i in range(0, count, WIDTH):
         rx, ry, dx, dy, third_x, third_y = zeros(), zeros(), zeros(), zeros(), zeros(), zeros()
         for n in range(nodes):
-            own, table, curved = (
+            nodal, table, curved = (
                 at(e, n * stride + i),
                 at(slope, n * vectors * ROW + i),
                 at(second, n * vectors * ROW + i),
             )
             for s in range(last):
-                x, y, w = own[2 * s * ROW], own[(2 * s + 1) * ROW], table[s * ROW]
+                x, y, w = nodal[2 * s * ROW], nodal[(2 * s + 1) * ROW], table[s * ROW]
                 rx, ry = rx + w * x, ry + w * y
                 if bends != 0:
                     u = curved[s * ROW]
                     third_x, third_y = third_x + u * x, third_y + u * y
-            x, y, factor = own[2 * last * ROW], own[(2 * last + 1) * ROW], director[n]
+            x, y, factor = nodal[2 * last * ROW], nodal[(2 * last + 1) * ROW], director[n]
             dx, dy = dx + factor * x, dy + factor * y
             if bends == 0:
                 w = table[last * ROW]
@@ -52,21 +52,21 @@ def spread(nodes, vectors, bends, count, slope, second, director, q, f):
         rx, ry, dx, dy = q[i], q[ROW + i], q[2 * ROW + i], q[3 * ROW + i]
         third_x, third_y = q[4 * ROW + i], q[5 * ROW + i]
         for n in range(nodes):
-            own, table, curved = (
+            force, table, curved = (
                 at(f, 2 * n * vectors * ROW + i),
                 at(slope, n * vectors * ROW + i),
                 at(second, n * vectors * ROW + i),
             )
             for s in range(last):
                 w = table[s * ROW]
-                x, y = own[2 * s * ROW] + w * rx, own[(2 * s + 1) * ROW] + w * ry
+                x, y = force[2 * s * ROW] + w * rx, force[(2 * s + 1) * ROW] + w * ry
                 if bends != 0:
                     u = curved[s * ROW]
                     x, y = x + u * third_x, y + u * third_y
-                own[2 * s * ROW], own[(2 * s + 1) * ROW] = x, y
+                force[2 * s * ROW], force[(2 * s + 1) * ROW] = x, y
             factor = director[n]
-            x, y = own[2 * last * ROW] + factor * dx, own[(2 * last + 1) * ROW] + factor * dy
+            x, y = force[2 * last * ROW] + factor * dx, force[(2 * last + 1) * ROW] + factor * dy
             if bends == 0:
                 w = table[last * ROW]
                 x, y = x + w * third_x, y + w * third_y
-            own[2 * last * ROW], own[(2 * last + 1) * ROW] = x, y
+            force[2 * last * ROW], force[(2 * last + 1) * ROW] = x, y

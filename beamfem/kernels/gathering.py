@@ -33,15 +33,15 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
     element to element, as along a chain.
     """
     for n in range(nodes):
-        own, whole = at(place, n * stride + first), at(e, n * rows * ROW)
-        run = _run(own, count) if ordered != 0 else 0
+        offsets, whole = at(place, n * stride + first), at(e, n * rows * ROW)
+        run = _run(offsets, count) if ordered != 0 else 0
         if run > 0:
-            lanes, filled = as_rows(at(chunks, own[0])), as_rows(whole)
+            lanes, filled = as_rows(at(chunks, offsets[0])), as_rows(whole)
             for i in range(0, run, WIDTH):
                 for row in range(i, i + rows * ROW, ROW):
                     filled[row] = lanes[row]
             if run < count:
-                lanes, filled = as_rows(at(chunks, own[run])), as_rows(at(whole, run))
+                lanes, filled = as_rows(at(chunks, offsets[run])), as_rows(at(whole, run))
                 for i in range(0, count - run, WIDTH):
                     for row in range(i, i + rows * ROW, ROW):
                         filled[row] = lanes[row]
@@ -49,7 +49,7 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
             for row in range(rows):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
                 for i in range(count):
-                    to[i] = source[own[i]]
+                    to[i] = source[offsets[i]]
 
 
 @inlined
@@ -58,25 +58,25 @@ def _fill_tables(b, first, count, part):
 
     Elements of one class share a table, so the next batch of this class, or the next evaluation, need not copy it.
     """
-    rows, own, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
+    rows, classes, t = b[r.TABLE_ROWS], at(wholes(b[r.CLASS]), first), at(reals(b[r.SPACE]), part * ROW)
     uniform = True
     for i in range(1, count):
-        if own[i] != own[0]:
+        if classes[i] != classes[0]:
             uniform = False
     # a class, or a range of elements; groups that share a workspace have different tables
-    filled, known = own[0] if uniform else -1 - first, wholes(b[r.FILLED])
-    if known[0] == b[r.TABLES] and known[1] == filled and known[2] >= count:
+    filled, contents = classes[0] if uniform else -1 - first, wholes(b[r.FILLED])
+    if contents[0] == b[r.TABLES] and contents[1] == filled and contents[2] >= count:
         return
-    known[0], known[1], known[2] = b[r.TABLES], filled, count
+    contents[0], contents[1], contents[2] = b[r.TABLES], filled, count
     if uniform:
-        table = at(reals(b[r.TABLES]), own[0] * rows)
+        table = at(reals(b[r.TABLES]), classes[0] * rows)
         lanes = as_rows(t)
         for row in range(rows):
             for i in range(0, count, WIDTH):
                 lanes[row * ROW + i] = table[row]
         return
     for i in range(count):
-        table = at(reals(b[r.TABLES]), own[i] * rows)
+        table = at(reals(b[r.TABLES]), classes[i] * rows)
         for row in range(rows):
             t[row * ROW + i] = table[row]
 
@@ -85,10 +85,10 @@ def _fill_tables(b, first, count, part):
 def _fill_body(count, beams, body, rows):
     """Copy acceleration of gravity and load per length (beams, 4) of the beam of each element to rows (4, ROW)."""
     if beams[count - 1] == beams[0]:  # elements of a beam have consecutive numbers
-        lanes, own = as_rows(rows), at(body, 4 * beams[0])
+        lanes, values = as_rows(rows), at(body, 4 * beams[0])
         for part in range(4):
             for i in range(part * ROW, part * ROW + count, WIDTH):
-                lanes[i] = own[part]
+                lanes[i] = values[part]
         return
     for i in range(count):
         beam = 4 * beams[i]
@@ -115,8 +115,8 @@ def collect(group, system, first, count, rows, copied):
     if copied == 0 and b[r.ORDERED] != 0:
         apart, begin = place[elements + first] - place[first], place[first]
         for n in range(nodes):
-            own = at(place, n * elements + first)
-            if own[0] - begin != n * apart or own[count - 1] - own[0] != count - 1:
+            offsets = at(place, n * elements + first)
+            if offsets[0] - begin != n * apart or offsets[count - 1] - offsets[0] != count - 1:
                 apart = 0
         if apart != 0:
             return apart
@@ -129,15 +129,15 @@ def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
     """Add the forces f (nodes, size, ROW) of a batch to the rows of its nodes in the chunks, from `row` on."""
     small_code()
     for n in range(nodes):
-        own, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
-        run = _run(own, count) if ordered != 0 else 0
+        offsets, forces, sums = at(place, n * stride + first), at(f, n * size * ROW), at(chunks, row * ROW)
+        run = _run(offsets, count) if ordered != 0 else 0
         if run > 0:
-            lanes, added = as_rows(forces), as_rows(at(sums, own[0]))
+            lanes, added = as_rows(forces), as_rows(at(sums, offsets[0]))
             for part in range(size):
                 for i in range(0, run, WIDTH):
                     added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), run - i)
             if run < count:
-                lanes, added = as_rows(at(forces, run)), as_rows(at(sums, own[run]))
+                lanes, added = as_rows(at(forces, run)), as_rows(at(sums, offsets[run]))
                 for part in range(size):
                     for i in range(0, count - run, WIDTH):
                         added[part * ROW + i] += merged(lanes[part * ROW + i], zeros(), count - run - i)
@@ -145,4 +145,4 @@ def scatter(nodes, count, first, stride, ordered, place, size, row, f, chunks):
             for part in range(size):
                 source, to = at(forces, part * ROW), at(sums, part * ROW)
                 for i in range(count):
-                    to[own[i]] += source[i]
+                    to[offsets[i]] += source[i]

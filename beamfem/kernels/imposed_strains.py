@@ -13,6 +13,6 @@ def release(first, count, points, number, measures, natural, x):
     number: of the point; x: rows of the point, see `point`.
     """
     for i in range(count):
-        own = at(natural, ((first + i) * points + number) * measures)
+        strains = at(natural, ((first + i) * points + number) * measures)
         for row in range(measures):
-            x[(STRAIN + row) * ROW + i] -= own[row]
+            x[(STRAIN + row) * ROW + i] -= strains[row]

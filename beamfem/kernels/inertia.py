@@ -20,21 +20,21 @@ def add_inertia(nodes, vectors, count, stride, loaded, moving, apart, mass, grav
     slots, last = nodes * vectors, vectors - 1
     for i in range(0, count, WIDTH):
         for slot in range(slots):
-            own_vector = slot % vectors
+            vector = slot % vectors
             x, y = zeros(), zeros()
             if loaded != 0:
-                m, own = gravity[slot * ROW + i], length[slot * ROW + i]
-                x = -body[i] * m - body[2 * ROW + i] * own
-                y = -body[ROW + i] * m - body[3 * ROW + i] * own
+                m, weight = gravity[slot * ROW + i], length[slot * ROW + i]
+                x = -body[i] * m - body[2 * ROW + i] * weight
+                y = -body[ROW + i] * m - body[3 * ROW + i] * weight
             if moving != 0:
-                begin = last if apart != 0 and own_vector == last else 0
-                end = last if apart != 0 and own_vector < last else vectors
+                begin = last if apart != 0 and vector == last else 0
+                end = last if apart != 0 and vector < last else vectors
                 for n in range(nodes):
                     masses = at(mass, (slot * slots + n * vectors) * ROW + i)
-                    its = at(e, n * stride + 2 * vectors * ROW + i)
+                    acceleration = at(e, n * stride + 2 * vectors * ROW + i)
                     for s in range(begin, end):
                         m = masses[s * ROW]
-                        x, y = x + m * its[2 * s * ROW], y + m * its[(2 * s + 1) * ROW]
+                        x, y = x + m * acceleration[2 * s * ROW], y + m * acceleration[(2 * s + 1) * ROW]
             f[2 * slot * ROW + i], f[(2 * slot + 1) * ROW + i] = x, y
 
 
@@ -43,9 +43,9 @@ def add_scaled(rows, count, factor, source, to):
     """Add the rows of `source` times a factor to those of `to`."""
     small_code()
     for row in range(rows):
-        own, its = at(source, row * ROW), at(to, row * ROW)
+        terms, sums = at(source, row * ROW), at(to, row * ROW)
         for i in range(0, count, WIDTH):
-            its[i] += factor * own[i]
+            sums[i] += factor * terms[i]
 
 
 @routine("iiiiiidvvvv", fastmath=FAST)
@@ -61,7 +61,7 @@ def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
     for m in range(nodes):
         for n in range(nodes):
             block = at(k, (rows * m * coordinates + n * coordinates) * ROW)
-            own, its = at(b, n * stride * ROW), at(c, m * stride * ROW)
+            b_n, c_m = at(b, n * stride * ROW), at(c, m * stride * ROW)
             for t in range(vectors):
                 for s in range(vectors):
                     value = at(mass, ((n * vectors + s) * slots + m * vectors + t) * ROW)
@@ -74,7 +74,7 @@ def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
                     elif s < linear:
                         for column in range(turning):
                             x = at(block, ((2 * linear + column) * rows + 2 * s) * ROW)
-                            cx = at(its, (2 * (t - linear) * turning + column) * ROW)
+                            cx = at(c_m, (2 * (t - linear) * turning + column) * ROW)
                             cy = at(cx, turning * ROW)
                             for i in range(0, count, WIDTH):
                                 x[i] += value[i] * cx[i]
@@ -83,7 +83,7 @@ def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
                         for row in range(turning):
                             x = at(block, (2 * t * rows + 2 * linear + row) * ROW)
                             y = at(x, rows * ROW)
-                            bx = at(own, (2 * (s - linear) * turning + row) * ROW)
+                            bx = at(b_n, (2 * (s - linear) * turning + row) * ROW)
                             by = at(bx, turning * ROW)
                             for i in range(0, count, WIDTH):
                                 x[i] += ca * value[i] * bx[i]
@@ -92,9 +92,9 @@ def add_mass(nodes, vectors, turned, turning, count, stride, ca, mass, b, c, k):
                         for column in range(turning):
                             for row in range(turning):
                                 to = at(block, ((2 * linear + column) * rows + 2 * linear + row) * ROW)
-                                bx = at(own, (2 * (s - linear) * turning + row) * ROW)
+                                bx = at(b_n, (2 * (s - linear) * turning + row) * ROW)
                                 by = at(bx, turning * ROW)
-                                cx = at(its, (2 * (t - linear) * turning + column) * ROW)
+                                cx = at(c_m, (2 * (t - linear) * turning + column) * ROW)
                                 cy = at(cx, turning * ROW)
                                 for i in range(0, count, WIDTH):
                                     to[i] += value[i] * (bx[i] * cx[i] + by[i] * cy[i])

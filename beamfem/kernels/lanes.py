@@ -44,15 +44,15 @@ def largest(build: Build, value: Value) -> Value:
     name = f"llvm.vector.reduce.smax.v{WIDTH}i64"
     functions, kind = build.builder.module.globals, ir.FunctionType(WHOLE.llvm, [_BITS])
     reduce = functions.get(name) or ir.Function(build.builder.module, kind, name)
-    found = build.builder.call(reduce, [build.builder.bitcast(value.llvm, _BITS)])
-    return Value(NUMBER, build.builder.bitcast(found, NUMBER.llvm))
+    bits = build.builder.call(reduce, [build.builder.bitcast(value.llvm, _BITS)])
+    return Value(NUMBER, build.builder.bitcast(bits, NUMBER.llvm))
 
 
 @operation
 def merged(build: Build, value: Value, other: Value, count: Value) -> Value:
     """Return the first `count` lanes of `value` followed by the remaining lanes of `other`."""
-    places = ir.Constant(ir.VectorType(ir.IntType(64), WIDTH), list(range(WIDTH)))
-    inside = build.builder.icmp_signed("<", places, build.same(count.llvm))
+    lanes = ir.Constant(ir.VectorType(ir.IntType(64), WIDTH), list(range(WIDTH)))
+    inside = build.builder.icmp_signed("<", lanes, build.same(count.llvm))
     return Value(LANES, build.builder.select(inside, build.converted(value, LANES), build.converted(other, LANES)))
 
 
@@ -61,7 +61,7 @@ def gathered(build: Build, values: Value, places: Value) -> Value:
     """Return the entries of `values` at the first `WIDTH` indices in `places`."""
     builder, lanes = build.builder, ir.Constant(LANES.llvm, ir.Undefined)
     for lane in range(WIDTH):
-        place = builder.load(builder.gep(places.llvm, [ir.IntType(64)(lane)], inbounds=True))
-        number = builder.load(builder.gep(values.llvm, [place], inbounds=True))
+        index = builder.load(builder.gep(places.llvm, [ir.IntType(64)(lane)], inbounds=True))
+        number = builder.load(builder.gep(values.llvm, [index], inbounds=True))
         lanes = builder.insert_element(lanes, number, ir.IntType(32)(lane))
     return Value(LANES, lanes)

@@ -31,9 +31,9 @@ def four_resultants(group, system, first, number, count, tangent, weight, c, ref
         s[3 * ROW + i] = w * (c03 * a0 + c13 * a1 + c23 * a2 + c[9 * ROW + i] * a3)
     if tangent != 0:
         for k in range(10):
-            to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
+            to, entry = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
             for i in range(0, count, WIDTH):
-                to[i] = weight[i] * own[i]
+                to[i] = weight[i] * entry[i]
 
 
 @routine("iiiiiivvvv", fastmath=FAST)
@@ -58,9 +58,9 @@ def six_resultants(group, system, first, number, count, tangent, weight, c, refe
         s[5 * ROW + i] = w * (c05 * a0 + c15 * a1 + c25 * a2 + c35 * a3 + c45 * a4 + c[20 * ROW + i] * a5)
     if tangent != 0:
         for k in range(21):
-            to, own = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
+            to, entry = at(x, (STIFFNESS + k) * ROW), at(c, k * ROW)
             for i in range(0, count, WIDTH):
-                to[i] = weight[i] * own[i]
+                to[i] = weight[i] * entry[i]
 
 
 @routine("iiddvvvv", fastmath=FAST)
@@ -72,15 +72,15 @@ def add_viscous(count, measures, ck, cv, weight, c, time, x):
     rate, s, stiffness, pair = at(x, RATE * ROW), at(x, RESULTANT * ROW), at(x, STIFFNESS * ROW), 0
     for row in range(measures):
         for column in range(row, measures):
-            own, to = at(c, pair * ROW), at(stiffness, pair * ROW)
-            one, other = at(s, row * ROW), at(s, column * ROW)
-            its, own_rate = at(rate, column * ROW), at(rate, row * ROW)
+            entry, to = at(c, pair * ROW), at(stiffness, pair * ROW)
+            row_stress, column_stress = at(s, row * ROW), at(s, column * ROW)
+            column_rate, row_rate = at(rate, column * ROW), at(rate, row * ROW)
             for i in range(0, count, WIDTH):
-                one[i] += weight[i] * time[i] * own[i] * its[i]
+                row_stress[i] += weight[i] * time[i] * entry[i] * column_rate[i]
             if column != row:
                 for i in range(0, count, WIDTH):
-                    other[i] += weight[i] * time[i] * own[i] * own_rate[i]
+                    column_stress[i] += weight[i] * time[i] * entry[i] * row_rate[i]
             if ck != 0.0 or cv != 0.0:
                 for i in range(0, count, WIDTH):
-                    to[i] = ck * to[i] + cv * weight[i] * time[i] * own[i]
+                    to[i] = ck * to[i] + cv * weight[i] * time[i] * entry[i]
             pair += 1

@@ -42,9 +42,9 @@ def _is_inside_out(s, call, system):
     """Return whether the last state has r0' x d <= 0 at a quadrature point: no motion leads there."""
     groups, smallest = wholes(s[r.GROUP_RECORDS]), 1.0
     for group in range(s[r.GROUPS]):
-        own = wholes(groups[group])
-        if own[r.SHARED] != 0:  # by now other nodes are in the chunks
-            _place(wholes(own[r.ROUTINES])[r.PLACE_NODES], groups[group], system, 0)
+        record = wholes(groups[group])
+        if record[r.SHARED] != 0:  # by now other nodes are in the chunks
+            _place(wholes(record[r.ROUTINES])[r.PLACE_NODES], groups[group], system, 0)
         smallest = min(smallest, _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))
     return not smallest > 0.0
 
@@ -91,7 +91,7 @@ def march(system, solver, calls):
         reals(s[r.FACTORS]),
         reals(b[r.STEP]),
     )
-    groups, bodies, values, given, naturals = (
+    groups, bodies, values, load_values, naturals = (
         wholes(s[r.GROUP_RECORDS]),
         b[r.BODIES],
         wholes(s[r.VALUES]),
@@ -108,7 +108,7 @@ def march(system, solver, calls):
         s[r.BODY] = bodies + 8 * step * b[r.BODY_STRIDE]
         for group in range(s[r.GROUPS]):
             loads = wholes(groups[group])[r.LOADS]
-            values[group] = given[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
+            values[group] = load_values[group] + (24 * step * loads if b[r.LOADS_VARY] != 0 else 0)
             if b[r.NATURALS_VARY] != 0 and naturals[group] != 0:
                 record = wholes(groups[group])
                 strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
@@ -143,8 +143,8 @@ def march(system, solver, calls):
             if iteration == 1:
                 first_size = max(size, statistics[8])
                 far = 1 if size > motion_steps.FAR else 0
-            own = 1 if renew else 0
-            done = _judge(iteration, full, own, far, size, last, first_size, limits[0], rate, at(statistics, 9))
+            new_tangent = 1 if renew else 0
+            done = _judge(iteration, full, new_tangent, far, size, last, first_size, limits[0], rate, at(statistics, 9))
             if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call, system):
                 done = -1
             fresh = done == 2

@@ -71,18 +71,18 @@ def add_node_rates(first, count, linear, turned, turning, stride, dof, step, tra
     step (n,): rates p'; transform (turned, turning, ROW): b, see `reduction`; dof (coordinates, stride).
     """
     for row in range(linear):
-        own, to = at(dof, row * stride + first), at(rates, row * ROW)
+        dofs, to = at(dof, row * stride + first), at(rates, row * ROW)
         for i in range(count):
-            to[i] = step[own[i]]
+            to[i] = step[dofs[i]]
     for part in range(turned):
         to = at(rates, (linear + part) * ROW)
         for i in range(count):
             to[i] = 0.0
         for column in range(turning):
-            own, factor = at(dof, (linear + column) * stride + first), at(transform, (part * turning + column) * ROW)
+            dofs, factor = at(dof, (linear + column) * stride + first), at(transform, (part * turning + column) * ROW)
             for i in range(count):
-                if own[i] >= 0:
-                    to[i] += factor[i] * step[own[i]]
+                if dofs[i] >= 0:
+                    to[i] += factor[i] * step[dofs[i]]
 
 
 @routine("iii")
@@ -155,12 +155,12 @@ def predict_resultants(group, system):
             _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
             _measure(call[r.RATES], count, q)
             for row in range(measures):
-                strain, its = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
+                strain, rate_row = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                 for i in range(count):
-                    strain[i] += its[i]
+                    strain[i] += rate_row[i]
                 if damped:
                     for i in range(count):
-                        strain[i] += time[i] * cv * its[i]
+                        strain[i] += time[i] * cv * rate_row[i]
             if damped:
                 moving = at(e, b[r.VELOCITY] * ROW)
                 _interpolate(
@@ -168,9 +168,9 @@ def predict_resultants(group, system):
                 )
                 _measure(call[r.RATES], count, q)
                 for row in range(measures):
-                    strain, its = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
+                    strain, rate_row = at(q, (STRAIN + row) * ROW), at(rate, row * ROW)
                     for i in range(count):
-                        strain[i] += time[i] * its[i]
+                        strain[i] += time[i] * rate_row[i]
             if b[r.NATURAL] != 0:
                 _release(call[r.RELEASE], first, count, b[r.POINTS], number, measures, reals(b[r.NATURAL]), q)
             _law(

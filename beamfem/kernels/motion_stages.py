@@ -23,10 +23,10 @@ def predict(part, system, solver, calls):
     """Start a step; the order of the extrapolation stands behind the rule."""
     small_code()
     s, b = wholes(system), wholes(solver)
-    own, rule = bounds_of(b, part), reals(b[r.RULE])
+    bounds, rule = bounds_of(b, part), reals(b[r.RULE])
     motion_steps.predict_part(
-        own[r.FIRST_COORDINATE],
-        own[r.END_COORDINATE],
+        bounds[r.FIRST_COORDINATE],
+        bounds[r.END_COORDINATE],
         s[r.SIZE],
         b[r.PRESCRIBED],
         rule[5],
@@ -90,10 +90,10 @@ def fill_right(s, b, first, end):
     """Fill the right-hand side with the residual of unknown coordinates, negative."""
     residual, right = reals(s[r.RESIDUAL]), reals(b[r.RIGHT])
     if b[r.FIRST_FREE] >= 0:
-        lanes, given = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
+        lanes, source = as_rows(right), as_rows(at(residual, b[r.FIRST_FREE]))
         whole = first + (end - first) // WIDTH * WIDTH
         for i in range(first, whole, WIDTH):
-            lanes[i] = -given[i]
+            lanes[i] = -source[i]
         for i in range(whole, end):
             right[i] = -residual[b[r.FIRST_FREE] + i]
     else:
@@ -150,7 +150,7 @@ def correct(part, system, solver, calls):
 def complete(part, system, solver, calls):
     """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
     s, b = wholes(system), wholes(solver)
-    own, n, rule, known = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
+    bounds, n, rule, extrapolation = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
     state, before, differences, scale = (
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
@@ -159,8 +159,8 @@ def complete(part, system, solver, calls):
     )
     change = motion_steps.complete_part(
         part,
-        own[r.FIRST_COORDINATE],
-        own[r.END_COORDINATE],
+        bounds[r.FIRST_COORDINATE],
+        bounds[r.END_COORDINATE],
         n,
         b[r.PRESCRIBED],
         state,
@@ -169,8 +169,8 @@ def complete(part, system, solver, calls):
         scale,
         wholes(b[r.PRESCRIBED_DOFS]),
         rule,
-        known,
+        extrapolation,
     )
     if part == b[r.PARTS] - 1:
-        motion_steps.best_order(b[r.PARTS], n, state, before, differences, scale, rule, known)
+        motion_steps.best_order(b[r.PARTS], n, state, before, differences, scale, rule, extrapolation)
     return change

@@ -118,17 +118,17 @@ def correct_part(
     lanes, weight, rows = as_rows(source), as_rows(inverse_scale), as_rows(state)
     whole = begin + (end - begin) // WIDTH * WIDTH
     for i in range(begin, whole, WIDTH):
-        by = lanes[i - offset]
-        size = larger(size, by * weight[i])
-        rows[i] += by
-        rows[n + i] += to_velocity * by
-        rows[2 * n + i] += to_acceleration * by
+        correction = lanes[i - offset]
+        size = larger(size, correction * weight[i])
+        rows[i] += correction
+        rows[n + i] += to_velocity * correction
+        rows[2 * n + i] += to_acceleration * correction
     for i in range(whole, end):
-        last = source[i - offset]
-        rest = larger_of(rest, abs(last * inverse_scale[i]))
-        state[i] += last
-        state[n + i] += to_velocity * last
-        state[2 * n + i] += to_acceleration * last
+        value = source[i - offset]
+        rest = larger_of(rest, abs(value * inverse_scale[i]))
+        state[i] += value
+        state[n + i] += to_velocity * value
+        state[2 * n + i] += to_acceleration * value
     return larger_of(largest(size), rest)
 
 
@@ -190,17 +190,17 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     for k in range(MOST + 1):
         lanes[errors + k * WIDTH] = 0.0
     for i in range(first, whole, WIDTH):
-        a, last_a, own = now[2 * n + i], then[2 * n + i], weight[i]
+        a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
         now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
         change = a - last_a
-        largest_change = larger(largest_change, change * own)
+        largest_change = larger(largest_change, change * factor)
         for k in range(top + 1):
-            size = change * own
+            size = change * factor
             lanes[errors + k * WIDTH] += size * size
             if k < MOST:
-                kept = lanes[k * length + i]
+                earlier = lanes[k * length + i]
                 lanes[k * length + i] = change
-                change -= kept
+                change -= earlier
     for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
@@ -290,9 +290,9 @@ def turns_since(group, first, stride, kept, turns):
     chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
     while begin < nodes:
         d = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW)
-        own, its = at(kept, first + begin), at(turns, first + begin)
+        offset, its = at(kept, first + begin), at(turns, first + begin)
         for i in range(min(LANES, nodes - begin)):
-            x, y, x0, y0 = d[i], d[ROW + i], own[i], own[stride + i]
+            x, y, x0, y0 = d[i], d[ROW + i], offset[i], offset[stride + i]
             c, s = x * x0 + y * y0, y * x0 - x * y0
             inverse = 1.0 / math.sqrt(c * c + s * s)
             its[i], its[stride + i] = c * inverse, s * inverse

@@ -15,15 +15,15 @@ def take_step(n, step, p, scale):
     """Add a step (n,) to p; return its largest component relative to scale, NaN if one is NaN."""
     change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(scale), zeros(), n // WIDTH * WIDTH
     for i in range(0, whole, WIDTH):
-        own = change[i]
-        lanes[i] += own
-        sizes = larger(sizes, own / weight[i])
+        correction = change[i]
+        lanes[i] += correction
+        sizes = larger(sizes, correction / weight[i])
     size = largest(sizes)
     for i in range(whole, n):
         p[i] += step[i]
-        last = abs(step[i]) / scale[i]
-        if not last <= size and size == size:  # NaN counts as the largest
-            size = last
+        relative = abs(step[i]) / scale[i]
+        if not relative <= size and size == size:  # NaN counts as the largest
+            size = relative
     return size
 
 
@@ -66,9 +66,9 @@ def iterate(system, solver, calls):
         if done:
             break
         if in_a_row >= 0 and not first:
-            whole, lanes, given = unknown // WIDTH * WIDTH, as_rows(right), as_rows(at(residual, in_a_row))
+            whole, lanes, source = unknown // WIDTH * WIDTH, as_rows(right), as_rows(at(residual, in_a_row))
             for i in range(0, whole, WIDTH):
-                lanes[i] = -given[i]
+                lanes[i] = -source[i]
             for i in range(whole, unknown):
                 right[i] = -residual[in_a_row + i]
         else:

@@ -20,10 +20,10 @@ def _clear_forces(b, chunks):
     for chunk in range(last + 1):
         count = LANES if chunk < last else b[r.NODES] - last * LANES
         rows = b[r.PREDICTED_FORCE] + 2 * b[r.VECTORS] - b[r.FORCE]
-        own = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + b[r.FORCE]) * ROW))
+        forces = as_rows(at(chunks, (chunk * b[r.NODE_ROWS] + b[r.FORCE]) * ROW))
         for i in range(0, count, WIDTH):
             for row in range(i, i + rows * ROW, ROW):
-                own[row] = 0.0
+                forces[row] = 0.0
 
 
 @routine("iii")
@@ -56,7 +56,7 @@ def place_nodes(group, system, moving):
             linear = size - 2
         elif kind in (STRETCH, SHEAR_RIGID):
             linear = size - 4
-        own = 2 if kind == STRETCH else 1
+        polar = 2 if kind == STRETCH else 1
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
@@ -71,17 +71,17 @@ def place_nodes(group, system, moving):
                 if moving != 0:
                     _rotate(call[r.ROTATE], count, c, t, at(chunk, (b[r.ACCELERATION] + size - 2) * ROW))
             elif kind != GRADIENTS:
-                take(first, count, own, stride, at(source, linear * stride), p, True, x)
+                take(first, count, polar, stride, at(source, linear * stride), p, True, x)
                 if moving != 0:
-                    take(first, count, own, stride, at(source, linear * stride), v, True, at(x, own * ROW))
-                    take(first, count, own, stride, at(source, linear * stride), a, True, at(x, 2 * own * ROW))
+                    take(first, count, polar, stride, at(source, linear * stride), v, True, at(x, polar * ROW))
+                    take(first, count, polar, stride, at(source, linear * stride), a, True, at(x, 2 * polar * ROW))
                 else:
-                    _clear(call[r.CLEAR], 2 * own, count, at(x, own * ROW))
-                directions = at(x, 3 * own * ROW)
+                    _clear(call[r.CLEAR], 2 * polar, count, at(x, polar * ROW))
+                directions = at(x, 3 * polar * ROW)
                 _turn(
                     call[r.TURN],
                     count,
-                    at(x, (own - 1) * ROW),
+                    at(x, (polar - 1) * ROW),
                     at(frame, first),
                     at(frame, stride + first),
                     at(frame, 2 * stride + first),
@@ -102,12 +102,12 @@ def place_nodes(group, system, moving):
                 corner = (turned - parts) * turning + linear - (size - turned)
                 for part in range(parts):
                     to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
-                    put(own, count, last, at(result, (2 * parts + part * own) * ROW), to)
+                    put(polar, count, last, at(result, (2 * parts + part * polar) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
                     _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
                     for part in range(parts):
                         to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
-                        put(own, count, last, at(result, part * own * ROW), to)
+                        put(polar, count, last, at(result, part * polar * ROW), to)
             first += count
 
 
@@ -158,18 +158,18 @@ def finish_nodes(group, system):
         if kind in (GRADIENTS, TURNED_GRADIENTS):
             continue
         linear = size - 2 if kind == ROTATION else size - 4
-        own = 2 if kind == STRETCH else 1
+        polar = 2 if kind == STRETCH else 1
         while first < end:
             lane = first % LANES
             count = min(LANES - lane, end - first)
             last = lane + count == LANES or first + count == stride
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
-            take(first, count, own, stride, at(source, linear * stride), p, True, x)
-            directions, parts = at(x, 3 * own * ROW), size - linear
+            take(first, count, polar, stride, at(source, linear * stride), p, True, x)
+            directions, parts = at(x, 3 * polar * ROW), size - linear
             _turn(
                 call[r.TURN],
                 count,
-                at(x, (own - 1) * ROW),
+                at(x, (polar - 1) * ROW),
                 at(frame, first),
                 at(frame, stride + first),
                 at(frame, 2 * stride + first),
@@ -178,7 +178,7 @@ def finish_nodes(group, system):
             put(parts, count, True, at(chunk, (forces + linear) * ROW), at(directions, 3 * ROW))
             _place(call[r.PLACE_KIND + 3 * (kind - 1) + 2], count, x)
             put(
-                own * own,
+                polar * polar,
                 count,
                 last,
                 at(directions, (3 + parts) * ROW),
@@ -190,7 +190,7 @@ def finish_nodes(group, system):
                 count,
                 b[r.NODES_PER_ELEMENT],
                 linear,
-                own,
+                polar,
                 stride,
                 b[r.CURVATURE],
                 b[r.COORDINATES],

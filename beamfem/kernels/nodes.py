@@ -47,24 +47,24 @@ def take(first, count, coordinates, stride, source, values, last, rows):
     rows, so that whole lanes may be written.
     """
     for row in range(coordinates):
-        own, to = at(source, row * stride + first), at(rows, row * ROW)
+        numbers, to = at(source, row * stride + first), at(rows, row * ROW)
         if last:
             lanes = as_rows(to)
             for i in range(0, count, WIDTH):
-                lanes[i] = gathered(values, at(own, i))
+                lanes[i] = gathered(values, at(numbers, i))
         else:
             for i in range(count):
-                to[i] = values[own[i]]
+                to[i] = values[numbers[i]]
 
 
 @inlined
 def put(rows, count, last, source, to):
     """Copy rows to a chunk; last: no other nodes follow in its rows, so that whole lanes may be written."""
     if last:
-        own, its = as_rows(source), as_rows(to)
+        lanes, filled = as_rows(source), as_rows(to)
         for i in range(0, count, WIDTH):
             for row in range(i, i + rows * ROW, ROW):
-                its[row] = own[row]
+                filled[row] = lanes[row]
     else:
         for row in range(rows):
             for i in range(row * ROW, row * ROW + count):

@@ -41,14 +41,14 @@ def add_loads(group, system, values):
             _clear(call[r.CLEAR], nodes * size * nodes * size, count, k)
         coupled = 0
         for lane in range(count):
-            own = at(reals(values), 3 * (first + lane))
+            load_values = at(reals(values), 3 * (first + lane))
             done = _forces(
                 call[r.LOAD_FORCES],
                 group,
                 first + lane,
                 rows,
                 ck * stiff,
-                own,
+                load_values,
                 at(e, lane),
                 at(f, lane),
                 at(k, lane),

@@ -29,12 +29,12 @@ def at(build: Build, pointer: Value, count: Value) -> Value:
 @operation
 def fetch(build: Build, pointer: Value, count: Value) -> None:
     """Ask for the memory `count` entries ahead, so that it is in the cache when needed; any address is allowed."""
-    place = build.builder.gep(pointer.llvm, [count.llvm])
+    address = build.builder.gep(pointer.llvm, [count.llvm])
     module, byte, number = build.builder.module, ir.IntType(8).as_pointer(), ir.IntType(32)
     kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
-    own = module.globals.get(_FETCH) or ir.Function(module, kind, _FETCH)
+    callee = module.globals.get(_FETCH) or ir.Function(module, kind, _FETCH)
     constants = [ir.Constant(number, value) for value in (0, 3, 1)]  # to read, keep in all caches, data
-    build.builder.call(own, [build.builder.bitcast(place, byte), *constants])
+    build.builder.call(callee, [build.builder.bitcast(address, byte), *constants])
 
 
 @operation
@@ -66,15 +66,15 @@ slots = _pointer(SLOTS)
 @cache
 def caller(kinds: str, returns: str = "") -> Callable[..., Any]:
     """Return an operation call(address, *arguments) for functions with these kinds of arguments, in C convention."""
-    wanted, result = [KINDS[kind] for kind in kinds], RESULTS[returns]
+    value_kinds, result = [KINDS[kind] for kind in kinds], RESULTS[returns]
     outer = ir.VoidType() if result is None else result.llvm
-    own = ir.FunctionType(outer, [kind.llvm for kind in wanted]).as_pointer()
+    function_type = ir.FunctionType(outer, [kind.llvm for kind in value_kinds]).as_pointer()
 
     @operation
     def call(build: Build, address: Value, *arguments: Value) -> Value | None:
-        values = [build.converted(value, kind) for value, kind in zip(arguments, wanted, strict=True)]
-        found = build.builder.call(build.builder.inttoptr(address.llvm, own), values)
-        return None if result is None else Value(result, found)
+        values = [build.converted(value, kind) for value, kind in zip(arguments, value_kinds, strict=True)]
+        returned = build.builder.call(build.builder.inttoptr(address.llvm, function_type), values)
+        return None if result is None else Value(result, returned)
 
     return call
 

@@ -17,13 +17,13 @@ def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
     """Replace k (columns, rows, ROW) by k B; b (nodes, stride, ROW), size: components of a node; space (2, ROW)."""
     rows, linear = nodes * size, size - turned
     for n in range(nodes):
-        own = at(k, rows * (n * size + linear) * ROW)
+        columns = at(k, rows * (n * size + linear) * ROW)
         table = at(b, n * stride * ROW)
         for row in range(rows):
             for column in range(turning):
                 to = at(space, column * ROW)
                 for part in range(turned):
-                    source, factor = at(own, (rows * part + row) * ROW), at(table, (part * turning + column) * ROW)
+                    source, factor = at(columns, (rows * part + row) * ROW), at(table, (part * turning + column) * ROW)
                     if part == 0:
                         for i in range(0, count, WIDTH):
                             to[i] = source[i] * factor[i]
@@ -31,7 +31,7 @@ def reduce_columns(nodes, size, turned, turning, count, stride, b, k, space):
                         for i in range(0, count, WIDTH):
                             to[i] += source[i] * factor[i]
             for column in range(turning):
-                source, to = at(space, column * ROW), at(own, (rows * column + row) * ROW)
+                source, to = at(space, column * ROW), at(columns, (rows * column + row) * ROW)
                 for i in range(0, count, WIDTH):
                     to[i] = source[i]
 
@@ -41,14 +41,14 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
     """Replace k B by B^T k B, with the arguments of `reduce_columns`."""
     rows, linear = nodes * size, size - turned
     for m in range(nodes):
-        for its in range(linear + turning):
+        for column in range(linear + turning):
             for n in range(nodes):
-                own = at(k, (rows * (m * size + its) + n * size + linear) * ROW)
+                entries = at(k, (rows * (m * size + column) + n * size + linear) * ROW)
                 table = at(b, n * stride * ROW)
                 for row in range(turning):
                     to = at(space, row * ROW)
                     for part in range(turned):
-                        source, factor = at(own, part * ROW), at(table, (part * turning + row) * ROW)
+                        source, factor = at(entries, part * ROW), at(table, (part * turning + row) * ROW)
                         if part == 0:
                             for i in range(0, count, WIDTH):
                                 to[i] = source[i] * factor[i]
@@ -56,7 +56,7 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
                             for i in range(0, count, WIDTH):
                                 to[i] += source[i] * factor[i]
                 for row in range(turning):
-                    source, to = at(space, row * ROW), at(own, row * ROW)
+                    source, to = at(space, row * ROW), at(entries, row * ROW)
                     for i in range(0, count, WIDTH):
                         to[i] = source[i]
 
@@ -66,11 +66,11 @@ def _are_shifted(rows, count, stride, number, step):
     """Return whether the numbers (rows, stride) of each element are those of the first one, plus a step for each."""
     wrong = 0
     for row in range(rows):
-        each = at(number, row * stride)
-        if each[0] < 0 or each[count - 1] < 0:
+        numbers = at(number, row * stride)
+        if numbers[0] < 0 or numbers[count - 1] < 0:
             return False
         for i in range(count):
-            wrong += abs(each[i] - each[0] - i * step)
+            wrong += abs(numbers[i] - numbers[0] - i * step)
     return wrong == 0
 
 
@@ -82,19 +82,19 @@ def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix
     shifted = _are_shifted(nodes * coordinates, count, stride, number, step)
     shift = (width + 1) * step
     for m in range(nodes):
-        for its in range(coordinates):
-            columns = at(number, (m * coordinates + its) * stride)
+        for column_dof in range(coordinates):
+            column_numbers = at(number, (m * coordinates + column_dof) * stride)
             for n in range(nodes):
-                for own in range(coordinates):
-                    to = at(number, (n * coordinates + own) * stride)
-                    value = at(k, (rows * (m * size + its) + n * size + own) * ROW)
+                for row_dof in range(coordinates):
+                    row_numbers = at(number, (n * coordinates + row_dof) * stride)
+                    value = at(k, (rows * (m * size + column_dof) + n * size + row_dof) * ROW)
                     if shifted:  # as in most of a chain: entries need not be looked up
-                        entry = at(matrix, width * to[0] + half + columns[0])
+                        entry = at(matrix, width * row_numbers[0] + half + column_numbers[0])
                         for i in range(count):
                             entry[i * shift] += value[i]
                     else:
                         for i in range(count):
-                            row, column = to[i], columns[i]
+                            row, column = row_numbers[i], column_numbers[i]
                             if row >= 0 and column >= 0:
                                 matrix[width * row + half + column] += value[i]
 
@@ -109,12 +109,12 @@ def add_to_sparse(nodes, size, coordinates, count, elements, slots, k, matrix):
     for i in range(count):
         table = at(slots, elements[i] * per * per)
         for n in range(nodes):
-            for own in range(coordinates):
+            for row_dof in range(coordinates):
                 for m in range(nodes):
-                    for its in range(coordinates):
-                        slot = table[(n * coordinates + own) * per + m * coordinates + its]
+                    for column_dof in range(coordinates):
+                        slot = table[(n * coordinates + row_dof) * per + m * coordinates + column_dof]
                         if slot >= 0:
-                            matrix[slot] += k[(rows * (m * size + its) + n * size + own) * ROW + i]
+                            matrix[slot] += k[(rows * (m * size + column_dof) + n * size + row_dof) * ROW + i]
 
 
 @inlined
@@ -125,20 +125,20 @@ def add_node_forces(first, count, size, turned, turning, stride, dof, rows, forc
     """
     linear = size - turned
     for row in range(linear):
-        own, source = at(dof, row * stride + first), at(chunk, (force + row) * ROW)
+        dofs, source = at(dof, row * stride + first), at(chunk, (force + row) * ROW)
         for i in range(count):
-            residual[own[i]] += source[i]
+            residual[dofs[i]] += source[i]
     b, f, sums = as_rows(at(chunk, rows * ROW)), as_rows(at(chunk, (force + linear) * ROW)), as_rows(space)
     for column in range(turning):
-        own = at(dof, (linear + column) * stride + first)
+        dofs = at(dof, (linear + column) * stride + first)
         for i in range(0, count, WIDTH):
             total = b[column * ROW + i] * f[i]
             for part in range(1, turned):
                 total += b[(part * turning + column) * ROW + i] * f[part * ROW + i]
             sums[i] = total
         for i in range(count):
-            if own[i] >= 0:
-                residual[own[i]] += space[i]
+            if dofs[i] >= 0:
+                residual[dofs[i]] += space[i]
 
 
 @routine("iiiiiiiinnnisrrd")
@@ -154,13 +154,13 @@ def add_curvature(
     for j in range(turning):
         for k in range(turning):
             value = at(chunk, (row + j * turning + k) * ROW)
-            own, its = at(dof, (linear + j) * stride + first), at(dof, (linear + k) * stride + first)
+            row_dofs, column_dofs = at(dof, (linear + j) * stride + first), at(dof, (linear + k) * stride + first)
             for i in range(count):
-                to, column = free[own[i]], free[its[i]]
-                if to < 0 or column < 0:
+                matrix_row, matrix_column = free[row_dofs[i]], free[column_dofs[i]]
+                if matrix_row < 0 or matrix_column < 0:
                     continue
                 if half >= 0:
-                    matrix[2 * half * to + half + column] += factor * value[i]
+                    matrix[2 * half * matrix_row + half + matrix_column] += factor * value[i]
                 else:
                     element, begin = home[2 * (first + i)], home[2 * (first + i) + 1] * coordinates + linear
                     matrix[slots[(element * per + begin + j) * per + begin + k]] += factor * value[i]

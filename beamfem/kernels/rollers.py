@@ -21,10 +21,10 @@ def hold_normals(n, half, rollers, rows, first, normal):
             upper[column] = c * x + s * y
             lower[column] = -s * x + c * y
         for row in range(max(0, j - half), min(n, i + half + 1)):
-            own = at(rows, row * width + half - row)
-            x, y = own[i], own[j]
-            own[i] = c * x + s * y
-            own[j] = -s * x + c * y
+            entries = at(rows, row * width + half - row)
+            x, y = entries[i], entries[j]
+            entries[i] = c * x + s * y
+            entries[j] = -s * x + c * y
         size = abs(lower[j])
         for other in range(max(0, i - half), min(n, i + half + 1)):
             upper[other] = 0.0

@@ -24,9 +24,9 @@ def release(build: Build, pointer: Value, index: Value, value: Value) -> None:
 @operation
 def replaced(build: Build, pointer: Value, index: Value, old: Value, new: Value) -> Value:
     """Compare and swap: set an entry to `new` if it is `old`; return whether it was. Of two threads, one succeeds."""
-    place = build.place(pointer, index)
-    found = build.builder.cmpxchg(place, old.llvm, new.llvm, "acq_rel", "acquire")
-    return Value(FLAG, build.builder.extract_value(found, 1))
+    address = build.place(pointer, index)
+    result = build.builder.cmpxchg(address, old.llvm, new.llvm, "acq_rel", "acquire")
+    return Value(FLAG, build.builder.extract_value(result, 1))
 
 
 @operation
@@ -34,5 +34,5 @@ def pause(build: Build) -> None:
     """Pause in a spin loop, which leaves the core to its other hardware thread for a moment."""
     if binding.get_process_triple().startswith("x86_64"):
         functions = build.builder.module.globals
-        own = functions.get(_PAUSE) or ir.Function(build.builder.module, ir.FunctionType(ir.VoidType(), []), _PAUSE)
-        build.builder.call(own, [])
+        callee = functions.get(_PAUSE) or ir.Function(build.builder.module, ir.FunctionType(ir.VoidType(), []), _PAUSE)
+        build.builder.call(callee, [])

@@ -17,54 +17,54 @@ def columns(vectors, bends, count, ck, slope, second, director, h, z):
     """Fill z (2 vectors, 6, ROW) with ck h T for the nodal vectors of one node; the six rows are r, d, t (x and y)."""
     last = vectors - 1
     for s in range(last):
-        w, u, own = at(slope, s * ROW), at(second, s * ROW), at(z, 12 * s * ROW)
+        w, u, to = at(slope, s * ROW), at(second, s * ROW), at(z, 12 * s * ROW)
         for i in range(0, count, WIDTH):
             a = ck * w[i]
-            own[i], own[ROW + i] = a * h[i], a * h[ROW + i]
-            own[2 * ROW + i], own[3 * ROW + i] = a * h[3 * ROW + i], a * h[4 * ROW + i]
-            own[4 * ROW + i], own[5 * ROW + i] = a * h[7 * ROW + i], a * h[8 * ROW + i]
-            own[6 * ROW + i], own[7 * ROW + i] = a * h[ROW + i], a * h[2 * ROW + i]
-            own[8 * ROW + i], own[9 * ROW + i] = a * h[5 * ROW + i], a * h[6 * ROW + i]
-            own[10 * ROW + i], own[11 * ROW + i] = a * h[9 * ROW + i], a * h[10 * ROW + i]
+            to[i], to[ROW + i] = a * h[i], a * h[ROW + i]
+            to[2 * ROW + i], to[3 * ROW + i] = a * h[3 * ROW + i], a * h[4 * ROW + i]
+            to[4 * ROW + i], to[5 * ROW + i] = a * h[7 * ROW + i], a * h[8 * ROW + i]
+            to[6 * ROW + i], to[7 * ROW + i] = a * h[ROW + i], a * h[2 * ROW + i]
+            to[8 * ROW + i], to[9 * ROW + i] = a * h[5 * ROW + i], a * h[6 * ROW + i]
+            to[10 * ROW + i], to[11 * ROW + i] = a * h[9 * ROW + i], a * h[10 * ROW + i]
         if bends != 0:
             for i in range(0, count, WIDTH):
                 b = ck * u[i]
-                own[i] += b * h[7 * ROW + i]
-                own[ROW + i] += b * h[9 * ROW + i]
-                own[2 * ROW + i] += b * h[14 * ROW + i]
-                own[3 * ROW + i] += b * h[16 * ROW + i]
-                own[4 * ROW + i] += b * h[18 * ROW + i]
-                own[5 * ROW + i] += b * h[19 * ROW + i]
-                own[6 * ROW + i] += b * h[8 * ROW + i]
-                own[7 * ROW + i] += b * h[10 * ROW + i]
-                own[8 * ROW + i] += b * h[15 * ROW + i]
-                own[9 * ROW + i] += b * h[17 * ROW + i]
-                own[10 * ROW + i] += b * h[19 * ROW + i]
-                own[11 * ROW + i] += b * h[20 * ROW + i]
-    w, own, b = at(slope, last * ROW), at(z, 12 * last * ROW), ck * director[0]
+                to[i] += b * h[7 * ROW + i]
+                to[ROW + i] += b * h[9 * ROW + i]
+                to[2 * ROW + i] += b * h[14 * ROW + i]
+                to[3 * ROW + i] += b * h[16 * ROW + i]
+                to[4 * ROW + i] += b * h[18 * ROW + i]
+                to[5 * ROW + i] += b * h[19 * ROW + i]
+                to[6 * ROW + i] += b * h[8 * ROW + i]
+                to[7 * ROW + i] += b * h[10 * ROW + i]
+                to[8 * ROW + i] += b * h[15 * ROW + i]
+                to[9 * ROW + i] += b * h[17 * ROW + i]
+                to[10 * ROW + i] += b * h[19 * ROW + i]
+                to[11 * ROW + i] += b * h[20 * ROW + i]
+    w, to, b = at(slope, last * ROW), at(z, 12 * last * ROW), ck * director[0]
     if bends != 0:
         for i in range(0, count, WIDTH):
-            own[i], own[ROW + i] = b * h[3 * ROW + i], b * h[5 * ROW + i]
-            own[2 * ROW + i], own[3 * ROW + i] = b * h[11 * ROW + i], b * h[12 * ROW + i]
-            own[4 * ROW + i], own[5 * ROW + i] = b * h[14 * ROW + i], b * h[15 * ROW + i]
-            own[6 * ROW + i], own[7 * ROW + i] = b * h[4 * ROW + i], b * h[6 * ROW + i]
-            own[8 * ROW + i], own[9 * ROW + i] = b * h[12 * ROW + i], b * h[13 * ROW + i]
-            own[10 * ROW + i], own[11 * ROW + i] = b * h[16 * ROW + i], b * h[17 * ROW + i]
+            to[i], to[ROW + i] = b * h[3 * ROW + i], b * h[5 * ROW + i]
+            to[2 * ROW + i], to[3 * ROW + i] = b * h[11 * ROW + i], b * h[12 * ROW + i]
+            to[4 * ROW + i], to[5 * ROW + i] = b * h[14 * ROW + i], b * h[15 * ROW + i]
+            to[6 * ROW + i], to[7 * ROW + i] = b * h[4 * ROW + i], b * h[6 * ROW + i]
+            to[8 * ROW + i], to[9 * ROW + i] = b * h[12 * ROW + i], b * h[13 * ROW + i]
+            to[10 * ROW + i], to[11 * ROW + i] = b * h[16 * ROW + i], b * h[17 * ROW + i]
     else:
         for i in range(0, count, WIDTH):
             a = ck * w[i]
-            own[i] = b * h[3 * ROW + i] + a * h[7 * ROW + i]
-            own[ROW + i] = b * h[5 * ROW + i] + a * h[9 * ROW + i]
-            own[2 * ROW + i] = b * h[11 * ROW + i] + a * h[14 * ROW + i]
-            own[3 * ROW + i] = b * h[12 * ROW + i] + a * h[16 * ROW + i]
-            own[4 * ROW + i] = b * h[14 * ROW + i] + a * h[18 * ROW + i]
-            own[5 * ROW + i] = b * h[15 * ROW + i] + a * h[19 * ROW + i]
-            own[6 * ROW + i] = b * h[4 * ROW + i] + a * h[8 * ROW + i]
-            own[7 * ROW + i] = b * h[6 * ROW + i] + a * h[10 * ROW + i]
-            own[8 * ROW + i] = b * h[12 * ROW + i] + a * h[15 * ROW + i]
-            own[9 * ROW + i] = b * h[13 * ROW + i] + a * h[17 * ROW + i]
-            own[10 * ROW + i] = b * h[16 * ROW + i] + a * h[19 * ROW + i]
-            own[11 * ROW + i] = b * h[17 * ROW + i] + a * h[20 * ROW + i]
+            to[i] = b * h[3 * ROW + i] + a * h[7 * ROW + i]
+            to[ROW + i] = b * h[5 * ROW + i] + a * h[9 * ROW + i]
+            to[2 * ROW + i] = b * h[11 * ROW + i] + a * h[14 * ROW + i]
+            to[3 * ROW + i] = b * h[12 * ROW + i] + a * h[16 * ROW + i]
+            to[4 * ROW + i] = b * h[14 * ROW + i] + a * h[18 * ROW + i]
+            to[5 * ROW + i] = b * h[15 * ROW + i] + a * h[19 * ROW + i]
+            to[6 * ROW + i] = b * h[4 * ROW + i] + a * h[8 * ROW + i]
+            to[7 * ROW + i] = b * h[6 * ROW + i] + a * h[10 * ROW + i]
+            to[8 * ROW + i] = b * h[12 * ROW + i] + a * h[15 * ROW + i]
+            to[9 * ROW + i] = b * h[13 * ROW + i] + a * h[17 * ROW + i]
+            to[10 * ROW + i] = b * h[16 * ROW + i] + a * h[19 * ROW + i]
+            to[11 * ROW + i] = b * h[17 * ROW + i] + a * h[20 * ROW + i]
 
 
 @routine("iiiivvv", fastmath=FAST)
@@ -104,17 +104,17 @@ def products(vectors, bends, count, points, coordinates, slots, z_stride, slope,
             for i in range(0, count, WIDTH):
                 x, y = zeros(), zeros()
                 for point in range(points):
-                    own = at(z, (point * z_stride + 6 * c) * ROW + i)
+                    column = at(z, (point * z_stride + 6 * c) * ROW + i)
                     w, u = slope[(point * slots + s) * ROW + i], director[point * nodes]
                     if s < last:
-                        x, y = x + w * own[0], y + w * own[ROW]
+                        x, y = x + w * column[0], y + w * column[ROW]
                         if bends != 0:
                             curved = second[(point * slots + s) * ROW + i]
-                            x, y = x + curved * own[4 * ROW], y + curved * own[5 * ROW]
+                            x, y = x + curved * column[4 * ROW], y + curved * column[5 * ROW]
                     else:
-                        x, y = x + u * own[2 * ROW], y + u * own[3 * ROW]
+                        x, y = x + u * column[2 * ROW], y + u * column[3 * ROW]
                         if bends == 0:
-                            x, y = x + w * own[4 * ROW], y + w * own[5 * ROW]
+                            x, y = x + w * column[4 * ROW], y + w * column[5 * ROW]
                 to = at(k, (c * size + 2 * s) * ROW + i)
                 to[0], to[ROW] = x, y
 
@@ -154,6 +154,6 @@ def mirror(size, count, k):
     """Copy the upper triangle of k (columns, rows, ROW) to the lower one."""
     for column in range(size):
         for row in range(column):
-            own, to = at(k, (column * size + row) * ROW), at(k, (row * size + column) * ROW)
+            source, to = at(k, (column * size + row) * ROW), at(k, (row * size + column) * ROW)
             for i in range(0, count, WIDTH):
-                to[i] = own[i]
+                to[i] = source[i]

@@ -46,9 +46,9 @@ def assemble(part, system, solver, calls):
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    own, width, groups = motion_stages.bounds_of(b, part), 2 * b[r.HALF] + 1, wholes(s[r.GROUP_RECORDS])
+    bounds, width, groups = motion_stages.bounds_of(b, part), 2 * b[r.HALF] + 1, wholes(s[r.GROUP_RECORDS])
     kept, turns, worst = reals(b[r.KEPT]), reals(b[r.TURNS]), 1.0
-    for number in range(own[r.FIRST_TILE], own[r.END_TILE]):
+    for number in range(bounds[r.FIRST_TILE], bounds[r.END_TILE]):
         tile = at(wholes(b[r.TILES]), number * r.TILE_FIELDS)
         group, first, end = tile[r.TILE_GROUP], tile[r.NEW_UNKNOWN], tile[r.END_NEW_UNKNOWN]
         model_passes.clear(s, tile[r.NEW_COORDINATE], tile[r.END_NEW_COORDINATE], first * width, end * width)
@@ -101,9 +101,9 @@ def substitute(part, system, solver, calls):
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    own, size = motion_stages.bounds_of(b, part), 0.0
-    _, stop = _rest(b, own, part)
-    for number in range(own[r.END_TILE] - 1, own[r.FIRST_TILE] - 1, -1):
+    bounds, size = motion_stages.bounds_of(b, part), 0.0
+    _, stop = _rest(b, bounds, part)
+    for number in range(bounds[r.END_TILE] - 1, bounds[r.FIRST_TILE] - 1, -1):
         tile = at(wholes(b[r.TILES]), number * r.TILE_FIELDS)
         _solve_rows(b, call[r.UPPER_PART], part, tile[r.ROWS_BEFORE], stop)
         stop = tile[r.ROWS_BEFORE]

@@ -116,7 +116,7 @@ def _two_sided(w: int) -> TwoSided:
 @cache
 def _one_sided(known: int) -> TwoSided:
     case = f"one_sided_half_width_{known or 'any'}"
-    _factor, _solve_lower, _solve_upper = (inlined(own) for own in band(known))
+    _factor, _solve_lower, _solve_upper = (inlined(function) for function in band(known))
 
     @routine("iisrr", "d", case, fastmath=FAST)
     def factor(n, half, reach, ab, original):

@@ -31,8 +31,8 @@ def serve(job):
     state = acquired(j, r.JOB_STATE)
     while state != CLOSED:
         if state == POSTED and replaced(j, r.JOB_STATE, POSTED, TAKEN):
-            found = _stage(j[r.JOB_STAGE], 1, j[r.JOB_SYSTEM], j[r.JOB_SOLVER], j[r.JOB_CALLS])
-            reals(job)[r.JOB_RESULT] = found
+            result = _stage(j[r.JOB_STAGE], 1, j[r.JOB_SYSTEM], j[r.JOB_SOLVER], j[r.JOB_CALLS])
+            reals(job)[r.JOB_RESULT] = result
             release(j, r.JOB_STATE, DONE)
             turns = 0
         else:

@@ -58,8 +58,8 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
         inverse = root.T @ np.column_stack([factors.solve(column) for column in root.T])
         inverse = 0.5 * (inverse + inverse.T)
         old = root.T @ known
-        others = np.eye(n) - old @ old.T
-        values, y = eigh(others @ inverse @ others)
+        projector = np.eye(n) - old @ old.T
+        values, y = eigh(projector @ inverse @ projector)
         return values[::-1], solve_triangular(root.T, y[:, ::-1])
 
     def few(vectors: int) -> Pairs:

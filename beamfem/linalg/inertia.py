@@ -41,8 +41,8 @@ def negative_eigenvalues(matrix: csr_array) -> int | None:
         inside = waiting + end - start
         front = np.zeros((waiting + len(rows),) * 2)
         front[waiting:, waiting:] = _rows_of(ordered, start, end, rows)
-        known = np.append(np.arange(waiting), waiting + np.searchsorted(rows, active))
-        front[np.ix_(known, known)] += carried
+        positions = np.append(np.arange(waiting), waiting + np.searchsorted(rows, active))
+        front[np.ix_(positions, positions)] += carried
         eliminated = _eliminate(front, inside) if end < size else (_negative(front), 0, carried)
         if eliminated is None:
             fewest = 2 * (end - start)
@@ -63,9 +63,9 @@ def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | 
     factored, exchanged = symmetric_factors(front[:inside, :inside])
     solved, failed = dsytrs(factored, exchanged, front[:inside, inside:], lower=1)
     if not failed and np.isfinite(solved).all():
-        left = front[inside:, inside:] - front[inside:, :inside] @ solved
-        if np.abs(left).max(initial=0.0) <= _GROWTH * largest:
-            return _negative_blocks(factored, exchanged), 0, left
+        schur = front[inside:, inside:] - front[inside:, :inside] @ solved
+        if np.abs(schur).max(initial=0.0) <= _GROWTH * largest:
+            return _negative_blocks(factored, exchanged), 0, schur
     if inside > _DECOMPOSED:
         return None
     values, vectors = eigh(front[:inside, :inside])
@@ -74,8 +74,8 @@ def _eliminate(front: np.ndarray, inside: int) -> tuple[int, int, np.ndarray] | 
     if 2 * waiting > inside:
         return None
     beside = vectors.T @ front[:inside, inside:]
-    left = front[inside:, inside:] - (beside[firm].T / values[firm]) @ beside[firm]
-    carried = np.block([[np.diag(values[~firm]), beside[~firm]], [beside[~firm].T, left]])
+    schur = front[inside:, inside:] - (beside[firm].T / values[firm]) @ beside[firm]
+    carried = np.block([[np.diag(values[~firm]), beside[~firm]], [beside[~firm].T, schur]])
     return int(np.sum(values[firm] < 0.0)), waiting, carried
 
 

@@ -85,9 +85,9 @@ class BandFactors:
         if self.plain:
             balanced = x.copy()
             n, half = len(x), self.lu.shape[1] // 2
-            own = band(half)
-            own.solve_lower(n, n, half, self.lu, x)
-            own.solve_upper(n, n, half, self.lu, x)
+            routines = band(half)
+            routines.solve_lower(n, n, half, self.lu, x)
+            routines.solve_upper(n, n, half, self.lu, x)
             if not np.isfinite(x).all():
                 x = _solve_pivoted(self.rows, balanced)
         else:

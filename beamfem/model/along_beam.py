@@ -29,8 +29,8 @@ class AlongBeam(ABC):
 
 def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
     """Return the fields of a load that are functions of the arc length."""
-    found = {name: getattr(load, name) for name in load.along}
-    return {name: value for name, value in found.items() if callable(value)}
+    fields = {name: getattr(load, name) for name in load.along}
+    return {name: value for name, value in fields.items() if callable(value)}
 
 
 def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
@@ -46,7 +46,7 @@ def kinks_along(load: AlongBeam, name: str) -> tuple[float, ...]:
 def jumps_along(load: AlongBeam) -> tuple[float, ...]:
     """Return the arc lengths [m] at which a load, or the section of its beam, jumps or has a declared kink."""
     kinks = [kinks_along(load, name) for name in functions_along(load)]
-    return (*load.beam.jumps, *(kink for found in kinks for kink in found))
+    return (*load.beam.jumps, *(kink for group in kinks for kink in group))
 
 
 def require_names(load: AlongBeam) -> None:

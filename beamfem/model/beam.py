@@ -285,10 +285,10 @@ def reference_positions(points: Sequence[Point]) -> np.ndarray:
         if type(curve) is not Line:  # a subclass may be curved
             result[i] = points[i].reference
     if straight:
-        own, lines = zip(*straight, strict=True)
-        fraction = np.array([points[i].fraction for i in own])[:, None]
+        indices, lines = zip(*straight, strict=True)
+        fraction = np.array([points[i].fraction for i in indices])[:, None]
         start, end = np.array([line.start for line in lines]), np.array([line.end for line in lines])
-        result[list(own)] = (1.0 - fraction) * start + fraction * end
+        result[list(indices)] = (1.0 - fraction) * start + fraction * end
     return result
 
 

@@ -55,10 +55,10 @@ def _require_short(
     volume = (cross(axis.r_s, axis.d)[:, None] + heights * cross(axis.d_s, axis.d)[:, None]).min(axis=1)
     worst = int(np.argmin(volume))
     if volume[worst] <= 0.0:
-        own = np.full(_SAMPLES, element[worst])
+        elements = np.full(_SAMPLES, element[worst])
         along = np.linspace(0.0, 1.0, _SAMPLES)
-        arc = grid.arc_length(own, along)
-        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, own, along), arc)))
+        arc = grid.arc_length(elements, along)
+        turn = np.degrees(np.abs(np.trapezoid(curvature(grid, elements, along), arc)))
         raise InputError(
             f"elements of {grid.beam!r} are too long: that from arc length {arc[0]:g} {unit('m')} to {arc[-1]:g} "
             f"{unit('m')} turns by {turn:.0f} degrees, and the sections that it interpolates between its nodes "

@@ -132,9 +132,9 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
 
     Lengths are compared to a relative 1e-12. Any other beam has its number as key.
     """
-    found: list[Hashable] = list(range(len(grids)))
+    keys: list[Hashable] = list(range(len(grids)))
     if len(grids) == 1:
-        return found
+        return keys
     sized: defaultdict[int, list[int]] = defaultdict(list)
     for number, grid in enumerate(grids):
         if grid.straight and grid.beam.prismatic:
@@ -144,10 +144,10 @@ def likenesses(grids: Sequence[Grid]) -> list[Hashable]:
         lengths = rate * np.diff(np.array([grids[i].parameter for i in numbers]), axis=1)
         unit = 2.0 ** np.ceil(np.log2(lengths.max(axis=1)))
         rounded = np.round(lengths / unit[:, None], 12)
-        for i, size, own in zip(numbers, unit.tolist(), rounded, strict=True):
+        for i, size, row in zip(numbers, unit.tolist(), rounded, strict=True):
             beam = grids[i].beam
-            found[i] = size, own.tobytes(), by_value(beam.section), by_value(beam.material)
-    return found
+            keys[i] = size, row.tobytes(), by_value(beam.section), by_value(beam.material)
+    return keys
 
 
 def _inertia(grid: Grid, chosen: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

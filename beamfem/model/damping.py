@@ -19,7 +19,7 @@ def retardation_time(section: CrossSection, material: Material | None) -> float:
 
 def _time(section: CrossSection, material: Material | None) -> float:
     try:
-        times = {own.retardation_time for own, _ in section.moments(material)}
+        times = {part_material.retardation_time for part_material, _ in section.moments(material)}
     except InputError:  # known by its stiffness
         return 0.0 if material is None else material.retardation_time
     if len(times) > 1:

@@ -41,17 +41,17 @@ class Distributions:
 
     def _stress(self, layer: int | None, y: np.ndarray, of: Callable[..., np.ndarray]) -> np.ndarray:
         parts = []
-        for here, own in self.groups:
-            at = own.layer_at(0.0) if layer is None else min(layer, len(own.layers) - 1)
-            parts.append(of(own, at, y[here], here))
+        for points, dist in self.groups:
+            at = dist.layer_at(0.0) if layer is None else min(layer, len(dist.layers) - 1)
+            parts.append(of(dist, at, y[points], points))
         return np.concatenate(parts, axis=1)
 
     @property
     def number(self) -> np.ndarray:
         """Number of layers at each point (n,)."""
         result = np.empty(len(self.layers), dtype=int)
-        for here, own in self.groups:
-            result[here] = len(own.layers)
+        for points, dist in self.groups:
+            result[points] = len(dist.layers)
         return result
 
 
@@ -74,11 +74,11 @@ def layers(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """Return lower and upper y (n, layers, 2) [m] of the layers at points (element, xi); see `Distributions`."""
     material = grid.beam.material
     if isinstance(grid.beam.section, CrossSection):
-        own = np.array(layers_of(grid.beam.section, material))
-        return np.broadcast_to(own, (len(element), *own.shape))
-    found = [layers_of(section, material) for section in sections_at(grid, element, xi)]
-    result = np.empty((len(element), max(map(len, found)), 2))
-    for point, at in enumerate(found):
+        edges = np.array(layers_of(grid.beam.section, material))
+        return np.broadcast_to(edges, (len(element), *edges.shape))
+    layer_lists = [layers_of(section, material) for section in sections_at(grid, element, xi)]
+    result = np.empty((len(element), max(map(len, layer_lists)), 2))
+    for point, at in enumerate(layer_lists):
         result[point, : len(at)] = at
         result[point, len(at) :] = at[-1][1]
     return result

@@ -20,12 +20,12 @@ def free_strains(grid: Grid, loads: Sequence[ImposedStrain]) -> tuple[np.ndarray
     For factors f the measures are exactly the sum of f_i times the first and f_i f_j times the second part, because
     strain measures are at most quadratic in the free strains.
     """
-    own = grid.beam.element
+    element_type = grid.beam.element
     element, xi, _ = energy_points(grid)
     reference = reference_axis(grid, element, xi)
     free = np.array([free_strain_of(load, grid.arc_length_inside(element, xi, jumps_along(load))) for load in loads])
-    if not isinstance(own.coordinates, Gradients):
+    if not isinstance(element_type.coordinates, Gradients):
         free[:, :, _THICKNESS] = 0.0
-    first, second = own.forces.imposed(free, reference)
+    first, second = element_type.forces.imposed(free, reference)
     shape = grid.elements, -1, first.shape[-1]
     return first.reshape(len(free), *shape), second.reshape(len(free), len(free), *shape)

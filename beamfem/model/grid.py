@@ -80,8 +80,8 @@ class Grid:
         if fraction in (0.0, 1.0) and self.beam.elements != "knots":
             return self.node_at(fraction)
         element, xi = self.locate(fraction)
-        here = self.beam.element.field.nodes.tolist()
-        return int(self.node[element, here.index(xi)]) if xi in here else None
+        nodes = self.beam.element.field.nodes.tolist()
+        return int(self.node[element, nodes.index(xi)]) if xi in nodes else None
 
     def node_at(self, fraction: float) -> int:
         """Return the node at a fraction [-] at which there is a support or joint; `make_grid` has put one there."""
@@ -171,9 +171,9 @@ def _vertices(beam: Beam, fractions: Iterable[float]) -> np.ndarray:
     An end of the beam's elements that is very close to one of `fractions` is moved there instead, because the element
     in between would be too short for accurate strains.
     """
-    asked = beam.elements
-    assert not isinstance(asked, str)
-    grid = np.linspace(0.0, 1.0, asked + 1) if isinstance(asked, int) else np.array(asked, dtype=float)
+    elements = beam.elements
+    assert not isinstance(elements, str)
+    grid = np.linspace(0.0, 1.0, elements + 1) if isinstance(elements, int) else np.array(elements, dtype=float)
     near = 1e-9 * np.diff(grid).min()
     wanted = np.array(sorted(set(fractions)))
     extra = wanted[distances(wanted, grid) > near]

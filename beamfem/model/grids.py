@@ -19,11 +19,11 @@ def make_grids(beams: Sequence[Beam], fractions: Sequence[Sequence[float]]) -> l
     """Return the grid of each beam with a node at each of its fractions and at each corner of its curve."""
     alike: defaultdict[tuple[int, Field], list[int]] = defaultdict(list)
     grids: dict[int, Grid] = {}
-    for number, (beam, own) in enumerate(zip(beams, fractions, strict=True)):
-        if type(beam.curve) is Line and isinstance(beam.elements, int) and _at_ends(own, beam.elements):
+    for number, (beam, beam_fractions) in enumerate(zip(beams, fractions, strict=True)):
+        if type(beam.curve) is Line and isinstance(beam.elements, int) and _at_ends(beam_fractions, beam.elements):
             alike[beam.elements, beam.element.field].append(number)
         else:
-            grids[number] = make_grid(beam, own)
+            grids[number] = make_grid(beam, beam_fractions)
     for (elements, field), numbers in alike.items():
         grids.update(zip(numbers, _straight_grids([beams[i] for i in numbers], elements, field), strict=True))
     return [grids[number] for number in range(len(beams))]
@@ -39,12 +39,12 @@ def _straight_grids(beams: Sequence[Beam], elements: int, field: Field) -> list[
     lines = [beam.curve for beam in beams if isinstance(beam.curve, Line)]
     nodes = np.asarray(field.nodes, dtype=float)  # a user's field may return any sequence
     if len(lines) > 1 or elements > _FEW:
-        found = _divided(lines, elements, nodes)
+        division = _divided(lines, elements, nodes)
     else:
-        found = _cached_division(lines[0], elements, nodes.tobytes())
-    parts = zip(beams, found.vertices, found.arc, found.position, found.tangent, strict=True)
+        division = _cached_division(lines[0], elements, nodes.tobytes())
+    parts = zip(beams, division.vertices, division.arc, division.position, division.tangent, strict=True)
     return [
-        Grid(beam, ends, ends, 1.0, found.node, arc, position, tangent, found.speed)
+        Grid(beam, ends, ends, 1.0, division.node, arc, position, tangent, division.speed)
         for beam, ends, arc, position, tangent in parts
     ]
 
@@ -80,10 +80,10 @@ def _divided(lines: Sequence[Line], elements: int, nodes: np.ndarray) -> _Divide
 def _divisions_of(elements: int, last: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return ends of equal elements on [0, 1], their nodes (ne, last + 1) and |r_x| of each node, read-only."""
     node = last * np.arange(elements)[:, None] + np.arange(last + 1)
-    found = np.linspace(0.0, 1.0, elements + 1), node, np.ones(elements * last + 1)
-    for values in found:
+    arrays = np.linspace(0.0, 1.0, elements + 1), node, np.ones(elements * last + 1)
+    for values in arrays:
         values.setflags(write=False)
-    return found
+    return arrays
 
 
 _cached_divisions = lru_cache(maxsize=64)(_divisions_of)
@@ -91,7 +91,7 @@ _cached_divisions = lru_cache(maxsize=64)(_divisions_of)
 
 @lru_cache(maxsize=64)  # studies repeatedly divide a line in the same way
 def _cached_division(line: Line, elements: int, nodes: bytes) -> _Divided:
-    found = _divided([line], elements, np.frombuffer(nodes))
-    for values in found:
+    division = _divided([line], elements, np.frombuffer(nodes))
+    for values in division:
         values.setflags(write=False)
-    return found
+    return division

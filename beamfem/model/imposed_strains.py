@@ -69,8 +69,8 @@ class Actuation(ImposedStrain):
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
         """Return stretch, shear [-], curvature [1/m] and thickness stretch [-] (n, 4) of the unconstrained beam."""
-        found = [self.values_of(name, arc_length) for name in ("stretch", "shear", "curvature")]
-        return np.column_stack([*found, np.zeros(len(arc_length))])
+        columns = [self.values_of(name, arc_length) for name in ("stretch", "shear", "curvature")]
+        return np.column_stack([*columns, np.zeros(len(arc_length))])
 
 
 @dataclass(frozen=True)

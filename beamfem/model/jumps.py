@@ -24,18 +24,18 @@ def find_jumps(function: Any, values: Callable[[float], np.ndarray], length: flo
         near = _CLOSE * length
         return tuple(kink for kink in kinks_of(function) if near < kink < length - near)
     at = np.linspace(0.0, length, samples + 1)
-    found = np.array([values(s) for s in at.tolist()])
-    largest = np.abs(found).max(axis=0)
+    sampled = np.array([values(s) for s in at.tolist()])
+    largest = np.abs(sampled).max(axis=0)
     unit = np.where(largest > 0.0, largest, 1.0)
-    found = found / unit
-    change = np.abs(np.diff(found, axis=0)).max(axis=1)
+    sampled = sampled / unit
+    change = np.abs(np.diff(sampled, axis=0)).max(axis=1)
     beside = np.minimum(np.append(change[1:], np.inf), np.append(np.inf, change[:-1]))
     if samples == 1:
         beside = np.zeros(1)
     part = _Part(lambda s: values(s) / unit, _CLOSE * length)
     jumps: list[float] = []
     for i in np.flatnonzero((change > _SMALLEST) & (change > _STANDS_OUT * beside)).tolist():
-        jumps += part.jumps(float(at[i]), found[i], float(at[i + 1]), found[i + 1])
+        jumps += part.jumps(float(at[i]), sampled[i], float(at[i + 1]), sampled[i + 1])
     return tuple(jumps)
 
 
@@ -48,7 +48,7 @@ class _Part:
     def jumps(self, low: float, at_low: np.ndarray, high: float, at_high: np.ndarray) -> list[float]:
         """Return all jumps between two arc lengths with known values, in ascending order."""
         begin, end = (low, at_low), (high, at_high)
-        kept = change = _size(at_low, at_high)
+        last_change = change = _size(at_low, at_high)
         halvings = 0
         while high - low > self.close:
             middle = 0.5 * (low + high)
@@ -62,9 +62,9 @@ class _Part:
                 return []
             if halvings % 4 == 0:
                 # the change of a smooth function has decreased to about 1/16 since the last check
-                if change < kept / 8.0:
+                if change < last_change / 8.0:
                     return []
-                kept = change
+                last_change = change
         before = self.jumps(*begin, low, at_low) if _size(begin[1], at_low) > _SMALLEST else []
         after = self.jumps(high, at_high, *end) if _size(at_high, end[1]) > _SMALLEST else []
         return [*before, 0.5 * (low + high), *after]

@@ -114,8 +114,8 @@ class PointLoad(Load):
         force, moment = weight * np.array([self.value[:2]]), weight * self.value[2]
         if self.follower:
             force = rotated(force, np.array([placed.rotation(self.point)]))
-        found: tuple[LoadShape, ...] = (Force(self.point, force[0]),) if any(self.value[:2]) else ()
-        return (*found, Moment(self.point, moment)) if self.value[2] else found
+        shapes: tuple[LoadShape, ...] = (Force(self.point, force[0]),) if any(self.value[:2]) else ()
+        return (*shapes, Moment(self.point, moment)) if self.value[2] else shapes
 
 
 class LineLoad(AlongBeam, Load):
@@ -177,12 +177,12 @@ class LineLoad(AlongBeam, Load):
         InputError
             If the function does not return finite numbers, as many at every arc length.
         """
-        given, what = getattr(self, name), f"{name} of {type(self).__name__}"
-        found = [called(what, given, s) for s in arc_length.tolist()]
+        function, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        results = [called(what, function, s) for s in arc_length.tolist()]
         with suppress(ValueError):  # of different shapes
-            if (values := np.array(found)).dtype.kind in "iuf" and np.isfinite(values).all():
+            if (values := np.array(results)).dtype.kind in "iuf" and np.isfinite(values).all():
                 return values
-        raise InputError(f"{what} must give finite numbers, as many at every arc length, got {shown(found)}")
+        raise InputError(f"{what} must give finite numbers, as many at every arc length, got {shown(results)}")
 
     @property
     def place(self) -> Beam:
@@ -276,10 +276,10 @@ class ImposedStrain(AlongBeam, Load):
         InputError
             If a function does not return finite numbers.
         """
-        given, what = getattr(self, name), f"{name} of {type(self).__name__}"
-        if not callable(given):
-            return np.full(len(arc_length), given)
-        return np.array([finite(f"{what} at arc length {s:g}", called(what, given, s)) for s in arc_length.tolist()])
+        value, what = getattr(self, name), f"{name} of {type(self).__name__}"
+        if not callable(value):
+            return np.full(len(arc_length), value)
+        return np.array([finite(f"{what} at arc length {s:g}", called(what, value, s)) for s in arc_length.tolist()])
 
     @property
     def place(self) -> Beam:
@@ -319,5 +319,5 @@ def _arrows(load: LineLoad, placed: Placed) -> np.ndarray:
     if load.uniform:
         return even
     at = placed.stations(load.beam)
-    sizes = [np.abs(forces_of(load, own)).max(axis=1) for own in (at, even)]
+    sizes = [np.abs(forces_of(load, arc_length)).max(axis=1) for arc_length in (at, even)]
     return np.union1d(even, at[sizes[0].argmax()]) if sizes[0].max() > sizes[1].max() else even

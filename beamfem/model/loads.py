@@ -111,9 +111,9 @@ class DistributedLoad(LineLoad):
         """
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
-        given, name = self.vector, "vector of DistributedLoad"
-        found = [vector(f"{name} at arc length {s:g}", called(name, given, s)) for s in arc_length.tolist()]
-        return np.array(found).reshape(-1, 2)
+        function, name = self.vector, "vector of DistributedLoad"
+        forces = [vector(f"{name} at arc length {s:g}", called(name, function, s)) for s in arc_length.tolist()]
+        return np.array(forces).reshape(-1, 2)
 
 
 @dataclass(frozen=True)
@@ -176,8 +176,8 @@ class Pressure(LineLoad):
         """
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
-        given, name = self.value, "value of Pressure"
-        return np.array([finite(f"{name} at arc length {s:g}", called(name, given, s)) for s in arc_length.tolist()])
+        function, name = self.value, "value of Pressure"
+        return np.array([finite(f"{name} at arc length {s:g}", called(name, function, s)) for s in arc_length.tolist()])
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the forces (0, p) [N/m] along and across the deformed axis (n, 2) at arc lengths (n,) [m]."""

@@ -25,10 +25,10 @@ def require_magnitudes(beam: "Beam", section: CrossSection) -> None:
     E I / h and E I / h^3; the mass of an element and its rotary inertia over h^2; and for bodies, the section moments
     times E over powers of h.
     """
-    found = _formed(beam, section)
-    if all(SMALLEST <= value <= LARGEST for value in found):
+    quantities = _formed(beam, section)
+    if all(SMALLEST <= value <= LARGEST for value in quantities):
         return
-    for name, value in zip(_names(beam, section), found, strict=True):
+    for name, value in zip(_names(beam, section), quantities, strict=True):
         if not SMALLEST <= value <= LARGEST:
             raise InputError(
                 f"{name} of {beam!r} is {value:g}, beyond what double precision can square ({SMALLEST:.1g} to "
@@ -49,15 +49,15 @@ def _formed(beam: "Beam", section: CrossSection) -> list[float]:
         return [length, reach, h]
     resistance = _known_resistance if lasting(section, beam.material) else _resistance
     axial, shear, bending, mass, rotary = resistance(section, beam.material)  # type: ignore[arg-type]
-    found = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
-    found += (bending / h, bending / h / h / h, mass * h, rotary / h)
+    quantities = [length, reach, h, axial, axial / h, axial * h, shear, shear / h, shear * h]
+    quantities += (bending / h, bending / h / h / h, mass * h, rotary / h)
     if beam.element.forces.fills_body:
         with np.errstate(over="ignore", under="ignore"):
             parts = section.moments(beam.material)
         for material, moments in parts:
             area, second, fourth = (material.youngs_modulus * moments[order].item() / h for order in (0, 2, 4))
-            found += [area, second / h / h, fourth / h / h / h / h]
-    return found
+            quantities += [area, second / h / h, fourth / h / h / h / h]
+    return quantities
 
 
 def _resistance(section: CrossSection, material: Material | None) -> tuple[float, ...]:

@@ -96,15 +96,15 @@ class Model(ModelOutputs):
 
     def __repr__(self) -> str:
         parts = [(name[:-1], getattr(self, name)) for name in _KINDS]
-        counted = [f"{len(own)} {name}{'' if len(own) == 1 else 's'}" for name, own in parts if own]
+        counted = [f"{len(members)} {name}{'' if len(members) == 1 else 's'}" for name, members in parts if members]
         return f"Model({', '.join(counted)})"
 
     def __post_init__(self) -> None:
         _ = self._units
         for name, kinds in _KINDS.items():
-            given = listed(name, getattr(self, name), _KINDS)
-            object.__setattr__(self, name, given)
-            for item in given:
+            members = listed(name, getattr(self, name), _KINDS)
+            object.__setattr__(self, name, members)
+            for item in members:
                 if not isinstance(item, kinds):
                     raise InputError(refused(name, item, _KINDS))
                 kind: Any = type(item)
@@ -181,7 +181,7 @@ class Model(ModelOutputs):
         require_room(self.beams)
         _ = self.made_of
         connected = [point for connector in self.connectors for point in connector.points]
-        fractions = [[fraction for fraction, _ in own] for own in nodes_asked(self)]
+        fractions = [[fraction for fraction, _ in requested] for requested in nodes_asked(self)]
         grids = make_grids(self.beams, fractions)
         turned = [support.point for support in self.point_supports if _turns(support)]
         angled = self._places(grids, turned + connected)
@@ -192,7 +192,7 @@ class Model(ModelOutputs):
         nodes, size = number_nodes(grids, angled, moving, turning)
         filled = [0] * len(self.groups)
         meshes = []
-        behind = size + sum(one.unknowns + len(remembered(one)) for one in self.connectors)
+        behind = size + sum(connector.unknowns + len(remembered(connector)) for connector in self.connectors)
         for grid, carried, block in zip(grids, nodes, self._kinds[1], strict=True):
             parts = {name: getattr(grid, name) for name in _GRID}
             history = _history(grid, behind)
@@ -247,9 +247,9 @@ class Model(ModelOutputs):
     @cached_property
     def _kinds(self) -> tuple[tuple[tuple[Element, Hashable], ...], tuple[int, ...]]:
         """The key of each block of beams, and the number of the block of each beam."""
-        found: dict[tuple[Element, Hashable], int] = {}
-        numbers = tuple(found.setdefault(block_key(beam), len(found)) for beam in self.beams)
-        return tuple(found), numbers
+        blocks: dict[tuple[Element, Hashable], int] = {}
+        numbers = tuple(blocks.setdefault(block_key(beam), len(blocks)) for beam in self.beams)
+        return tuple(blocks), numbers
 
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.

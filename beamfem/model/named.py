@@ -12,15 +12,15 @@ if TYPE_CHECKING:
 
 def require_different_names(beams: Sequence["Beam"]) -> None:
     """Raise InputError for a name of two beams, or for the number of a beam without a name as the name of another."""
-    given = [beam.name for beam in beams if beam.name is not None]
-    if not given:
+    beam_names = [beam.name for beam in beams if beam.name is not None]
+    if not beam_names:
         return
-    counted = Counter(given)
-    for name, number in counted.items():
+    counts = Counter(beam_names)
+    for name, number in counts.items():
         if number > 1:
             raise InputError(f"{number} beams of a Model have the name {name!r}; give each one of its own, or none")
     for number, beam in enumerate(beams):
-        if beam.name is None and str(number) in counted:
+        if beam.name is None and str(number) in counts:
             raise InputError(f"a beam has the name {str(number)!r}, the number of one without a name; name both")
 
 

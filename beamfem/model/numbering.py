@@ -114,13 +114,13 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     turned = joined & all_plain & (leader_turns != np.arange(total))
     node_kind = np.where(turned, TURNED_GRADIENTS, node_kind)
 
-    own, last, turn_size = _ownership(kinds, owner, node_kind)
+    owned, last, turn_size = _ownership(kinds, owner, node_kind)
     follower_moves, follower_turns = leader_moves != np.arange(total), leader_turns != np.arange(total)
-    own[follower_moves, :2] = False
+    owned[follower_moves, :2] = False
     for offset in (1, 2):
         rows = np.flatnonzero(follower_turns & (turn_size >= offset))
-        own[rows, last[rows] - offset + 1] = False
-    dof = np.where(own, np.cumsum(own).reshape(own.shape) - 1, -1)
+        owned[rows, last[rows] - offset + 1] = False
+    dof = np.where(owned, np.cumsum(owned).reshape(owned.shape) - 1, -1)
     dof[follower_moves, :2] = dof[leader_moves[follower_moves], :2]
     for offset in (1, 2):
         rows = np.flatnonzero(follower_turns & (turn_size >= offset))
@@ -133,7 +133,7 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     for values in (node_kind, dof, leader_turns):
         values.setflags(write=False)  # models with the same numbering share them
     turned_nodes = np.flatnonzero(node_kind == TURNED_GRADIENTS)
-    return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(own.sum()))
+    return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(owned.sum()))
 
 
 _cached_number = lru_cache(maxsize=64)(_number)  # studies repeatedly make models with the same numbering
@@ -158,7 +158,7 @@ def _ownership(
     kinds: Sequence[NodeKinds], owner: np.ndarray, node_kind: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the mask of the columns of each node (total, width), its last column, and the number for its rotation."""
-    own = np.zeros((len(owner), max(2 * len(kind.vectors) for kind in kinds)), dtype=bool)
+    owned = np.zeros((len(owner), max(2 * len(kind.vectors) for kind in kinds)), dtype=bool)
     last, turn_size = np.empty(len(owner), dtype=np.int64), np.empty(len(owner), dtype=np.int64)
     has_slope = np.array([len(kind.vectors) == 3 for kind in kinds])[owner]
     for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
@@ -167,10 +167,10 @@ def _ownership(
             if not rows.any():
                 continue
             own_names = labels(code, names)
-            own[rows, : len(own_names)] = True
+            owned[rows, : len(own_names)] = True
             last[rows] = len(own_names) - 1
             turn_size[rows] = 1 if own_names[-1] == "theta" else 2
-    return own, last, turn_size
+    return owned, last, turn_size
 
 
 def _frames(grids: Sequence[Grid], numbered: Numbered) -> np.ndarray:

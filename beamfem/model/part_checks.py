@@ -68,21 +68,21 @@ def _require_load(load: Load) -> None:
 
 def _require_value(load: PointLoad) -> None:
     what = f"value of {type(load).__name__}"
-    given = called(what, lambda: load.value)
-    if callable(given):
+    value = called(what, lambda: load.value)
+    if callable(value):
         raise InputError(f"{what} must be a field or a property, not a method")
-    found = [squared(finite)(what, number) for number in items(what, given)]
-    if len(found) != 3:
-        raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(given)}")
+    numbers = [squared(finite)(what, number) for number in items(what, value)]
+    if len(numbers) != 3:
+        raise InputError(f"{what} must be three numbers, fx, fy and moment, got {shown(value)}")
 
 
 def _require_along(load: Load, arc_length: np.ndarray) -> None:
     kind = type(load).__name__
     if isinstance(load, LineLoad):
         one_of(f"axes of {kind}", load.axes, ("plane", "section", "axis"))
-        found = forces_of(load, arc_length)
-        if flag(f"uniform of {kind}", load.uniform) and np.any(found != found[:1]):
-            raise InputError(f"uniform of {kind} is True, but its forces change on the beam: {shown(found.tolist())}")
+        forces = forces_of(load, arc_length)
+        if flag(f"uniform of {kind}", load.uniform) and np.any(forces != forces[:1]):
+            raise InputError(f"uniform of {kind} is True, but its forces change on the beam: {shown(forces.tolist())}")
     elif isinstance(load, ImposedStrain):
         if len(load.units) != len(load.along):
             raise InputError(f"units of {kind} must name a unit for each name of along, {load.along}, got {load.units}")
@@ -113,24 +113,24 @@ def _require_point_support(support: PointSupport) -> None:
 
 def _require_direction(support: PointSupport, needed: bool) -> None:
     what = f"direction of {type(support).__name__}"
-    given = called(what, lambda: support.direction)
-    if given is None and needed:
+    direction = called(what, lambda: support.direction)
+    if direction is None and needed:
         raise InputError(f'{what} must be a unit vector, since "normal" is prescribed along it, got None')
-    if given is not None:
+    if direction is not None:
         if not needed:
             raise InputError(f'{what} is given, but prescribed() returns no "normal" along it')
-        size = np.hypot(*vector(what, given))
+        size = np.hypot(*vector(what, direction))
         if abs(size - 1.0) > _UNIT:
-            raise InputError(f"{what} must be a unit vector, got {shown(given)} of length {size:g}")
+            raise InputError(f"{what} must be a unit vector, got {shown(direction)} of length {size:g}")
 
 
 def _by_direction(what: str, function: Callable[[], Any], known: tuple[str, ...]) -> Mapping[str, Any]:
-    found = called(what, function)
-    if not isinstance(found, Mapping):
-        raise InputError(f'{what} must return a dict by direction, such as {{"ux": 0.0}}, got {shown(found)}')
-    for direction in found:
+    values = called(what, function)
+    if not isinstance(values, Mapping):
+        raise InputError(f'{what} must return a dict by direction, such as {{"ux": 0.0}}, got {shown(values)}')
+    for direction in values:
         require_known(f"{what} has the unknown direction {shown(direction)}", direction, known)
-    return found
+    return values
 
 
 def _require_line_support(support: LineSupport) -> None:

@@ -57,9 +57,9 @@ def jacobians(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarr
 
 def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.ndarray) -> Axis:
     """Return the axis (steps, n, 2) at points (element, xi) for nodal vectors of elements (steps, n, nv, 2)."""
-    own = grid.beam.element
-    field = own.field
-    local = vectors * scales(own, grid.lengths[element])[:, :, None]
+    element_type = grid.beam.element
+    field = element_type.field
+    local = vectors * scales(element_type, grid.lengths[element])[:, :, None]
     r, d = local[:, :, r_slots(field)], local[:, :, d_slots(field)]
     size, bend = jacobians(grid, element, xi)
     slope = 1.0 / size[:, None]
@@ -68,7 +68,7 @@ def interpolate(grid: Grid, vectors: np.ndarray, element: np.ndarray, xi: np.nda
         return np.einsum("qi,sqic->sqc", table, values)
 
     first = field.centreline(xi, 1) * slope
-    if own.forces.turns_with == "r_x":
+    if element_type.forces.turns_with == "r_x":
         second = (field.centreline(xi, 2) - (bend / size)[:, None] * field.centreline(xi, 1)) * slope**2
         r_ss = sum_over(second, r)
     else:
@@ -88,8 +88,8 @@ def reference_axis(grid: Grid, element: np.ndarray, xi: np.ndarray) -> Axis:
         along = grid.tangent[grid.node[element, 0]]
         none = np.zeros(along.shape)
         return Axis((xi * grid.lengths[element])[:, None] * along, along, none, across(along), none)
-    found = interpolate(grid, reference_vectors(grid, element)[None], element, xi)
-    return Axis(*(getattr(found, name)[0] for name in Axis._fields))
+    axis = interpolate(grid, reference_vectors(grid, element)[None], element, xi)
+    return Axis(*(getattr(axis, name)[0] for name in Axis._fields))
 
 
 def reference_position(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
@@ -113,12 +113,12 @@ def energy_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.nda
 
 def energy_stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the stiffness (n, ns, ns) that enters the energy and the reference strains (n, ns), at its points."""
-    own = grid.beam.element
+    element_type = grid.beam.element
     stiffness, reference = stiffness_at(grid, element, xi)
     jacobian = grid.lengths[element] if grid.straight else jacobians(grid, element, xi)[0]
-    points = len(own.energy_points()[0])
+    points = len(element_type.energy_points()[0])
     by_element = stiffness.reshape(-1, points, *stiffness.shape[1:])
-    return own.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
+    return element_type.energy_stiffness(by_element, jacobian.reshape(-1, points)).reshape(stiffness.shape), reference
 
 
 def length_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -145,8 +145,8 @@ def stiffness_at(grid: Grid, element: np.ndarray, xi: np.ndarray) -> tuple[np.nd
         return forces.stiffness(beam.section_at(0.0), beam.material, beam.element.coordinates, at), strains
     parts = []
     for i, arc in enumerate(grid.section_arc_length(element, xi)):
-        here = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
-        parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, here))
+        point_axis = Axis(*(getattr(at, name)[i : i + 1] for name in Axis._fields))
+        parts.append(forces.stiffness(beam.section_at(arc), beam.material, beam.element.coordinates, point_axis))
     return np.concatenate(parts), strains
 
 
@@ -174,8 +174,8 @@ def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     near, inside = _SHORT * (end - start), _INSIDE * (end - start)
     arc = grid.arc_length(element, xi)
     before, after = np.maximum(arc - near, start + inside), np.minimum(arc + near, end - inside)
-    one, other = grid.beam.curve.tangent(before.copy()), grid.beam.curve.tangent(after.copy())
-    return np.arctan2(cross(one, other), dot(one, other)) / (after - before)
+    tangent_before, tangent_after = grid.beam.curve.tangent(before.copy()), grid.beam.curve.tangent(after.copy())
+    return np.arctan2(cross(tangent_before, tangent_after), dot(tangent_before, tangent_after)) / (after - before)
 
 
 def inertia_points(grid: Grid, element: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -191,11 +191,11 @@ def inertia_at(grid: Grid, where: np.ndarray, at: np.ndarray, weight: np.ndarray
     """Return the inertia (n, 3) at points (where, at) with weights (n,) [m], see `inertia_points`."""
     beam = grid.beam
     if beam.prismatic:
-        own = beam.section_at(0.0).inertia(beam.material)
-        inertia = np.array([[own.mass, own.first_moment, own.rotary]])
+        per_length = beam.section_at(0.0).inertia(beam.material)
+        inertia = np.array([[per_length.mass, per_length.first_moment, per_length.rotary]])
     else:
-        found = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
-        inertia = np.array([[own.mass, own.first_moment, own.rotary] for own in found])
+        inertias = [beam.section_at(arc).inertia(beam.material) for arc in grid.section_arc_length(where, at)]
+        inertia = np.array([[per_length.mass, per_length.first_moment, per_length.rotary] for per_length in inertias])
     if beam.element.forces.fills_body and not grid.straight:
         # det J = alpha + beta y of the curved body
         reference = reference_axis(grid, where, at)
@@ -226,8 +226,8 @@ def reference_angle(grid: Grid) -> np.ndarray:
 def _points(
     grid: Grid, element: np.ndarray | None, xi: np.ndarray, weights: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    chosen = np.arange(grid.elements) if element is None else element
-    where, at = chosen.repeat(len(xi)), xi[None].repeat(len(chosen), axis=0).ravel()
+    elements = np.arange(grid.elements) if element is None else element
+    where, at = elements.repeat(len(xi)), xi[None].repeat(len(elements), axis=0).ravel()
     if grid.straight:
-        return where, at, (grid.lengths[chosen][:, None] * weights).ravel()
-    return where, at, np.tile(weights, len(chosen)) * jacobians(grid, where, at)[0]
+        return where, at, (grid.lengths[elements][:, None] * weights).ravel()
+    return where, at, np.tile(weights, len(elements)) * jacobians(grid, where, at)[0]

@@ -31,10 +31,10 @@ def _table(
     load: object, member: str, function: Callable[[np.ndarray], np.ndarray], arc_length: np.ndarray, columns: int
 ) -> np.ndarray:
     what = f"{member} of {type(load).__name__}"
-    found = number_table(what, called(what, function, arc_length), columns)
-    if len(found) != len(arc_length):
+    table = number_table(what, called(what, function, arc_length), columns)
+    if len(table) != len(arc_length):
         raise InputError(
             f"{what} must have a row for each of the {len(arc_length)} arc lengths that it is asked for, "
-            f"got {len(found)} rows"
+            f"got {len(table)} rows"
         )
-    return found
+    return table

@@ -57,8 +57,8 @@ class SampledAlong:
     def __call__(self, arc_length: float) -> Any:
         """Return the value at an arc length [m]; beyond the saved range, that of the nearer end."""
         columns = np.array(self.values).reshape(len(self.at), -1).T
-        found = tuple(float(np.interp(arc_length, self.at, column)) for column in columns)
-        return found if len(found) > 1 else found[0]
+        values = tuple(float(np.interp(arc_length, self.at, column)) for column in columns)
+        return values if len(values) > 1 else values[0]
 
 
 @dataclass(frozen=True)

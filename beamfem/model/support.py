@@ -75,13 +75,13 @@ class PointSupport(Support):
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
         prescribed, springs = self.prescribed(), self.springs()
-        found: tuple[SupportShape, ...] = ()
+        shapes: tuple[SupportShape, ...] = ()
         if prescribed:
-            found = (Constraint(self.point, prescribed, self.direction),)
+            shapes = (Constraint(self.point, prescribed, self.direction),)
         if springs:
             kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
-            found = (*found, Springs(self.point, (kx, ky), rotational))
-        return found
+            shapes = (*shapes, Springs(self.point, (kx, ky), rotational))
+        return shapes
 
 
 class LineSupport(Support):

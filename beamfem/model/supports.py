@@ -145,8 +145,8 @@ class Prescribed(PointSupport):
 
     def prescribed(self) -> dict[str, Value]:
         """Return the prescribed displacements [m] and rotation [rad] by direction."""
-        given = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
-        return {name: value for name, value in given.items() if value is not None}
+        values = {"ux": self.ux, "uy": self.uy, "rotation": self.rotation}
+        return {name: value for name, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -186,8 +186,8 @@ class Spring(PointSupport):
 
     def springs(self) -> dict[str, float]:
         """Return the stiffness by direction, [N/m] and [N m/rad], without zeros."""
-        given = zip(("ux", "uy", "rotation"), (*self.stiffness, self.rotational), strict=True)
-        return {name: value for name, value in given if value > 0.0}
+        pairs = zip(("ux", "uy", "rotation"), (*self.stiffness, self.rotational), strict=True)
+        return {name: value for name, value in pairs if value > 0.0}
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from beamfem.model.model import Model
 
 def uncounted(model: Model) -> list[BeamMesh]:
     """Return the meshes (m,) of the beams without a node whose rotation is a coordinate."""
-    known: dict[str, list[BeamMesh]] = model.__dict__
-    if "_uncounted" not in known:
-        known["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
-    return known["_uncounted"]
+    cache: dict[str, list[BeamMesh]] = model.__dict__
+    if "_uncounted" not in cache:
+        cache["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
+    return cache["_uncounted"]
 
 
 def number_uncounted(model: Model, mesh: BeamMesh) -> int | None:
@@ -34,6 +34,6 @@ def turning_pairs(model: Model) -> np.ndarray:
     pairs = []
     for mesh in uncounted(model):
         vector = "r_x" if mesh.beam.element.forces.turns_with == "r_x" else "r_y"
-        place = mesh.labels(0).index(f"{vector}^x")
-        pairs.append(mesh.carried.dof[0, place : place + 2])
+        column = mesh.labels(0).index(f"{vector}^x")
+        pairs.append(mesh.carried.dof[0, column : column + 2])
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)

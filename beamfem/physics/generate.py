@@ -33,8 +33,8 @@ class _Printer(PythonCodePrinter):
         substructures = 2 * exponent
         if not substructures.is_Integer or abs(substructures) > 8:
             raise ValueError(f"no rule for {power}")
-        whole, own = abs(int(substructures)) // 2, self.parenthesize(base, 60)
-        factors = [own] * whole + ([f"math.sqrt({self._print(base)})"] if substructures % 2 else [])
+        whole, factor = abs(int(substructures)) // 2, self.parenthesize(base, 60)
+        factors = [factor] * whole + ([f"math.sqrt({self._print(base)})"] if substructures % 2 else [])
         product = " * ".join(factors)
         if exponent < 0:
             return f"(1.0 / ({product}))" if len(factors) > 1 else f"(1.0 / {product})"
@@ -94,18 +94,18 @@ def _second(q: Sequence[Any], eps: Sequence[Any], s: Sequence[Any], slopes: Any,
     geometric = sum((s[i] * sympy.hessian(eps[i], q) for i in range(count)), sympy.zeros(6, 6))
     results = [product[i, j] for i, j in _ORDER]
     needed = set().union(*(result.free_symbols for result in results))
-    wanted = {symbol: (law * named)[key] for key, symbol in stressed.items() if symbol in needed}
+    definitions = {symbol: (law * named)[key] for key, symbol in stressed.items() if symbol in needed}
     steps = [(slope[key], slopes[key]) for key in slope]
     common, reduced = sympy.cse(
         [value for _, value in steps] + [geometric[i, j] for i, j in _ORDER], optimizations="basic"
     )
     lines = [(name, value) for name, value in common]
     lines += [(name, value) for (name, _), value in zip(steps, reduced, strict=False)]
-    lines += list(wanted.items())
+    lines += list(definitions.items())
     finals = [result + extra for result, extra in zip(results, reduced[len(steps) :], strict=True)]
-    known = {**rows, **{str(symbol): point.STIFFNESS + number for number, symbol in enumerate(stiffness.values())}}
+    all_rows = {**rows, **{str(symbol): point.STIFFNESS + number for number, symbol in enumerate(stiffness.values())}}
     return _function(
-        "hessian", "the second derivative of the energy by q", known, lines, finals, point.HESSIAN, cse=False
+        "hessian", "the second derivative of the energy by q", all_rows, lines, finals, point.HESSIAN, cse=False
     )
 
 
@@ -200,8 +200,8 @@ def _module(title: str, functions: Sequence[str]) -> str:
 def sources() -> dict[str, str]:
     """Return the formatted source of all generated modules by file name."""
     measures = {f"{measure.__name__}.py": measure_source(measure) for measure in MEASURES}
-    found = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
-    return {name: _formatted(source) for name, source in found.items()}
+    modules = measures | {f"{kind.name}_node.py": kinematics_source(kind) for kind in KINDS}
+    return {name: _formatted(source) for name, source in modules.items()}
 
 
 def _formatted(source: str) -> str:

@@ -1,7 +1,7 @@
 """Forces acting on elements isolated as free bodies: weight, inertia, loads and foundations, at points."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -38,7 +38,7 @@ class Rows:
 
 
 # the last rows of each solution, which the beams of a model ask for one after another
-_KEPT: "WeakKeyDictionary[Solution, tuple[slice | bytes, Rows]]" = WeakKeyDictionary()
+_KEPT = WeakKeyDictionary[Any, tuple[slice | bytes, Rows]]()
 
 
 def rows_of(solution: "Solution", rows: slice | np.ndarray) -> Rows:
@@ -103,11 +103,11 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
         _along(rows, mesh, elements),
         _spread(rows, mesh, elements, e),
     ]
-    found = {
+    joined = {
         name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "turning") else 0)
         for name in Acting.__dataclass_fields__
     }
-    return Acting(**found)
+    return Acting(**joined)
 
 
 def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acting:
@@ -119,13 +119,13 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
     extra = max(field.degree, field.director_degree)
     parts = []
     for rule in np.unique(acting.rule).tolist():
-        own = acting.rule == rule
-        place = acting.element[own], nearest(gauss(rule)[0], acting.xi[own])
+        mask = acting.rule == rule
+        index = acting.element[mask], nearest(gauss(rule)[0], acting.xi[mask])
         finer = to_more_points(rule, rule + extra)
         spread = []
-        for values in (acting.force[:, own], acting.turning[:, own]):
+        for values in (acting.force[:, mask], acting.turning[:, mask]):
             summed = np.zeros((len(elements), rule, len(values), 2))
-            np.add.at(summed, place, np.moveaxis(values, 1, 0))
+            np.add.at(summed, index, np.moveaxis(values, 1, 0))
             spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
         element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
         # distributed moments come from inertia alone, which turns with d
@@ -162,19 +162,19 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
 def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
-    points, own = actions.points, actions.points.element - mesh.first_element
-    here = actions.spread_on(mesh.first_element + elements)
-    element, position, direction = _numbers(elements, own[here]), points.position[here], points.direction[here]
-    values = rows.values[mesh.block][:, here]
-    r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[here]
+    points, number = actions.points, actions.points.element - mesh.first_element
+    chosen = actions.spread_on(mesh.first_element + elements)
+    element, position, direction = _numbers(elements, number[chosen]), points.position[chosen], points.direction[chosen]
+    values = rows.values[mesh.block][:, chosen]
+    r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[chosen]
     square = dot(g, g)[..., None]
     follows = np.any(at_rest, axis=1, keepdims=True)
-    unit = np.where(points.stretches[here][:, None], 1.0, np.sqrt(square))
+    unit = np.where(points.stretches[chosen][:, None], 1.0, np.sqrt(square))
     co, si = dot(g, at_rest)[..., None] / unit, cross(at_rest, g)[..., None] / unit
     dead = values[..., :2]
-    force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[here] * (r - points.anchor[here])
+    force = np.where(follows, co * dead + si * across(dead), dead) - points.spring[chosen] * (r - points.anchor[chosen])
     turning = values[..., 2:] * across(g) / square
-    return Acting(element, actions.xi[here], actions.rule[here], position, direction, force, turning)
+    return Acting(element, actions.xi[chosen], actions.rule[chosen], position, direction, force, turning)
 
 
 def _nothing(e: np.ndarray) -> Acting:
@@ -189,11 +189,11 @@ def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:
 
 def _tables(mesh: BeamMesh, element: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the shape function tables (m, nv) of r and of d at points (element, xi) of a beam."""
-    own = mesh.beam.element
-    scale = scales(own, mesh.lengths[element])
+    formulation = mesh.beam.element
+    scale = scales(formulation, mesh.lengths[element])
     position, direction = np.zeros_like(scale), np.zeros_like(scale)
-    position[:, r_slots(own.field)] = own.field.centreline(xi)
-    direction[:, d_slots(own.field)] = own.field.director(xi)
+    position[:, r_slots(formulation.field)] = formulation.field.centreline(xi)
+    direction[:, d_slots(formulation.field)] = formulation.field.director(xi)
     return position * scale, direction * scale
 
 

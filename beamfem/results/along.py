@@ -102,8 +102,8 @@ class OnePoint(AxisPoints):
 def section_forces(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> dict[str, np.ndarray]:
     """Return normal and shear force [N] and moment [N m] (rows, points) of some rows of a solution, by name."""
     cuts = Cuts(points.element, points.xi)
-    found = at_points(solution, points.mesh, cuts, rows)
-    return {name: found[:, place] for place, name in enumerate(("normal", "shear", "moment"))}
+    forces = at_points(solution, points.mesh, cuts, rows)
+    return {name: forces[:, i] for i, name in enumerate(("normal", "shear", "moment"))}
 
 
 def rotation(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
@@ -166,8 +166,8 @@ def _stress(name: str) -> Callable[..., np.ndarray]:
 
 
 def _outer(points: AxisPoints, solution: "Solution", rows: slice | np.ndarray) -> np.ndarray:
-    found = stress_at(solution, points.mesh, points.element, points.xi, rows)
-    return np.where(np.abs(found["upper"]) >= np.abs(found["lower"]), found["upper"], found["lower"])
+    stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+    return np.where(np.abs(stress["upper"]) >= np.abs(stress["lower"]), stress["upper"], stress["lower"])
 
 
 _NO_STRESS = "stresses need sections with a material and a height"

@@ -167,10 +167,10 @@ def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     """Return the stress of a beam at the stations of its section forces."""
     mesh = solution.model.mesh_of(beam.start)
     cuts = stations(mesh)
-    found = stress_at(solution, mesh, cuts.element, cuts.xi)
+    stress = stress_at(solution, mesh, cuts.element, cuts.xi)
     arc = mesh.arc_length(cuts.element, cuts.xi)
     units = units_of(solution.model.units)
-    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **found)
+    return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **stress)
 
 
 def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:
@@ -210,16 +210,18 @@ def _of_rows(
     solution: "Solution", mesh: BeamMesh, element: np.ndarray, xi: np.ndarray, rows: slice | np.ndarray
 ) -> dict[str, np.ndarray]:
     normal, shear, moment = np.moveaxis(at_points(solution, mesh, Cuts(element, xi), rows), 1, 0)
-    own, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()
-    strength = strengths(mesh, element, xi, own.layers.shape[1])
-    for layer in range(own.layers.shape[1]):
-        low, high = np.moveaxis(own.layers[:, layer], -1, 0)
+    distribution, extremes = distributions(mesh, element, xi), dict[str, np.ndarray]()
+    strength = strengths(mesh, element, xi, distribution.layers.shape[1])
+    for layer in range(distribution.layers.shape[1]):
+        low, high = np.moveaxis(distribution.layers[:, layer], -1, 0)
         y = low[:, None] + (high - low)[:, None] * _HEIGHTS
-        along = own.normal_stress(layer, y, normal, moment) + self_stress(solution, mesh, element, xi, layer, y, rows)
-        sheared = own.shear_stress(layer, y, shear)
+        along = distribution.normal_stress(layer, y, normal, moment) + self_stress(
+            solution, mesh, element, xi, layer, y, rows
+        )
+        sheared = distribution.shear_stress(layer, y, shear)
         equivalent = von_mises(along, sheared)
         fraction = equivalent / strength[layer][:, None]
-        found = {
+        stresses = {
             "lower": along[..., 0],
             "upper": along[..., -1],
             "tension": along.max(axis=-1),
@@ -230,7 +232,7 @@ def _of_rows(
             "utilisation": np.fmax.reduce(fraction, axis=-1),
         }
         # missing layers of a section coincide with its upper face
-        extremes = {name: _joined(name, extremes[name], found[name]) for name in found} if extremes else found
+        extremes = {name: _joined(name, extremes[name], stresses[name]) for name in stresses} if extremes else stresses
     return extremes
 
 

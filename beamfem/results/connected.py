@@ -27,19 +27,19 @@ def potential_of_connectors(solution: "Solution") -> np.ndarray:
 def momenta_of_connectors(solution: "Solution") -> np.ndarray:
     """Return their linear momentum [kg m/s] and moment of momentum about the origin [kg m^2/s] (steps, 3)."""
     system, times = loading(solution)
-    found = [system.connectors.momenta(state, at) for state, at in _states(solution, times)]
-    return np.array(found).reshape(-1, 3)
+    momenta = [system.connectors.momenta(state, at) for state, at in _states(solution, times)]
+    return np.array(momenta).reshape(-1, 3)
 
 
 def connector_force(solution: "Solution", connector: Contribution) -> np.ndarray:
     """Return the forces of a connector on its points (steps, m, 3): fx, fy [N], moment [N m]. Raises InputError."""
     system, times = loading(solution)
     item = _bound(solution, connector)
-    found = [
+    forces = [
         -item.force(item.at(motion, at, system.connectors.gravity(at)))[: len(item.dofs)]
         for motion, at in _states(solution, times)
     ]
-    return np.array(found).reshape(len(solution), -1, 3)
+    return np.array(forces).reshape(len(solution), -1, 3)
 
 
 def multipliers(solution: "Solution", connector: Contribution) -> np.ndarray:
@@ -56,8 +56,8 @@ def _bound(solution: "Solution", connector: Contribution) -> Connector:
 
 def _energies(solution: "Solution") -> np.ndarray:
     system, times = loading(solution)
-    found = [system.connectors.energies(state, at) for state, at in _states(solution, times)]
-    return np.array(found).reshape(-1, 2)
+    energies = [system.connectors.energies(state, at) for state, at in _states(solution, times)]
+    return np.array(energies).reshape(-1, 2)
 
 
 def _states(solution: "Solution", times: np.ndarray) -> list[tuple[Motion, float]]:

@@ -85,8 +85,8 @@ class FreeBodies:
         column = order[np.repeat(starts[element], count) + within]
         fraction = np.empty(len(row))
         for rule in np.unique(acting.rule):
-            own = np.flatnonzero(acting.rule[column] == rule)
-            fraction[own] = fractions_before(int(rule), acting.xi[column[own]], cuts.xi[row[own]])
+            entries = np.flatnonzero(acting.rule[column] == rule)
+            fraction[entries] = fractions_before(int(rule), acting.xi[column[entries]], cuts.xi[row[entries]])
         return coo_array((fraction, (row, column)), shape=(len(element), len(acting.xi))).tocsr()
 
 
@@ -103,15 +103,15 @@ class Parted(NamedTuple):
 def cut_free(rows: Rows, mesh: BeamMesh, elements: np.ndarray, parted: Parted, p: np.ndarray) -> FreeBodies:
     """Return elements (ne,), in ascending order, as free bodies in rows; p (steps, k): their coordinates there."""
     q, v, a = (np.ascontiguousarray(values) for values in (p, rows.v[:, parted.used], rows.a[:, parted.used]))
-    found = elastic_forces(parted.block, q, v, a, rows.imposing)
-    e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in found)
+    arrays = elastic_forces(parted.block, q, v, a, rows.imposing)
+    e, acceleration, force = (values.reshape(len(p), len(elements), -1, 2) for values in arrays)
     acting = acting_on(rows, mesh, elements, e, acceleration)
     force -= acting.nodal(len(elements))
     per_node = len(mesh.vectors)
     first, last = slice(0, per_node), slice(-per_node, None)
     # all nodal vectors after r turn with the node
-    turns = [cross(e[:, :, place], force[:, :, place])[:, :, 1:].sum(axis=2) for place in (first, last)]
-    pulls = [force[:, :, place][:, :, 0] for place in (first, last)]
+    turns = [cross(e[:, :, end], force[:, :, end])[:, :, 1:].sum(axis=2) for end in (first, last)]
+    pulls = [force[:, :, end][:, :, 0] for end in (first, last)]
     arm = e[:, :, last][:, :, 0] - e[:, :, 0]
     ends = np.stack([-pulls[0], pulls[1]])
     moments = np.stack([-turns[0], turns[1] + cross(arm, pulls[1])])
@@ -140,5 +140,5 @@ def parted(block: Block, elements: np.ndarray) -> Parted:
 def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:
     """Sum values (steps, m, ...) over m with weights (points, m)."""
     flat = np.moveaxis(values, 1, 0).reshape(values.shape[1], -1)
-    found = (fraction @ flat).reshape(fraction.shape[0], len(values), *values.shape[2:])
-    return np.asarray(np.moveaxis(found, 0, 1))
+    summed = (fraction @ flat).reshape(fraction.shape[0], len(values), *values.shape[2:])
+    return np.asarray(np.moveaxis(summed, 0, 1))

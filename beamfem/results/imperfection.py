@@ -74,7 +74,7 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
     if largest == 0.0:
         raise InputError("this mode displaces no point of an axis, so it gives no imperfection")
     crooked = {
-        id(mesh.beam): _crooked(mesh, *(size / largest * own for own in rates))
+        id(mesh.beam): _crooked(mesh, *(size / largest * rate for rate in rates))
         for mesh, rates in zip(model.meshes, moved, strict=True)
     }
     beams = [crooked[id(beam)].beam for beam in model.beams]
@@ -91,14 +91,14 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
 
 def _shape(model: Model, modes: Any, mode: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the state p (n,) that a mode (n,) perturbs, and the mode."""
-    found, p = getattr(modes, "modes", modes), system_of(model, static=True).reference
-    if found is not modes:
-        if not len(found):
+    values, p = getattr(modes, "modes", modes), system_of(model, static=True).reference
+    if values is not modes:
+        if not len(values):
             raise InputError(f"there is no mode to use as an imperfection: {getattr(modes, 'ended', 'none was found')}")
-        number = number_below("mode", mode, len(found))
-        found, p = found[number], modes.states[number] if hasattr(modes, "states") else modes.state.p
+        number = number_below("mode", mode, len(values))
+        values, p = values[number], modes.states[number] if hasattr(modes, "states") else modes.state.p
     try:
-        shape = np.asarray(found, dtype=complex)
+        shape = np.asarray(values, dtype=complex)
     except (TypeError, ValueError):
         shape = np.empty(0)
     if shape.shape != (model.size,) or p.shape != shape.shape or not np.isfinite(shape).all():
@@ -126,9 +126,9 @@ def _rates(mesh: BeamMesh, p: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray
     A linear field has no unique slope at its nodes: the axis is taken to turn with the section there.
     """
     element, xi = _places(mesh)
-    found = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
-    slope = -across(found.d[0]) if mesh.beam.element.field.degree == 1 else found.r_s[0]
-    return found.r[0], slope
+    rates = axis(mesh, nodal_velocities(mesh, p[None], shape[None]), element, xi)
+    slope = -across(rates.d[0]) if mesh.beam.element.field.degree == 1 else rates.r_s[0]
+    return rates.r[0], slope
 
 
 def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
@@ -147,10 +147,10 @@ def _crooked(mesh: BeamMesh, moved: np.ndarray, slope: np.ndarray) -> _Crooked:
     stops = [0, *first[corner].tolist(), len(at)]
     pieces, old, new = list[Curve](), [np.zeros(1)], [np.zeros(1)]
     for begin, end in pairwise(stops):
-        kept = np.setdiff1d(np.arange(begin, end), first[~corner])
-        spline = spline_through_hermite(at[kept], position[kept], rate[kept])
-        old.append(at[kept][1:])
-        new.append(new[-1][-1] + spline.arc_length(at[kept])[1:])
+        indices = np.setdiff1d(np.arange(begin, end), first[~corner])
+        spline = spline_through_hermite(at[indices], position[indices], rate[indices])
+        old.append(at[indices][1:])
+        new.append(new[-1][-1] + spline.arc_length(at[indices])[1:])
         pieces.append(spline)
     before, after = np.concatenate(old), np.concatenate(new)
     line = pieces[0] if len(pieces) == 1 else Chain(tuple(pieces))
@@ -172,8 +172,8 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
     if isinstance(item, Beam):
         return crooked[id(item)].beam
     if isinstance(item, Point):
-        own = crooked[id(item.beam)]
-        return Point(own.beam, own.fraction(item.fraction))
+        moved = crooked[id(item.beam)]
+        return Point(moved.beam, moved.fraction(item.fraction))
     if isinstance(item, tuple | list):
         parts = [_placed(part, crooked) for part in item]
         return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
@@ -183,6 +183,6 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
         require_remade(f"a {type(item).__name__} cannot be placed on imperfect beams", item)
     changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
     if isinstance(item, AlongBeam):
-        own = crooked[id(item.beam)]
-        changes |= {name: _along(function, own.old, own.new) for name, function in functions_along(item).items()}
+        moved = crooked[id(item.beam)]
+        changes |= {name: _along(function, moved.old, moved.new) for name, function in functions_along(item).items()}
     return replace(item, **changes)

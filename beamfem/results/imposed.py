@@ -19,6 +19,6 @@ def imposed_measures(
     imposed = system.blocks[mesh.block].imposed
     if imposed is None:
         return 0.0
-    own = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
-    found = [own.at(factors) for factors in imposing(solution)[rows]]
-    return np.array(found).reshape(len(found), -1, own.first.shape[-1])
+    strains = imposed.of(slice(mesh.first_element, mesh.first_element + mesh.elements))
+    values = [strains.at(factors) for factors in imposing(solution)[rows]]
+    return np.array(values).reshape(len(values), -1, strains.first.shape[-1])

@@ -47,8 +47,8 @@ def exactly(
 ) -> np.ndarray:
     """Return a function (steps, ...) of some coordinates (steps, k) of rows; remainders are included to first order."""
     p = solution.p[rows][:, some]
-    found = values(p)
+    result = values(p)
     if not _corrected(solution)[rows].any():
-        return found
+        return result
     system = system_of(solution.model, solution.static)
-    return found + differentiated(system, values, p, solution.remainders[rows][:, some], some)
+    return result + differentiated(system, values, p, solution.remainders[rows][:, some], some)

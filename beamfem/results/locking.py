@@ -59,9 +59,9 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
     )
     change = 0.0
     for shape in np.real(shapes[:, free]):
-        own = float(shape @ (before @ shape))
-        if own > 0.0:
-            change = max(change, 0.5 * abs(1.0 - float(shape @ (after @ shape)) / own))
+        stiffness = float(shape @ (before @ shape))
+        if stiffness > 0.0:
+            change = max(change, 0.5 * abs(1.0 - float(shape @ (after @ shape)) / stiffness))
     return _sentences(state.model, change, "a frequency")
 
 
@@ -108,10 +108,10 @@ def _unlocked_blocks(system: System) -> tuple[Block, ...]:
     blocks = []
     for number, element in enumerate(system.model.groups):
         other = _unlocked(element)
-        own = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
-        changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in own]
-        kept = other == element or system.blocks[number].history.size
-        blocks.append(system.blocks[number] if kept else build_block(other, changed, system.model.imposing))
+        meshes = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
+        changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in meshes]
+        unchanged = other == element or system.blocks[number].history.size
+        blocks.append(system.blocks[number] if unchanged else build_block(other, changed, system.model.imposing))
     return tuple(blocks)
 
 

@@ -135,8 +135,8 @@ class PathState(State):
         Fields
             The fields, without the axis of steps.
         """
-        found = self._alone.fields(point)
-        values = [getattr(found, name) for name in Fields.__dataclass_fields__]
+        of_row = self._alone.fields(point)
+        values = [getattr(of_row, name) for name in Fields.__dataclass_fields__]
         return Fields(*(_first(value) for value in values))
 
     def section_forces(self, beam: Beam) -> SectionForces:
@@ -152,8 +152,8 @@ class PathState(State):
         SectionForces
             Normal and shear force [N] and moment [N m], (stations,).
         """
-        found = self._alone.section_forces(beam)
-        return SectionForces(found.arc_length, found.normal[0], found.shear[0], found.moment[0], found.units)
+        forces = self._alone.section_forces(beam)
+        return SectionForces(forces.arc_length, forces.normal[0], forces.shear[0], forces.moment[0], forces.units)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,8 +216,8 @@ class Path(Solution):
     bifurcations: tuple[Bifurcation, ...] = ()
 
     def __repr__(self) -> str:
-        found = f"{_listed('limit point', self.limit_points)}, {_listed('bifurcation', self.bifurcations)}"
-        return f"{super().__repr__()[:-1]}; {found}; ended because {self.statistics.ended})"
+        text = f"{_listed('limit point', self.limit_points)}, {_listed('bifurcation', self.bifurcations)}"
+        return f"{super().__repr__()[:-1]}; {text}; ended because {self.statistics.ended})"
 
     @overload
     def __getitem__(self, row: int) -> PathState: ...

@@ -53,11 +53,11 @@ class PointQuantities:
         array([ 0.9999, -0.0096])
         """
         mesh = self.model.mesh_of(point)
-        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
+        element, xi = (np.array([value]) for value in mesh.locate(point.fraction))
         forces = at_points(self._whole, mesh, Cuts(element, xi))
-        own = self_stress(self._whole, mesh, element, xi, None, np.zeros((1, 1)))
-        found = postprocess.fields(mesh, self.p, element, xi, forces, own, turned_of(self._whole, mesh))
-        return Fields(*(postprocess.at_single_point(getattr(found, name)) for name in Fields.__dataclass_fields__))
+        eigenstress = self_stress(self._whole, mesh, element, xi, None, np.zeros((1, 1)))
+        result = postprocess.fields(mesh, self.p, element, xi, forces, eigenstress, turned_of(self._whole, mesh))
+        return Fields(*(postprocess.at_single_point(getattr(result, name)) for name in Fields.__dataclass_fields__))
 
     def position(self, point: Point) -> np.ndarray:
         """Return the position of a point.

@@ -210,9 +210,9 @@ def fields(
     """
     now = axis_at(mesh, p, element, xi)
     strain = strain_at_axis(mesh, now, element, xi)
-    own, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
-    along = (own.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]
-    sheared = own.shear_stress(None, height, forces[:, 1])[..., 0]
+    distribution, height = distributions(mesh, element, xi), np.zeros((len(element), 1))
+    along = (distribution.normal_stress(None, height, forces[:, 0], forces[:, 2]) + self_stress)[..., 0]
+    sheared = distribution.shear_stress(None, height, forces[:, 1])[..., 0]
     angle = turning(mesh, p, now, element, xi, turned)
     stress = Components(along, 0.0 * along, sheared)
     return Fields(now.r, now.r_s, now.d, angle, shear_angle(now), strain, stress)
@@ -265,8 +265,8 @@ def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float =
     if mesh.beam.law is not None:
         rows, points = strains.shape[:2]
         history = p[:, mesh.history].reshape(rows * points, mesh.history.shape[-1])
-        found = mesh.beam.law.energy(strains[..., :3].reshape(-1, 3), history)
-        return np.einsum("sqi,q->si", found.reshape(rows, points, 2), weight)
+        energies = mesh.beam.law.energy(strains[..., :3].reshape(-1, 3), history)
+        return np.einsum("sqi,q->si", energies.reshape(rows, points, 2), weight)
     stored = 0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight
     return np.stack([stored, np.zeros(len(p))], axis=-1)
 

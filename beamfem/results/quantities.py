@@ -141,7 +141,7 @@ class Quantities(PointQuantities):
         """
         kinetic = sum((m.kinetic for m in self._momenta), kinetic_of_connectors(self._whole))
         imposed = ((mesh, imposed_measures(self._whole, mesh)) for mesh in self.model.meshes)
-        parts = (postprocess.strain_energies(mesh, self.p, own) for mesh, own in imposed)
+        parts = (postprocess.strain_energies(mesh, self.p, measures) for mesh, measures in imposed)
         strain, lost = sum(parts, np.zeros((len(self), 2))).T
         acting = potential(self._whole, [m.first_moment for m in self._momenta])
         return Energy(kinetic, strain, acting, dissipated(self._whole, lost), self.model.unit("J"))

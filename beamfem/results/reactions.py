@@ -25,10 +25,10 @@ def reaction(solution: "Solution", point: Point) -> np.ndarray:
     """
     model = solution.model
     model.mesh_of(point)  # refuses what is no point of this model
-    own = model.supports_along.near(point, 1e-9)
-    if not own:
+    supports = model.supports_along.near(point, 1e-9)
+    if not supports:
         raise InputError(f"there is no support at {point}, so there is no reaction")
-    return reaction_of(solution, own)
+    return reaction_of(solution, supports)
 
 
 def reaction_of(solution: "Solution", own: Sequence[PointSupport]) -> np.ndarray:

@@ -25,11 +25,11 @@ def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     """Return the section forces of a beam at the stations listed in `SectionForces`."""
     mesh = solution.model.mesh_of(beam.start)
     cuts = stations(mesh)
-    found = at_points(solution, mesh, cuts)
+    forces = at_points(solution, mesh, cuts)
     arc = mesh.arc_length(cuts.element, cuts.xi)
     arc = np.where(cuts.xi == 0.0, mesh.vertices[cuts.element], arc)
     arc = np.where(cuts.xi == 1.0, mesh.vertices[cuts.element + 1], arc)
-    return SectionForces(arc, found[:, 0], found[:, 1], found[:, 2], units_of(solution.model.units))
+    return SectionForces(arc, forces[:, 0], forces[:, 1], forces[:, 2], units_of(solution.model.units))
 
 
 def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
@@ -40,8 +40,8 @@ def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np
     chunk = max(1, _VALUES // size)
     parts = [np.empty((0, 3, len(cuts.xi)))]
     for numbers in in_parts(len(solution), rows, chunk):
-        here = rows_of(solution, numbers)
-        parts.append(exactly(solution, partial(_at_cuts, here, mesh, elements, own, cuts), numbers, own.used))
+        chunk_rows = rows_of(solution, numbers)
+        parts.append(exactly(solution, partial(_at_cuts, chunk_rows, mesh, elements, own, cuts), numbers, own.used))
     return np.concatenate(parts)
 
 
@@ -62,5 +62,5 @@ def _at_cuts(rows: Rows, mesh: BeamMesh, elements: np.ndarray, own: Parted, cuts
 
 def stations(mesh: BeamMesh) -> Cuts:
     """Return the ends and Gauss points of every element of a beam."""
-    own = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
-    return Cuts(np.repeat(np.arange(mesh.elements), len(own)), np.tile(own, mesh.elements))
+    xi = np.array([0.0, *mesh.beam.element.quadrature()[0], 1.0])
+    return Cuts(np.repeat(np.arange(mesh.elements), len(xi)), np.tile(xi, mesh.elements))

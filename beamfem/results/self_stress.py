@@ -39,12 +39,14 @@ def self_stress(
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
     if all(expands_evenly(section, beam.material) for section in sections):
         return 0.0
-    units = np.array([_units(section, mesh, layer, own) for section, own in zip(_each(sections, y), y, strict=True)])
+    units = np.array(
+        [_units(section, mesh, layer, heights) for section, heights in zip(_each(sections, y), y, strict=True)]
+    )
     factors = imposing(solution)[rows]
     result = np.zeros((len(factors), *y.shape))
     for number, load in imposed:
-        there = mesh.arc_length_inside(element, xi, jumps_along(load))
-        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, there))
+        inside = mesh.arc_length_inside(element, xi, jumps_along(load))
+        result += factors[:, number, None, None] * np.einsum("nhc,nc->nh", units, heat_of(load, inside))
     return result
 
 
@@ -65,12 +67,12 @@ def _each(sections: list[CrossSection], y: np.ndarray) -> list[CrossSection]:
 
 def _units(section: CrossSection, mesh: BeamMesh, layer: int | None, y: np.ndarray) -> np.ndarray:
     """Return the stress (heights, 2) [Pa] for a change of 1 K and a gradient of 1 K/m."""
-    own = mesh.beam.material
+    material = mesh.beam.material
     if layer is None:
-        found = [part for part, there in section.materials_at(np.zeros(1), own) if there.any()]
+        materials = [part for part, present in section.materials_at(np.zeros(1), material) if present.any()]
     else:
-        parts = section.moments(own)
-        found = [parts[min(layer, len(parts) - 1)][0]]
-    free = thermal_strain(section, own)
-    hindered = free[0] - y[:, None] * free[1] - found[0].thermal_expansion * np.column_stack([np.ones_like(y), y])
-    return np.asarray(found[0].youngs_modulus * hindered)
+        parts = section.moments(material)
+        materials = [parts[min(layer, len(parts) - 1)][0]]
+    free = thermal_strain(section, material)
+    hindered = free[0] - y[:, None] * free[1] - materials[0].thermal_expansion * np.column_stack([np.ones_like(y), y])
+    return np.asarray(materials[0].youngs_modulus * hindered)

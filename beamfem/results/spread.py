@@ -23,8 +23,8 @@ def to_more_points(points: int, more: int) -> np.ndarray:
     It keeps the polynomial density through the fewer points.
     """
     (xi, _), (fine, weights) = gauss(points), gauss(more)
-    here, there = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
-    return np.asarray(weights[:, None] * ((there * (2 * np.arange(points) + 1)) @ here.T))
+    old_values, new_values = (np.polynomial.legendre.legvander(2.0 * at - 1.0, points - 1) for at in (xi, fine))
+    return np.asarray(weights[:, None] * ((new_values * (2 * np.arange(points) + 1)) @ old_values.T))
 
 
 def nearest(xi: np.ndarray, at: np.ndarray) -> np.ndarray:

@@ -15,8 +15,8 @@ def strengths(grid: Grid, element: np.ndarray, xi: np.ndarray, layers: int) -> n
     """
     prismatic = isinstance(grid.beam.section, CrossSection)
     sections = [grid.beam.section_at(0.0)] if prismatic else sections_at(grid, element, xi)
-    found = np.array([_strengths(grid, section, layers) for section in sections]).T
-    return np.broadcast_to(found, (layers, len(element))) if prismatic else found
+    values = np.array([_strengths(grid, section, layers) for section in sections]).T
+    return np.broadcast_to(values, (layers, len(element))) if prismatic else values
 
 
 def _strengths(grid: Grid, section: CrossSection, layers: int) -> list[float]:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def first_turns(model: Model, p: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Return the rotation of each such beam at its start (m,) [rad] in a state p (n,), within half a turn of `near`."""
     meshes = uncounted(model)
-    known = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
-    return np.array([rotations[0, 0] for rotations in known])
+    nodal = [postprocess.nodal_rotations(mesh, p[None], near[i : i + 1]) for i, mesh in enumerate(meshes)]
+    return np.array([rotations[0, 0] for rotations in nodal])
 
 
 def start_rotations(solution: "Solution") -> np.ndarray:
@@ -30,17 +30,17 @@ def start_rotations(solution: "Solution") -> np.ndarray:
     """
     if solution.turned is not None:
         return solution.turned
-    known: dict[str, np.ndarray] = solution.__dict__
-    if "_start_rotations" not in known:
+    cache: dict[str, np.ndarray] = solution.__dict__
+    if "_start_rotations" not in cache:
         parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
-        known["_start_rotations"] = np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
-    return known["_start_rotations"]
+        cache["_start_rotations"] = np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
+    return cache["_start_rotations"]
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
     """Return the start rotation of one beam (steps,) [rad]; None if its coordinates hold full turns."""
-    own = number_uncounted(solution.model, mesh)
-    return None if own is None else start_rotations(solution)[:, own]
+    indices = number_uncounted(solution.model, mesh)
+    return None if indices is None else start_rotations(solution)[:, indices]
 
 
 def rotations(solution: "Solution", points: Sequence[Point]) -> np.ndarray:

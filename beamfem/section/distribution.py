@@ -119,8 +119,8 @@ def _parts(section: CrossSection, material: Material | None) -> tuple[Part, ...]
     if isinstance(section, HasParts):
         return section.parts(material)
     low, high = section.bounds
-    known = section.materials_at(np.array([low, high]), material)
-    if len(known) != 1:
+    materials = section.materials_at(np.array([low, high]), material)
+    if len(materials) != 1:
         return ()  # moments alone do not determine where each of several materials is
     own_material, moments = section.moments(material)[0]
     return (Part(own_material.youngs_modulus, MomentsOutline(tuple(moments.tolist()), float(low), float(high))),)

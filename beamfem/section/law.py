@@ -155,13 +155,13 @@ class ConstitutiveLaw:
     @cached_property
     def remembers(self) -> bool:
         """Whether the law depends on history. Raises InputError if it has only part of what `RememberingLaw` needs."""
-        found, parts = fulfils(self.section, RememberingLaw), ("memory", "remember")
-        if not found and any(hasattr(self.section, part) for part in parts):
+        complete, parts = fulfils(self.section, RememberingLaw), ("memory", "remember")
+        if not complete and any(hasattr(self.section, part) for part in parts):
             raise InputError(
                 f"{self.name} has a memory or remember(strain, material, history, dt), but not both: a section law "
                 "with history needs its initial values and how a step changes them"
             )
-        return found
+        return complete
 
     @cached_property
     def start(self) -> np.ndarray:
@@ -185,8 +185,8 @@ class ConstitutiveLaw:
         """
         past = (history, dt) if self.remembers else ()
         with np.errstate(all="ignore"):  # far from equilibrium a law may overflow; the iteration recovers from it
-            found = self._called("resultants", strain, *past)
-        return self._checked("resultants", found, strain.shape)
+            values = self._called("resultants", strain, *past)
+        return self._checked("resultants", values, strain.shape)
 
     def linearised(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """Return section forces (n, 3) at real strains (n, 3), and the consistent tangent (n, 3, 3)."""
@@ -195,19 +195,19 @@ class ConstitutiveLaw:
         for column in range(3):
             moved[column * count : (column + 1) * count, column] += 1j * COMPLEX_STEP
         past = np.tile(history, (3, 1)) if self.remembers else history
-        found = self.resultants(moved, past, dt).reshape(3, count, 3)
-        tangent = np.moveaxis(found.imag / COMPLEX_STEP, 0, -1)
-        return found[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
+        forces = self.resultants(moved, past, dt).reshape(3, count, 3)
+        tangent = np.moveaxis(forces.imag / COMPLEX_STEP, 0, -1)
+        return forces[0].real, 0.5 * (tangent + np.swapaxes(tangent, 1, 2))
 
     def remember(self, strain: np.ndarray, history: np.ndarray, dt: float = 0.0) -> np.ndarray:
         """Return the history variables (n, k) after an accepted step to strains (n, 3).
 
         Raises InputError if the law returns anything but finite real numbers of this shape.
         """
-        found = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
-        if found.dtype.kind == "c" or not np.isfinite(found).all():
+        updated = self._checked("remember", self._called("remember", strain, history, dt), history.shape)
+        if updated.dtype.kind == "c" or not np.isfinite(updated).all():
             raise InputError(f"remember of {self.name} must return finite numbers, real ones for real strains")
-        return found
+        return updated
 
     def energy(self, strain: np.ndarray, history: np.ndarray) -> np.ndarray:
         """Return the stored and the dissipated energy per length (n, 2) [J/m]; dissipated is 0 without history.

@@ -39,9 +39,9 @@ def require_law(law: ConstitutiveLaw) -> None:
 def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarray, dt: float) -> None:
     """Raise InputError if complex steps, differences and energy of a law disagree, or committing history changes it."""
     history = law.at_start(len(strain))
-    found, tangent = law.linearised(strain, history, dt)
+    forces, tangent = law.linearised(strain, history, dt)
     moved = law.resultants(strain.astype(complex), history, dt).imag
-    whole, work = tangent * unit[:, None] * unit, found * unit
+    whole, work = tangent * unit[:, None] * unit, forces * unit
     largest = np.abs(whole).max(initial=0.0)
     where = f"at strains such as {strain[0].tolist()}" + (f" after {dt:g} s" if law.remembers else "")
     if not np.isfinite(whole).all() or not np.isfinite(work).all() or np.any(moved != 0.0):
@@ -56,7 +56,7 @@ def _require_consistent(law: ConstitutiveLaw, strain: np.ndarray, unit: np.ndarr
     if law.remembers:
         history = law.remember(strain, history, dt)
         again, elastic = law.linearised(strain, history)
-        if not np.abs((again - found) * unit).max() <= least:
+        if not np.abs((again - forces) * unit).max() <= least:
             raise InputError(
                 f"resultants of {law.name} change {where} when history is committed: with the history that remember "
                 f"returns and dt = 0 they must be those of the step"
@@ -87,21 +87,21 @@ def _force(law: ConstitutiveLaw, strain: np.ndarray, history: np.ndarray, unit: 
 
 def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Return the derivatives (3, n, ...) by each strain, times its unit, by differences of fourth order."""
-    found = []
+    slopes = []
     for step in _STEP * np.diag(unit):
         near = function(at + step) - function(at - step)
         far = function(at + 2.0 * step) - function(at - 2.0 * step)
-        found.append((8.0 * near - far) / (12.0 * _STEP))
-    return np.array(found)
+        slopes.append((8.0 * near - far) / (12.0 * _STEP))
+    return np.array(slopes)
 
 
 def _require_rigidity(law: ConstitutiveLaw, rigidity: Rigidity, lengths: np.ndarray) -> None:
     """Raise InputError if the stiffness of a law at zero strain is not the rigidity of its section."""
-    own = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
-    own[0, 2] = own[2, 0] = rigidity.coupling
+    stiffness = np.diag([rigidity.axial, rigidity.shear, rigidity.bending])
+    stiffness[0, 2] = stiffness[2, 0] = rigidity.coupling
     units = lengths[:, None] * lengths
-    if np.abs((law.stiffness - own) * units).max() > _AGREE * np.abs(own * units).max():
+    if np.abs((law.stiffness - stiffness) * units).max() > _AGREE * np.abs(stiffness * units).max():
         raise InputError(
             f"the law of {law.name} begins with the stiffness {law.stiffness.tolist()}, but its rigidity is "
-            f"{own.tolist()}: rigidity(material) must be the stiffness at zero strain"
+            f"{stiffness.tolist()}: rigidity(material) must be the stiffness at zero strain"
         )

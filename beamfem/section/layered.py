@@ -139,8 +139,8 @@ class Layered:
 
         The face between two layers belongs to the upper one.
         """
-        place = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
-        return [(layer.material, place == number) for number, layer in enumerate(self.layers)]
+        index = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
+        return [(layer.material, index == number) for number, layer in enumerate(self.layers)]
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
         """Return the material of each layer with heights (n,) [m] and weights (n,) [m^2] of a quadrature rule."""

@@ -149,9 +149,9 @@ class Section:
 
     def rigidity(self, material: Material | None) -> Rigidity:
         """Return E A [N], k_s G A [N] and E I [N m^2]. Raises InputError without a material."""
-        own = required(material)
-        modulus = own.youngs_modulus
-        shear = self.shear_factor * own.shear_modulus * self.area
+        checked_material = required(material)
+        modulus = checked_material.youngs_modulus
+        shear = self.shear_factor * checked_material.shear_modulus * self.area
         return Rigidity(modulus * self.area, shear, modulus * self.second_moment)
 
     def inertia(self, material: Material | None) -> Inertia:

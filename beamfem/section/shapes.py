@@ -132,7 +132,7 @@ def Tube(diameter: float, thickness: float, shear_factor: float = 0.5) -> Sectio
         raise InputError(f"the wall of a Tube ({thickness:g}) is at most half its diameter ({diameter:g})")
     inner = diameter - 2.0 * thickness
     powers = (_power(diameter, n) - _power(inner, n) for n in (2, 4, 6))
-    area, second, fourth = (np.pi * power / by for power, by in zip(powers, (4.0, 64.0, 512.0), strict=True))
+    area, second, fourth = (np.pi * power / divisor for power, divisor in zip(powers, (4.0, 64.0, 512.0), strict=True))
     _require_moments("Tube", area, second, fourth)
     outline = TubeOutline(0.5 * diameter, 0.5 * inner)
     return ShapedSection(area, second, shear_factor, fourth, height=diameter, outline=outline)

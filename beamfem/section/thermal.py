@@ -14,13 +14,13 @@ def thermal_strain(section: CrossSection, material: Material | None) -> np.ndarr
     least-squares fit to alpha T(y) weighted by E dA, so that normal force and moment are zero (Timoshenko 1925).
     """
     parts = _parts(section, material)
-    expansions = [own.thermal_expansion for own, _ in parts]
+    expansions = [part.thermal_expansion for part, _ in parts]
     alpha = expansions[0]
     if expansions == [alpha] * len(expansions):
         return np.array([[alpha, 0.0], [0.0, -alpha], [alpha, 0.0]])
-    e0, e1, e2 = (sum(own.youngs_modulus * moments[n] for own, moments in parts) for n in range(3))
+    e0, e1, e2 = (sum(part.youngs_modulus * moments[n] for part, moments in parts) for n in range(3))
     f0, f1, f2 = (
-        sum(own.thermal_expansion * own.youngs_modulus * moments[n] for own, moments in parts) for n in range(3)
+        sum(part.thermal_expansion * part.youngs_modulus * moments[n] for part, moments in parts) for n in range(3)
     )
     axial = np.linalg.solve(np.array([[e0, -e1], [-e1, e2]]), np.array([[f0, f1], [-f1, -f2]]))
     return np.vstack([axial, [f0 / e0, f1 / e0]])
@@ -36,7 +36,7 @@ def expansion(section: CrossSection, material: Material | None) -> np.ndarray:
 
 def expands_evenly(section: CrossSection, material: Material | None) -> bool:
     """Return whether the whole section has the same coefficient of thermal expansion."""
-    return len({own.thermal_expansion for own, _ in _parts(section, material)}) == 1
+    return len({part.thermal_expansion for part, _ in _parts(section, material)}) == 1
 
 
 def _parts(section: CrossSection, material: Material | None) -> list[tuple[Material, np.ndarray]]:

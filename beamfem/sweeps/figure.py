@@ -37,8 +37,8 @@ def plot_sweep(
         curves.setdefault(label, []).append((float(point[over]), height))
     named = 1 < len(curves) <= _NAMED
     # a legend of few short names stands above the axes, a longer one beside them in a wider figure
-    beside = named and sum(map(len, curves)) > _ABOVE
-    figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if beside else 0.0))
+    legend_beside = named and sum(map(len, curves)) > _ABOVE
+    figure, axes = new_figure(6.4 + (_WIDEST * min(1.0, max(map(len, curves)) / _CUT) if legend_beside else 0.0))
     for number, (label, points) in enumerate(curves.items()):
         x, y = np.array(sorted(points)).T
         colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
@@ -46,7 +46,7 @@ def plot_sweep(
     axes.set_xlabel(over)
     axes.set_ylabel(value)
     axes.margins(0.04)
-    if beside:
+    if legend_beside:
         figure.legend(frameon=False, fontsize=9, loc="outside right upper")
     elif named:
         figure.legend(frameon=False, fontsize=9, loc="outside upper left", ncols=len(curves))

@@ -69,7 +69,7 @@ def check_call(function: Callable[..., Any], point: Mapping[str, Any], options: 
     except TypeError as error:
         name = getattr(function, "__name__", repr(function))
         sentence = f"{name}{signature} cannot be called with {', '.join(point) or 'nothing'}: {error}"
-        unknown = [each for each in point if each not in signature.parameters]
+        unknown = [key for key in point if key not in signature.parameters]
         hint = f"; {nearest(unknown[0], [*signature.parameters, *options])}" if unknown else ""
         raise InputError(f"{sentence}{hint}") from None
 
@@ -89,14 +89,14 @@ def is_solution(value: Any) -> bool:
 
 def labels(values: Sequence[Any]) -> tuple[str, ...]:
     """Return a text for each value: its name where it has one; equal names get the members in which they differ."""
-    found = [_label(value) for value in values]
-    for text, same in _repeated(found):
+    texts = [_label(value) for value in values]
+    for text, same in _repeated(texts):
         for i, detail in zip(same, _differences([values[i] for i in same]), strict=True):
-            found[i] = f"{text} ({detail})" if detail else text
-    for text, same in _repeated(found):
+            texts[i] = f"{text} ({detail})" if detail else text
+    for text, same in _repeated(texts):
         for number, i in enumerate(same, 1):
-            found[i] = f"{text} #{number}"
-    return tuple(found)
+            texts[i] = f"{text} #{number}"
+    return tuple(texts)
 
 
 def _repeated(texts: Sequence[str]) -> list[tuple[str, list[int]]]:
@@ -104,7 +104,7 @@ def _repeated(texts: Sequence[str]) -> list[tuple[str, list[int]]]:
     places: dict[str, list[int]] = {}
     for i, text in enumerate(texts):
         places.setdefault(text, []).append(i)
-    return [(text, own) for text, own in places.items() if len(own) > 1]
+    return [(text, indices) for text, indices in places.items() if len(indices) > 1]
 
 
 def assignments(point: Mapping[str, Any]) -> str:

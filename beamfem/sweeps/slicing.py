@@ -36,12 +36,12 @@ def needed(tree: ast.Module, names: Iterable[str]) -> ast.Module:
     statements = [_statement(node) for node in tree.body]
     bound = {name for statement in statements for name in statement.binds}
     # bf.sweep(...) changes nothing of what a function takes from bf
-    own = bound - {name for statement in statements if statement.imports for name in statement.binds}
+    defined = bound - {name for statement in statements if statement.imports for name in statement.binds}
     wanted = set(names)
     if not wanted <= bound:
         return tree
     chosen: set[int] = set()
-    while more := {i for i, part in enumerate(statements) if wanted & part.touches(own)} - chosen:
+    while more := {i for i, part in enumerate(statements) if wanted & part.touches(defined)} - chosen:
         chosen |= more
         wanted |= {name for i in more for name in (statements[i].uses | statements[i].binds) & bound}
     return ast.Module([tree.body[i] for i in sorted(chosen)], [])

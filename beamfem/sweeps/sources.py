@@ -39,27 +39,27 @@ class Sources:
         parts = list(dict.fromkeys(_code((function, tuple(point.values())))))
         script = sorted({part.__qualname__.split(".")[0] for part in parts if part.__module__ == SCRIPT})
         modules = {name for part in parts for name in _modules(part)}
-        given = frozenset(modules | {f"{SCRIPT}:{name}" for name in script})
-        if given not in self._behind:
-            self._behind[given] = self._reachable(modules, script, parts)
-        return self._behind[given]
+        key = frozenset(modules | {f"{SCRIPT}:{name}" for name in script})
+        if key not in self._behind:
+            self._behind[key] = self._reachable(modules, script, parts)
+        return self._behind[key]
 
     def _reachable(self, modules: set[str], script: list[str], parts: list[Any]) -> dict[str, str]:
-        found: dict[str, str] = {}
+        digests: dict[str, str] = {}
         waiting = sorted(modules)
         while waiting:
             name = waiting.pop()
             path = _own_file(name)
-            if name in found or (path is None and name != SCRIPT):
+            if name in digests or (path is None and name != SCRIPT):
                 continue
             if path is None:  # a notebook
                 typed = [_typed(part, set()) for part in parts if part.__module__ == SCRIPT]
-                found[name] = _digest(repr(typed))
+                digests[name] = _digest(repr(typed))
                 continue
             digest, imports = self._read(name, path, script)
-            found[name] = digest
+            digests[name] = digest
             waiting += imports
-        return found
+        return digests
 
     def _read(self, name: str, path: Path, script: list[str]) -> tuple[str, frozenset[str]]:
         key = f"{name} {script}" if name == SCRIPT else name
@@ -106,14 +106,14 @@ def _imports(tree: ast.AST, package: str) -> Iterator[str]:
     """Names of modules that may be imported anywhere in a file; some are names in modules instead."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            wanted = [alias.name for alias in node.names]
+            names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             parents = package.split(".")[: -(node.level - 1) or None] if node.level else []
             base = ".".join([*parents, *([node.module] if node.module else [])])
-            wanted = [f"{base}.{alias.name}" for alias in node.names]
+            names = [f"{base}.{alias.name}" for alias in node.names]
         else:
             continue
-        for name in wanted:
+        for name in names:
             yield from accumulate(name.split("."), "{}.{}".format)
 
 

@@ -80,13 +80,13 @@ class Sweep:
         name = self.column(name)
         require_known(f"the sweep has no {shown(name)}", name, rows[0])
         column = [row[name] for row in rows]
-        found = [value for value in column if value is not None]
-        if not all(isinstance(value, bool | int | float | np.ndarray) for value in found):
+        valid = [value for value in column if value is not None]
+        if not all(isinstance(value, bool | int | float | np.ndarray) for value in valid):
             array = np.empty(len(column), dtype=object)
-            for place, value in enumerate(column):  # a solution is a sequence, which numpy would unpack
-                array[place] = value
+            for i, value in enumerate(column):  # a solution is a sequence, which numpy would unpack
+                array[i] = value
             return array
-        shapes = {np.shape(value) for value in found}
+        shapes = {np.shape(value) for value in valid}
         if len(shapes) > 1:
             raise InputError(f"the arrays of {name!r} have different shapes {sorted(shapes)}; take them from values")
         missing = np.full(shapes.pop() if shapes else (), np.nan)
@@ -169,15 +169,14 @@ class Sweep:
         names = list(self.labels[0])
         step = [int(np.prod(self.shape[axis + 1 :])) for axis in range(len(names))]
         coordinates = {
-            name: [texts[place * step[axis]][name] for place in range(self.shape[axis])]
-            for axis, name in enumerate(names)
+            name: [texts[i * step[axis]][name] for i in range(self.shape[axis])] for axis, name in enumerate(names)
         }
         data = {}
         for name in self.table()[0]:
             values = None if name in names else self[name]
             if values is not None and values.dtype != object:
-                own = [f"{name}_{axis}" for axis in range(values.ndim - 1)]
-                data[name] = ((*names, *own), values.reshape(*self.shape, *values.shape[1:]))
+                dimensions = [f"{name}_{axis}" for axis in range(values.ndim - 1)]
+                data[name] = ((*names, *dimensions), values.reshape(*self.shape, *values.shape[1:]))
         return xarray.Dataset(data, coordinates)
 
     def plot(self, value: str | None = None, over: str | None = None, path: str | PathLike[str] | None = None) -> Any:
@@ -282,9 +281,9 @@ def sweep(
     texts = combinations({name: labels(values) for name, values in varied.items()}, {})
     outcomes: list[Outcome | None] = [None] * len(points)
     with ExitStack() as stack:
-        kept = None if store is None else stack.enter_context(StoredCalls(store, function, points))
-        if kept is not None:
-            outcomes = kept.found(keep_stale)
+        stored = None if store is None else stack.enter_context(StoredCalls(store, function, points))
+        if stored is not None:
+            outcomes = stored.found(keep_stale)
         todo = [i for i, outcome in enumerate(outcomes) if outcome is None]
         runner = stack.enter_context(TaskRunner(function, executor))
         report = stack.enter_context(progress("points", len(todo)))
@@ -292,8 +291,8 @@ def sweep(
             for done, (number, outcome) in enumerate(runner.run([points[i] for i in todo]), 1):
                 i = todo[number]
                 outcomes[i] = outcome
-                if kept is not None and outcome.error is None:
-                    kept.add(i, assignments(texts[i]), outcome)
+                if stored is not None and outcome.error is None:
+                    stored.add(i, assignments(texts[i]), outcome)
                 report(done)
         except BaseException as error:
             if computed := sum(outcomes[i] is not None for i in todo):

@@ -120,17 +120,17 @@ class TaskRunner:
 
     def _alone(self, point: Point) -> Outcome:
         """Run a suspect point alone, so that the death of its worker can be attributed to it."""
-        begun = time.perf_counter()
+        start = time.perf_counter()
         try:
             executor = self._open(1)
-            begun = time.perf_counter()  # workers need a second to start
+            start = time.perf_counter()  # workers need a second to start
             return self._submit(executor, [point]).result()[0]
         except BrokenExecutor:
             self._close()
             error = "WorkerDied: the worker process ended in this call, which ran alone"
         except Exception as raised:
             error = f"{type(raised).__name__}: {raised}"
-        return Outcome(seconds=time.perf_counter() - begun, error=error)
+        return Outcome(seconds=time.perf_counter() - start, error=error)
 
     def _submit(self, executor: Executor, points: list[Point]) -> "Future[list[Outcome]]":
         self._attempt += 1

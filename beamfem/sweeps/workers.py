@@ -46,13 +46,13 @@ def call(function: Callable[..., Any], point: Point) -> Outcome:
     The time in which kernels are compiled or loaded, which the first call in a process would pay, is not that of the
     point.
     """
-    begun = _clock()
+    start = _clock()
     try:
         value = _checked(function(**point))
     except Exception as error:
         sentence = f"{type(error).__name__}: {error}"
-        return Outcome(None, _clock() - begun, sentence, traceback.format_exc())
-    return Outcome(value, _clock() - begun)
+        return Outcome(None, _clock() - start, sentence, traceback.format_exc())
+    return Outcome(value, _clock() - start)
 
 
 def _clock() -> float:
@@ -140,11 +140,11 @@ def end_workers(executor: Executor) -> None:
 def _spawning(factory: Callable[..., Executor]) -> ExecutorFactory:
     """Make a process pool spawn, since a fork copies locks of other threads, and its workers end with this process."""
     bare = factory.func if isinstance(factory, partial) else factory
-    given = factory.keywords if isinstance(factory, partial) else {}
+    keywords = factory.keywords if isinstance(factory, partial) else {}
     if not (isinstance(bare, type) and issubclass(bare, ProcessPoolExecutor)):
         return factory
     ours = {"mp_context": multiprocessing.get_context("spawn"), "initializer": end_with_parent}
-    return partial(factory, **{name: value for name, value in ours.items() if name not in given})
+    return partial(factory, **{name: value for name, value in ours.items() if name not in keywords})
 
 
 @cache

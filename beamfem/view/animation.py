@@ -82,9 +82,9 @@ def _frames(shapes: Shapes, undeformed: bool, supports: bool, loads: bool, dpi: 
     title = axes.set_title(" ", fontsize=10, pad=72.0 * LINE if undeformed else 6.0)
     canvas = figure.canvas
     canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
+    background = canvas.copy_from_bbox(figure.bbox)
     for order, row in enumerate(shapes.rows):
-        canvas.restore_region(still)
+        canvas.restore_region(background)
         moving = shapes.draw(axes, order)
         if supports:
             moving += draw_supports(axes, solution, int(row), shapes.centre)

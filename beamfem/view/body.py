@@ -164,7 +164,7 @@ class _Scene:
 
 def _by_layer(shapes: Shapes, values: Sequence[np.ndarray]) -> np.ndarray:
     """Repeat values at the points of each beam (points,) for each of its layers."""
-    return np.concatenate([np.tile(own, len(parts)) for own, parts in zip(values, shapes.layers, strict=True)])
+    return np.concatenate([np.tile(value, len(parts)) for value, parts in zip(values, shapes.layers, strict=True)])
 
 
 def _widths(shapes: Shapes) -> list[np.ndarray]:

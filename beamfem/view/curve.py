@@ -47,7 +47,7 @@ def plot_curve(solution: Solution, x: Drawn, y: Drawn, path: str | PathLike[str]
     "total" energy [J]; a pair of a label and numbers (steps,), or numbers. Where two elements meet or a load acts, a
     section is that on the side towards the beam's end. Raises InputError; MissingPackageError without matplotlib.
     """
-    (across, horizontal), (up, vertical) = (_taken(solution, *own) for own in (("x", x), ("y", y)))
+    (across, horizontal), (up, vertical) = (_taken(solution, *pair) for pair in (("x", x), ("y", y)))
     figure, axes = new_figure()
     marker = "." if len(solution) <= _MARKED else None
     axes.plot(horizontal, vertical, color=COLOURS[0], linewidth=1.6, marker=marker, markersize=4)

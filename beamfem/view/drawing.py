@@ -116,8 +116,8 @@ def frame(axes: Any, middle: np.ndarray, size: np.ndarray, inches: np.ndarray, u
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(middle[0] - 0.5 * size[0], middle[0] + 0.5 * size[0])
     axes.set_ylim(middle[1] - 0.5 * size[1], middle[1] + 0.5 * size[1])
-    for name, length, apart in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
-        axes.locator_params(axis=name, nbins=int(np.clip(length / apart, 2, 9)))
+    for name, length, spacing in (("x", inches[0], 0.8), ("y", inches[1], 0.6)):
+        axes.locator_params(axis=name, nbins=int(np.clip(length / spacing, 2, 9)))
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
 
@@ -140,9 +140,9 @@ def _bar_of_rows(figure: Any, axes: Any, solution: Solution, rows: np.ndarray) -
     name, unit = axis_of_rows(solution)
     colours = [shade((order + 1) / len(rows)) for order in range(len(rows))]
     norm = BoundaryNorm(np.arange(len(rows) + 1) - 0.5, len(rows))
-    shown = _add_bar(figure, axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]")
-    shown.set_ticks(np.arange(len(rows)), labels=[f"{value:.3g}" for value in values])
-    shown.ax.tick_params(length=0)
+    colour_bar = _add_bar(figure, axes, ScalarMappable(norm, ListedColormap(colours)), f"{name} [{unit}]")
+    colour_bar.set_ticks(np.arange(len(rows)), labels=[f"{value:.3g}" for value in values])
+    colour_bar.ax.tick_params(length=0)
 
 
 def _wide(labels: list[str]) -> float:
@@ -168,10 +168,10 @@ def legend_above(figure: Any, axes: Any, entries: list[Any]) -> None:
 def _add_bar(figure: Any, axes: Any, colours: Any, label: str) -> Any:
     width = figure.get_size_inches()[0]
     left, bottom, across, height = axes.get_position().bounds
-    place = figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))
-    shown = figure.colorbar(colours, cax=place, label=label)
-    shown.outline.set_visible(False)
-    return shown
+    bar_axes = figure.add_axes((left + across + 0.12 / width, bottom, 0.16 / width, height))
+    colour_bar = figure.colorbar(colours, cax=bar_axes, label=label)
+    colour_bar.outline.set_visible(False)
+    return colour_bar
 
 
 def _span(solution: Solution, rows: np.ndarray) -> str:

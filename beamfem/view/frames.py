@@ -22,8 +22,8 @@ def spread_rows(solution: Solution, most: int) -> np.ndarray:
         return np.array([len(solution) - 1])
     if solution.static:
         return np.unique(np.linspace(0, len(solution) - 1, most).round().astype(int))
-    wanted = np.linspace(solution.at[0], solution.at[-1], most)
-    return np.unique(np.abs(solution.at[:, None] - wanted).argmin(axis=0))
+    times = np.linspace(solution.at[0], solution.at[-1], most)
+    return np.unique(np.abs(solution.at[:, None] - times).argmin(axis=0))
 
 
 def one_row(solution: Solution, row: int) -> Solution:

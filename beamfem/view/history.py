@@ -49,19 +49,19 @@ def plot_history(
     Raises InputError; MissingPackageError without matplotlib.
     """
     if isinstance(quantity, str) and quantity == "energy":
-        found = solution.energy()
-        curves = {name: getattr(found, name) for name in ("kinetic", "strain", "potential", "total")}
+        energy = solution.energy()
+        curves = {name: getattr(energy, name) for name in ("kinetic", "strain", "potential", "total")}
         label, unit, parts = "energy", "J", [curves]
     else:
         label, unit, values = _quantity(quantity)
         points = [point] if isinstance(point, Point) else [] if point is None else items("point", point)
-        if not points or not all(isinstance(own, Point) for own in points):
+        if not points or not all(isinstance(item, Point) for item in points):
             raise InputError(f"the history of {quantity!r} needs a point such as beam.end, got {shown(point)}")
-        parts = [values(solution, own) for own in points]
+        parts = [values(solution, item) for item in points]
         if len(parts) > 1:
             parts = [
-                {f"{name} at {place(solution.model, own.reference)}": curve for name, curve in part.items()}
-                for own, part in zip(points, parts, strict=True)
+                {f"{name} at {place(solution.model, item.reference)}": curve for name, curve in part.items()}
+                for item, part in zip(points, parts, strict=True)
             ]
     figure, axes = new_figure()
     several = sum(len(part) for part in parts) > 1

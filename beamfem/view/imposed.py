@@ -50,11 +50,11 @@ def draw_imposed(axes: Any, solution: "Solution", items: list[tuple[Strains, int
 
 def _move_inside(words: Any, axes: Any) -> None:
     """Move text sideways into the axes, or to their left edge if it is wider."""
-    own, room = words.get_window_extent(), axes.get_window_extent()
+    extent, room = words.get_window_extent(), axes.get_window_extent()
     points = 72.0 / axes.figure.dpi
     x, y = words.get_position()
-    beyond = max(min(0.0, room.x1 - _MARGIN / points - own.x1), room.x0 + _MARGIN / points - own.x0)
-    if beyond < 0.0 or own.x0 < room.x0 + _MARGIN / points:
+    beyond = max(min(0.0, room.x1 - _MARGIN / points - extent.x1), room.x0 + _MARGIN / points - extent.x0)
+    if beyond < 0.0 or extent.x0 < room.x0 + _MARGIN / points:
         words.set_position((x + beyond * points, y))
 
 

@@ -58,7 +58,7 @@ def write_labels(
     written: list[_Box] = []
     named: list[tuple[str, np.ndarray]] = []
     for point, at, text, colour in zip(points, places, texts, colours, strict=True):
-        if any(text == own and np.linalg.norm(at - there) < _SAME for own, there in named):
+        if any(text == name and np.linalg.norm(at - there) < _SAME for name, there in named):
             continue
         note = axes.annotate(text, point, fontsize=_SIZE, zorder=4, ha="center", va="center", annotation_clip=False)
         extent = note.get_window_extent()
@@ -95,7 +95,9 @@ def _badness(others: Sequence[_Box], room: _Box, line: np.ndarray, box: _Box) ->
 def _offsets(half: np.ndarray) -> list[np.ndarray]:
     """Return where the middle of a text may stand, from its point: above, below, beside and across, near ones first."""
     ways = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
-    return [np.array(way) * (half + apart * (0.7 if all(way) else 1.0)) for apart in _APART for way in ways]
+    return [
+        np.array(direction) * (half + gap * (0.7 if all(direction) else 1.0)) for gap in _APART for direction in ways
+    ]
 
 
 def _dense(line: np.ndarray) -> np.ndarray:

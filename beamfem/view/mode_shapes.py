@@ -71,8 +71,8 @@ def _plot(
     if number == 0:
         raise InputError("there are no modes to draw")
     solutions = [modes.solution(mode) for mode in range(number)]
-    shapes = [Shapes(own, rows(mode, own), total=1000) for mode, own in enumerate(solutions)]
-    box = np.stack([np.min([own.box[0] for own in shapes], axis=0), np.max([own.box[1] for own in shapes], axis=0)])
+    shapes = [Shapes(item, rows(mode, item), total=1000) for mode, item in enumerate(solutions)]
+    box = np.stack([np.min([item.box[0] for item in shapes], axis=0), np.max([item.box[1] for item in shapes], axis=0)])
     size, unit = box[1] - box[0], modes.model.unit("m")
     columns = min(number, 2 if size[0] > 1.5 * size[1] else 3)
     lines = -(-number // columns)
@@ -80,12 +80,12 @@ def _plot(
     width = np.clip((height - 0.7) * size[0] / max(size[1], 1e-12), 2.2, _WIDTH)
     figure = empty_figure(columns * width + 0.6, lines * height + 0.7)
     grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
-    for mode, (axes, own) in enumerate(zip(grid.flat, shapes, strict=False)):
-        original = draw_undeformed(axes, own.points)
-        for order in range(len(own.rows)):
-            own.draw(axes, order, (order + 1) / len(own.rows))
-        draw_supports(axes, own.solution, int(own.rows[-1]), own.centre)
-        draw_joints(axes, own.solution, int(own.rows[-1]))
+    for mode, (axes, item) in enumerate(zip(grid.flat, shapes, strict=False)):
+        original = draw_undeformed(axes, item.points)
+        for order in range(len(item.rows)):
+            item.draw(axes, order, (order + 1) / len(item.rows))
+        draw_supports(axes, item.solution, int(item.rows[-1]), item.centre)
+        draw_joints(axes, item.solution, int(item.rows[-1]))
         frame(axes, box.mean(axis=0), size * 1.06 + 0.08 * size.max(), np.array([width, height - 0.7]), unit)
         axes.set_title(title(mode), fontsize=10)
         axes.label_outer()

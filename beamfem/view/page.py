@@ -83,8 +83,8 @@ def _entry(entry: Entry) -> str:
     data = base64.b64encode(entry.picture.read_bytes()).decode()
     kind = "svg+xml" if entry.picture.suffix == ".svg" else entry.picture.suffix[1:]
     verdict = {None: "", True: "<p class='yes'>The claim holds.</p>", False: "<p class='no'>We find otherwise.</p>"}
-    said = f"<p>Paper: {escape(entry.claim)}</p><p>Here: " if entry.claim else "<p>"
-    words = f"<b>{escape(entry.title)}</b>{said}{escape(entry.found)}</p>"
+    prefix = f"<p>Paper: {escape(entry.claim)}</p><p>Here: " if entry.claim else "<p>"
+    words = f"<b>{escape(entry.title)}</b>{prefix}{escape(entry.found)}</p>"
     picture = f'<img alt="{escape(entry.title)}" src="data:image/{kind};base64,{data}">'
     return f"<figure>{picture}<figcaption>{words}{verdict[entry.holds]}</figcaption></figure>"
 

@@ -23,8 +23,8 @@ def names_of(solution: Solution) -> tuple[str, ...]:
     known = set()
     for mesh in solution.model.meshes:
         starts = np.arange(mesh.elements)
-        found = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
-        known |= {name for name, part in _STRESSES.items() if np.isfinite(found[part]).any()}
+        stress = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
+        known |= {name for name, part in _STRESSES.items() if np.isfinite(stress[part]).any()}
     stresses = tuple(name for name in _STRESSES if name in known)
     moved = ("rotation", "displacement") if solution.static else ("rotation", "displacement", "speed")
     return (*_FORCES, *stresses, *moved)
@@ -36,14 +36,14 @@ def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
     forces = [section_forces(points, solution, rows) for points in shapes.points]
     stresses: list[dict[str, np.ndarray]] = []
     if any(name in _STRESSES for name in names):
-        stresses = [stress_at(solution, own.mesh, own.element, own.xi, rows) for own in shapes.points]
-    found = []
+        stresses = [stress_at(solution, of_beam.mesh, of_beam.element, of_beam.xi, rows) for of_beam in shapes.points]
+    result = []
     for name in names:
         quantity = QUANTITIES[name]
         if name in _FORCES:
-            parts = [own[name] for own in forces]
+            parts = [of_beam[name] for of_beam in forces]
         elif name in _STRESSES:
-            parts = [own[_STRESSES[name]] for own in stresses]
+            parts = [of_beam[_STRESSES[name]] for of_beam in stresses]
         else:
             parts = [quantity.values(points, solution, rows) for points in shapes.points]
         low, high = limits(parts)
@@ -51,8 +51,8 @@ def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
         known = np.isfinite(values)
         levels = np.where(known, 1.0 + np.round((np.where(known, values, low) - low) / (high - low) * _LEVELS), 0.0)
         label = f"{quantity.label} [{solution.model.unit(quantity.unit)}]"
-        found.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
-    return found
+        result.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
+    return result
 
 
 def as_text(numbers: np.ndarray) -> str:

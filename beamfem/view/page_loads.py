@@ -23,10 +23,10 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
     """
     solution, rows = shapes.solution, [int(row) for row in shapes.rows]
     system, at = loading(solution)
-    found = [_row(shapes, row, float(at[row]), system.static) for row in _chosen(shapes, rows)]
-    forces = [own for row in found for own in row["points"]]
+    loads = [_row(shapes, row, float(at[row]), system.static) for row in _chosen(shapes, rows)]
+    forces = [force for row in loads for force in row["points"]]
     largest = max((float(np.linalg.norm(vector)) for _, vector, _ in forces), default=0.0) or 1.0
-    dense = max((float(np.abs(vector).max()) for row in found for _, vector in row["lines"]), default=0.0) or 1.0
+    dense = max((float(np.abs(vector).max()) for row in loads for _, vector in row["lines"]), default=0.0) or 1.0
     return [
         {
             "forces": [
@@ -41,7 +41,7 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
             "moments": row["moments"],
             "gravity": row["gravity"],
         }
-        for row in found
+        for row in loads
     ]
 
 
@@ -53,19 +53,19 @@ def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
 
 def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[Any]]:
     placed = PlacedRow(shapes.solution, row)
-    found: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
+    result: dict[str, list[Any]] = {"points": [], "lines": [], "moments": [], "gravity": []}
     for load in shapes.solution.model.loads:
         for shape in placed.shapes(load, factor(load, at, static)):
             match shape:
                 case Force():
-                    found["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
+                    result["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
                 case ForcesAlong():
-                    found["lines"].append((placed.along(shape), shape.vectors))
+                    result["lines"].append((placed.along(shape), shape.vectors))
                 case Moment() if shape.moment != 0.0:
-                    found["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
+                    result["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
                 case Acceleration() if shape.vector.any():
-                    found["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
-    return found
+                    result["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
+    return result
 
 
 def _scaled(vector: np.ndarray, largest: float) -> np.ndarray:

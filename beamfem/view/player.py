@@ -59,7 +59,8 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
     # (rows, points, sides, 2)
     numbers = np.round((np.concatenate(sides, axis=1) - low) / size * _LEVELS - 0.5 * _LEVELS).astype("<i2")
     moved = [
-        np.linalg.norm(axis - own.reference, axis=-1) for axis, own in zip(shapes.axis, shapes.points, strict=True)
+        np.linalg.norm(axis - points.reference, axis=-1)
+        for axis, points in zip(shapes.axis, shapes.points, strict=True)
     ]
     rows = [int(row) for row in shapes.rows]
     name, unit = axis_of_rows(solution)
@@ -70,8 +71,8 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "size": size,
         "levels": _LEVELS,
         "sides": 2 if body else 1,
-        "beams": [len(own.xi) for own in shapes.points],
-        "pieces": [own.pieces for own in shapes.points],
+        "beams": [len(points.xi) for points in shapes.points],
+        "pieces": [points.pieces for points in shapes.points],
         "labels": [moment_of(solution, row) for row in rows],
         "at": [float(f"{solution.at[row]:.7g}") for row in rows],
         "axis": f"{name} [{unit}]",
@@ -80,7 +81,7 @@ def _data(solution: Solution, frames: int) -> dict[str, Any]:
         "points": as_text(numbers),
         "reference": as_text(
             np.round(
-                (np.concatenate([own.reference for own in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
+                (np.concatenate([points.reference for points in shapes.points]) - low) / size * _LEVELS - 0.5 * _LEVELS
             ).astype("<i2")
         ),
         "loads": loads_of(shapes),
@@ -105,21 +106,21 @@ def _sized(solution: Solution, frames: int) -> tuple[Shapes, bool, tuple[str, ..
 
 def _supports(shapes: Shapes) -> tuple[list[Any], list[Any]]:
     """Return outlines [symbols] and for each row the places [m] of each outline; one row if all of them stay fixed."""
-    found = []
+    by_row = []
     for row in shapes.rows:
         stamps = supports_of(shapes.solution, int(row), shapes.centre)
         stamps.add_all(joints_of(shapes.solution, int(row)))
-        found.append(stamps)
+        by_row.append(stamps)
     outlines = [
         {
-            "line": np.round(found[0].outlines[key], 3).tolist(),
+            "line": np.round(by_row[0].outlines[key], 3).tolist(),
             "colour": _css(colour),
             "fill": {"none": None, "white": "#fff"}.get(fill, fill),
         }
-        for key, colour, _, fill in found[0].places
+        for key, colour, _, fill in by_row[0].places
     ]
-    places = [[[_rounded(place) for place in group] for group in stamps.places.values()] for stamps in found]
-    return outlines, places[:1] if all(own == places[0] for own in places) else places
+    places = [[[_rounded(place) for place in group] for group in stamps.places.values()] for stamps in by_row]
+    return outlines, places[:1] if all(row_places == places[0] for row_places in places) else places
 
 
 def _rounded(place: np.ndarray) -> list[float]:

@@ -30,10 +30,10 @@ def can_render() -> bool:
     require_package("pyvista", "a picture of the body")
     command = [sys.executable, "-c", f"import os{_PROBE}"]
     try:
-        done = subprocess.run(command, capture_output=True, timeout=_SECONDS, check=False)
+        process = subprocess.run(command, capture_output=True, timeout=_SECONDS, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return False
-    return done.returncode == 0 and b"rendered" in done.stdout
+    return process.returncode == 0 and b"rendered" in process.stdout
 
 
 def has_display() -> bool:

@@ -86,8 +86,8 @@ def stress_table(stress: BeamStress) -> str:
     for part in PARTS:
         peak = stress.peak(part)
         name = f"{part} [{'-' if part == 'utilisation' else unit('Pa')}]"
-        told = (peak.value, peak.arc_length, peak.row, peak.at) if peak.row >= 0 else ("not known", "", "", "")
-        rows.append((name, *told))
+        cells = (peak.value, peak.arc_length, peak.row, peak.at) if peak.row >= 0 else ("not known", "", "", "")
+        rows.append((name, *cells))
     when = "load factor" if stress.static else f"time [{unit('s')}]"
     head = ("", "extreme", f"at arc length [{unit('m')}]", "row", when)
     return f"<b>Stress, peaks</b>{as_html(head, rows)}"
@@ -95,7 +95,9 @@ def stress_table(stress: BeamStress) -> str:
 
 def _numbers(item: Any) -> str:
     """Return the numbers of a dataclass that are not zero, by name; of others their text, cut."""
-    own = vars(item) if is_dataclass(item) else {}
-    named = [f"{name.replace('_', ' ')} {value:.4g}" for name, value in own.items() if type(value) is float and value]
+    members = vars(item) if is_dataclass(item) else {}
+    named = [
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in members.items() if type(value) is float and value
+    ]
     text = ", ".join(named) or " ".join(shown(item).split())
     return text if len(text) <= _LONG else f"{text[: _LONG - 2]} …"

@@ -59,7 +59,7 @@ class Shapes:
     def layers(self) -> list[list[np.ndarray]]:
         """Lower and upper face of each layer of each beam (rows, points, 2 faces, 2) [m], from the bottom up."""
         return [
-            [r[:, :, None] + own[None, :, :, None] * d[:, :, None] for own in np.moveaxis(points.layers, 1, 0)]
+            [r[:, :, None] + heights[None, :, :, None] * d[:, :, None] for heights in np.moveaxis(points.layers, 1, 0)]
             for points, (r, d) in zip(self.points, self._moved, strict=True)
         ]
 
@@ -82,11 +82,11 @@ class Shapes:
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""
         assert self.quantity is not None
-        found = [self.quantity.values(points, self.solution, self.rows) for points in self.points]
-        if not any(np.isfinite(values).any() for values in found):
+        result = [self.quantity.values(points, self.solution, self.rows) for points in self.points]
+        if not any(np.isfinite(values).any() for values in result):
             why = self.quantity.unknown_of(points.mesh.beam for points in self.points)
             raise InputError(f"no beam has a {self.quantity.label} to draw: {why}")
-        return found
+        return result
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -96,9 +96,9 @@ class Shapes:
     @cached_property
     def box(self) -> np.ndarray:
         """Lower left and upper right corner of all shapes and the undeformed axes (2, 2) [m]."""
-        found = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
+        parts = [body.reshape(-1, 2) for body in self.body] + [points.reference for points in self.points]
         return np.stack(
-            [np.min([f.min(axis=0) for f in found], axis=0), np.max([f.max(axis=0) for f in found], axis=0)]
+            [np.min([f.min(axis=0) for f in parts], axis=0), np.max([f.max(axis=0) for f in parts], axis=0)]
         )
 
     @cached_property
@@ -180,8 +180,8 @@ def even(values: Sequence[np.ndarray]) -> bool:
 
 
 def _range(values: Sequence[np.ndarray]) -> tuple[float, float]:
-    known = [v[np.isfinite(v)] for v in values]
-    return min(float(v.min()) for v in known if v.size), max(float(v.max()) for v in known if v.size)
+    finite = [v[np.isfinite(v)] for v in values]
+    return min(float(v.min()) for v in finite if v.size), max(float(v.max()) for v in finite if v.size)
 
 
 def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:
@@ -189,7 +189,7 @@ def draw_undeformed(axes: Any, points: Sequence[AxisPoints]) -> Any:
     from matplotlib.collections import LineCollection
     from matplotlib.lines import Line2D
 
-    lines = [own.reference for own in points]
+    lines = [of_beam.reference for of_beam in points]
     axes.add_collection(
         LineCollection(lines, colors=_DASHED, linestyles=_DASHES, linewidths=0.9, zorder=1.5), autolim=False
     )

@@ -34,7 +34,7 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
         ("loads", _kinds(model.loads)),
     ]
     further = (("joints", model.joints), ("connectors", model.connectors))
-    return rows + [(name, _kinds(own)) for name, own in further if own]
+    return rows + [(name, _kinds(items)) for name, items in further if items]
 
 
 def solution_rows(solution: "Solution") -> list[tuple[str, str]]:
@@ -113,14 +113,14 @@ def buckling_table(buckling: "Buckling") -> str:
 def _beams(model: Model) -> str:
     unit = model.unit("m")
     head = ("beam", f"from [{unit}]", f"to [{unit}]", f"length [{unit}]", "element", "elements", "forces")
-    lines, called = [], names(model.beams)
+    lines, labels = [], names(model.beams)
     for number, (beam, mesh) in enumerate(zip(model.beams, model.meshes, strict=True)):
         if number == _BEAMS:
             lines.append(("…", f"{len(model.beams) - _BEAMS} more", *[""] * 5))
             break
         ends = [place(model, at) for at in (mesh.position[0], mesh.position[-1])]
         kind = (beam.element.name, str(mesh.elements), beam.element.forces.name)
-        lines.append((called[number], *ends, f"{beam.curve.length:.4g}", *kind))
+        lines.append((labels[number], *ends, f"{beam.curve.length:.4g}", *kind))
     return as_html(head, lines)
 
 

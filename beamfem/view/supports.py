@@ -45,7 +45,7 @@ class Stamps:
         from matplotlib.path import Path
         from matplotlib.transforms import Affine2D
 
-        found = []
+        artists = []
         for (key, colour, width, fill), places in self.places.items():
             drawn = PathCollection(
                 [Path(self.outlines[key])],
@@ -60,8 +60,8 @@ class Stamps:
             # inches of the figure, so that a file may be saved at any resolution
             drawn.set_transform(Affine2D().scale(size / 72.0) + axes.figure.dpi_scale_trans)
             axes.add_collection(drawn, autolim=False)
-            found.append(drawn)
-        return found
+            artists.append(drawn)
+        return artists
 
 
 def draw_supports(axes: Any, solution: "Solution", row: int, centre: np.ndarray) -> list[Any]:
@@ -161,23 +161,23 @@ def _springs_along(stamps: Stamps, foundation: SpringsAlong) -> None:
 def _constraint(stamps: Stamps, support: Constraint, now: np.ndarray, centre: np.ndarray) -> None:
     """Draw directions prescribed as zero as a support, and prescribed motions as arrows."""
     prescribed, at = support.prescribed, support.point.reference
-    still = {name for name, value in prescribed.items() if not callable(value) and value == 0.0}
-    if still == {"ux", "uy", "rotation"}:
+    fixed = {name for name, value in prescribed.items() if not callable(value) and value == 0.0}
+    if fixed == {"ux", "uy", "rotation"}:
         _stamp(stamps, symbols.CLAMP, at, _away(support.point), 1.2)
-    elif {"ux", "uy"} <= still:
+    elif {"ux", "uy"} <= fixed:
         _stamp(stamps, symbols.PIN, at, _ground(at, centre))
     else:
         for name, down in (("ux", (-1.0, 0.0)), ("uy", (0.0, -1.0))):
-            if name in still:
+            if name in fixed:
                 _stamp(stamps, symbols.ROLLER, now, np.array(down))
-    if "rotation" in still and not still >= {"ux", "uy"}:
+    if "rotation" in fixed and not fixed >= {"ux", "uy"}:
         _stamp(stamps, symbols.NO_TURN, now, np.array([0.0, -1.0]), 1.2)
     for name, direction in (("ux", (1.0, 0.0)), ("uy", (0.0, 1.0))):
-        if name in prescribed and name not in still:
+        if name in prescribed and name not in fixed:
             value = prescribed[name]
             sign = 1.0 if callable(value) or value > 0.0 else -1.0
             _moved(stamps, now, sign * np.array(direction))
-    if "rotation" in prescribed and "rotation" not in still:
+    if "rotation" in prescribed and "rotation" not in fixed:
         value = prescribed["rotation"]
         arc, head = symbols.turn(0.5 * np.pi, 1.1, 1.4 * np.pi * (1.0 if callable(value) or value > 0.0 else -1.0))
         stamps.add(now, arc, PRESCRIBED, 1.4)

@@ -77,15 +77,15 @@ def structure(root: Table, function: Named) -> Structure:
         "section": section,
         "material": material,
     }
-    found = {name: build(table, called(name), readers) for name, table in root.named("beams").items()}
+    beams = {name: build(table, called(name), readers) for name, table in root.named("beams").items()}
     frames = {name: frame(table, readers, name) for name, table in root.named("frames").items()}
-    for name, own in frames.items():
-        found |= {f"{name}[{number}]": beam for number, beam in enumerate(own.beams, 1)}
-    if not found:
+    for name, item in frames.items():
+        beams |= {f"{name}[{number}]": beam for number, beam in enumerate(item.beams, 1)}
+    if not beams:
         raise root.error("a model needs at least one beam, a table headed [beams.NAME]")
     for named in (material, element, section):
         named.check_all()
-    return Structure(found, frames, material)
+    return Structure(beams, frames, material)
 
 
 def model(root: Table, known: Structure, function: Named, moving: bool) -> Model:
@@ -139,13 +139,13 @@ def model(root: Table, known: Structure, function: Named, moving: bool) -> Model
 def _each_place(table: Table, kinds: Kinds, places: Places) -> list[Table]:
     """Return a table for each of its `points` or `beams`, if it has several. Raises ModelFileError."""
     kind = table.values.get("kind")
-    taken = signature(kinds[kind]).parameters if isinstance(kind, str) and kind in kinds else {}
+    parameters = signature(kinds[kind]).parameters if isinstance(kind, str) and kind in kinds else {}
     several: Sequence[tuple[str, str, Callable[[Table, str], Sequence[Any]]]] = (
         ("points", "point", places.points),
         ("beams", "beam", places.members),
     )
     for plural, single, read in several:
-        if plural in table.values and single in taken:
+        if plural in table.values and single in parameters:
             if single in table.values:
                 raise table.error(f"{single} and {plural} are given; one of them is enough", plural)
             rest = {key: value for key, value in table.values.items() if key != plural}

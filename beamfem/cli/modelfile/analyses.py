@@ -52,9 +52,9 @@ class Static:
     def run(self, model: Model, at: Sequence[float]) -> Found:
         if self.at is None:
             return Found(solve_through(model, at, self.steps, self.newton, snap=self.snap))
-        further = [value for value in at if all(abs(value - own) > SAME for own in self.at)]
-        wanted = sorted({*self.at, *further})
-        return Found(solve_static(model, self.steps, self.newton, at=wanted, snap=self.snap))
+        further = [value for value in at if all(abs(value - other) > SAME for other in self.at)]
+        load_factors = sorted({*self.at, *further})
+        return Found(solve_static(model, self.steps, self.newton, at=load_factors, snap=self.snap))
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class Buckling:
         _check_mode(self.count, self.mode, self.amplitude)
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
-        found = solve_buckling(model, self.count, state_of(self.about, model))
+        buckling = solve_buckling(model, self.count, state_of(self.about, model))
         values = {
-            "load_factors": found.load_factors.tolist(),
-            "kinds": list(found.kinds),
-            "linearised": found.linearised.tolist(),
+            "load_factors": buckling.load_factors.tolist(),
+            "kinds": list(buckling.kinds),
+            "linearised": buckling.linearised.tolist(),
         }
-        return Found(found.solution(self.mode - 1, self.amplitude), values, found)
+        return Found(buckling.solution(self.mode - 1, self.amplitude), values, buckling)
 
 
 @dataclass(frozen=True)
@@ -108,13 +108,13 @@ class Modes:
 
     def run(self, model: Model, at: Sequence[float]) -> Found:
         about = Equilibrium() if self.loaded else self.about
-        found = solve_modes(model, self.count, state_of(about, model))
-        values: dict[str, Any] = {"frequencies": found.frequencies.tolist()}
-        if np.any(found.growth):
-            values["growth"] = found.growth.tolist()
-        if found.rigid:
-            values["rigid"] = list(found.rigid)
-        return Found(found.solution(self.mode - 1, self.amplitude, self.frames), values, found)
+        modes = solve_modes(model, self.count, state_of(about, model))
+        values: dict[str, Any] = {"frequencies": modes.frequencies.tolist()}
+        if np.any(modes.growth):
+            values["growth"] = modes.growth.tolist()
+        if modes.rigid:
+            values["rigid"] = list(modes.rigid)
+        return Found(modes.solution(self.mode - 1, self.amplitude, self.frames), values, modes)
 
 
 @dataclass(frozen=True)
@@ -174,19 +174,19 @@ def analysis(root: Table, places: Places) -> Analysis:
         value = table.values[key]
         if not isinstance(value, dict):
             return value
-        own = table.table(key)
-        return _function(own) if "function" in value else build(own, Until, {"point": places.point})
+        subtable = table.table(key)
+        return _function(subtable) if "function" in value else build(subtable, Until, {"point": places.point})
 
     def velocity(table: Table, key: str) -> Any:
-        own = table.table(key)
-        return _function(own) if "function" in own.values else build(own, RigidVelocity)
+        subtable = table.table(key)
+        return _function(subtable) if "function" in subtable.values else build(subtable, RigidVelocity)
 
     def integrator(table: Table, key: str) -> Any:
         return build_own(table.table(key), {})
 
     def crossing(table: Table, key: str) -> Crossing:
-        found: Crossing = build(table.table(key), Crossing, paths)
-        return found
+        result: Crossing = build(table.table(key), Crossing, paths)
+        return result
 
     if "analysis" not in root.values:
         return Static()
@@ -211,7 +211,7 @@ def _check_mode(number: int, mode: int, amplitude: float | None) -> None:
 
 
 def _check_load_factors(values: Any) -> None:
-    known = [finite(f"at[{number}]", value) for number, value in enumerate(items("at", values), 1)]
-    rising = all(after - before > SAME for before, after in pairwise(known))
-    if not known or not rising or known[0] < 0.0 or known[-1] > 1.0:
+    load_factors = [finite(f"at[{number}]", value) for number, value in enumerate(items("at", values), 1)]
+    rising = all(after - before > SAME for before, after in pairwise(load_factors))
+    if not load_factors or not rising or load_factors[0] < 0.0 or load_factors[-1] > 1.0:
         raise InputError(f"at must be load factors that rise within 0 and 1, such as [0.25, 0.5, 1.0], got {values}")

@@ -27,8 +27,8 @@ class Code:
         public = {key: value for key, value in vars(self.module).items() if callable(value) and key[0] != "_"}
         if name in public:
             return public[name]
-        own = [key for key, value in public.items() if getattr(value, "__module__", None) == self.module.__name__]
-        raise InputError(f"{self.file.name} has no class or function {name!r}; {nearest(name, own)}")
+        defined = [key for key, value in public.items() if getattr(value, "__module__", None) == self.module.__name__]
+        raise InputError(f"{self.file.name} has no class or function {name!r}; {nearest(name, defined)}")
 
 
 def run_code(folder: Path, name: str) -> Code:
@@ -91,9 +91,9 @@ def _run(file: Path) -> ModuleType:
 
 def _where(error: Exception | SystemExit, file: Path) -> str:
     """Return an error with its line in the file."""
-    said = f"{type(error).__name__}: {error}"
+    text = f"{type(error).__name__}: {error}"
     steps = traceback.extract_tb(error.__traceback__)
     lines = [step.lineno for step in steps if Path(step.filename).resolve() == file.resolve()]
     if isinstance(error, SyntaxError) or not lines:
-        return said
-    return f"line {lines[-1]}: {said}"
+        return text
+    return f"line {lines[-1]}: {text}"

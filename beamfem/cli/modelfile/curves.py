@@ -57,12 +57,12 @@ def curves(root: Table, places: Places, model: Model, analysis: Analysis) -> tup
         require_supported(of_point, "quantity", model, point, [name])
         return name, point
 
-    found = []
+    result = []
     for table in root.tables("curves"):
         if not analysis.states:
             raise table.error("this analysis has no states to draw a curve of; curves need static, path or dynamics")
-        found.append(build(table, OutputCurve, {"file": file, "x": quantity, "y": quantity}))
-    return tuple(found)
+        result.append(build(table, OutputCurve, {"file": file, "x": quantity, "y": quantity}))
+    return tuple(result)
 
 
 def _of_point(point: Point, quantity: str) -> tuple[str, Point]:

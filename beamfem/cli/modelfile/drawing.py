@@ -14,12 +14,12 @@ def from_drawing(file: Path, layer: str | None = None, number: int | None = None
     Raises InputError.
     """
     try:
-        found = read_dxf(file, layer)
+        curves = read_dxf(file, layer)
     except FileError as error:
         raise InputError(f"file: {error}") from error
-    if number is None and len(found) > 1:
-        raise InputError(f"{file.name} has {len(found)} curves there; number, from 1 to {len(found)}, chooses one")
+    if number is None and len(curves) > 1:
+        raise InputError(f"{file.name} has {len(curves)} curves there; number, from 1 to {len(curves)}, chooses one")
     chosen = 1 if number is None else count("number", number)
-    if chosen > len(found):
-        raise InputError(f"number is {number}, but {file.name} has {len(found)} curves there")
-    return found[chosen - 1]
+    if chosen > len(curves):
+        raise InputError(f"number is {number}, but {file.name} has {len(curves)} curves there")
+    return curves[chosen - 1]

@@ -83,8 +83,8 @@ class Vtk(_OfAny):
             content.require_known([*known, *Boundary(model, content).names])
 
     def write(self, found: Found) -> None:
-        shown = found.solution if self.every == 1 else found.solution[:: self.every]
-        shown.to_vtk(self.file, geometry=self.geometry, fields=self.fields, single=self.single)
+        selected = found.solution if self.every == 1 else found.solution[:: self.every]
+        selected.to_vtk(self.file, geometry=self.geometry, fields=self.fields, single=self.single)
 
 
 @dataclass(frozen=True)
@@ -279,16 +279,16 @@ def files(root: Table, places: Places, model: Model, analysis: Analysis) -> tupl
         "point": places.point,
         "points": places.points,
     }
-    found: list[OutputFile] = []
+    result: list[OutputFile] = []
     for table in root.tables("files"):
-        found.append(build_kind(table, FILES, readers))
+        result.append(build_kind(table, FILES, readers))
         try:
-            found[-1].require(model, analysis)
+            result[-1].require(model, analysis)
         except InputError as error:
             raise table.refused(error) from None
-        if [other.file for other in found].count(found[-1].file) > 1:
-            raise table.error(f"{found[-1].file} is written twice", "file")
-    return tuple(found)
+        if [other.file for other in result].count(result[-1].file) > 1:
+            raise table.error(f"{result[-1].file} is written twice", "file")
+    return tuple(result)
 
 
 def require_saved(model: Model) -> None:

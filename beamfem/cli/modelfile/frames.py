@@ -36,11 +36,11 @@ def frame(table: Table, readers: dict[str, Reader], name: str) -> Frame:
     def file(own: Table, key: str) -> Path:
         return own.source.file.parent / own.text(key)
 
-    made: dict[str, Reader] = {key: by_set(readers[key]) for key in ("element", "section", "material")}
-    made |= {"elements": by_set(plain), "file": file}
-    called: Callable[[str], Frame] = build(table, _of_file, made)
+    frame_readers: dict[str, Reader] = {key: by_set(readers[key]) for key in ("element", "section", "material")}
+    frame_readers |= {"elements": by_set(plain), "file": file}
+    make_frame: Callable[[str], Frame] = build(table, _of_file, frame_readers)
     try:
-        return called(name)
+        return make_frame(name)
     except InputError as error:
         raise table.refused(error) from None
 
@@ -59,8 +59,8 @@ def _of_file(
         mesh: LineMesh = read_mesh(file, merge=merge)
     except FileError as error:
         raise InputError(f"file: {error}") from error
-    given = {"elements": elements, "element": element, "section": section, "material": material}
-    for key, value in given.items():
+    properties = {"elements": elements, "element": element, "section": section, "material": material}
+    for key, value in properties.items():
         for name in value if isinstance(value, dict) else ():
             require_known(f"{key} has no member set {name!r}", name, mesh.member_sets)
     for name in [hinges] if isinstance(hinges, str) else items("hinges", hinges):

@@ -38,5 +38,5 @@ def imperfection(root: Table) -> Imperfection | None:
     """Return the imperfection of a file, None if it has none. Raises ModelFileError."""
     if "imperfection" not in root.values:
         return None
-    found: Imperfection = build(root.table("imperfection"), Imperfection, {"about": start})
-    return found
+    result: Imperfection = build(root.table("imperfection"), Imperfection, {"about": start})
+    return result

@@ -28,7 +28,7 @@ def key_lines(text: str) -> dict[Path, int]:
 class _Scan:
     def __init__(self, text: str) -> None:
         self.text = text
-        self.breaks = [place.start() for place in re.finditer("\n", text)]
+        self.breaks = [match.start() for match in re.finditer("\n", text)]
         self.at = 0
         self.found: dict[Path, int] = {}
         self.arrays: dict[Path, int] = {}  # last item of every array of tables
@@ -48,9 +48,9 @@ class _Scan:
         self.match(_SPACE)
 
     def match(self, pattern: re.Pattern[str]) -> str:
-        found = pattern.match(self.text, self.at)
-        self.at = found.end() if found else self.at
-        return found.group() if found else ""
+        match = pattern.match(self.text, self.at)
+        self.at = match.end() if match else self.at
+        return match.group() if match else ""
 
     def note(self, path: Path, start: int) -> None:
         line = bisect_left(self.breaks, start) + 1
@@ -90,8 +90,8 @@ class _Scan:
     def string(self) -> str:
         """Read the string that begins here."""
         for pattern in _STRINGS:
-            if found := self.match(pattern):
-                return found
+            if text := self.match(pattern):
+                return text
         return ""
 
     def pair(self, table: Path) -> None:

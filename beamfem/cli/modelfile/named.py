@@ -56,8 +56,8 @@ def value_by(function: Named) -> Reader:
         if isinstance(given, bool) or not isinstance(given, int | float | str | dict):
             raise table.error(f"must be a number, or a function by name or as a table, got {shown(given)}", key)
         if isinstance(given, str) and given not in function.tables:
-            known = nearest(given, function.tables) if function.tables else "the file has none"
-            raise table.error(f"must be a number or the name of a function, got {shown(given)}; {known}", key)
+            hint = nearest(given, function.tables) if function.tables else "the file has none"
+            raise table.error(f"must be a number or the name of a function, got {shown(given)}; {hint}", key)
         return given if isinstance(given, int | float) else function(table, key)
 
     return value

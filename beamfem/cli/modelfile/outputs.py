@@ -119,14 +119,14 @@ class Output:
             raise InputError(f"at asks for the {what} {value:g}, where the structure jumps: it has no state there")
 
     def _columns(self, solution: Solution) -> dict[str, np.ndarray]:
-        given = next((item for item in (self.point, self.beam, self.connector) if item is not None), None)
+        item = next((item for item in (self.point, self.beam, self.connector) if item is not None), None)
         tables = {
             "at a point": AT_POINT,
             "of a beam": OF_BEAM,
             "of a connector": OF_CONNECTOR,
             "of the model": OF_MODEL,
         }
-        return {quantity: np.asarray(tables[self._where][quantity](solution, given)) for quantity in self.quantities}
+        return {quantity: np.asarray(tables[self._where][quantity](solution, item)) for quantity in self.quantities}
 
 
 def outputs(
@@ -140,7 +140,7 @@ def outputs(
             raise table.error(f"there is no connector {name!r}; {nearest(name, connectors)}", key)
         return connectors[name]
 
-    found = []
+    result = []
     for number, table in enumerate(root.tables("outputs"), 1):
         if not analysis.states:
             raise table.error("this analysis prints what it finds; outputs go with static, path and dynamics")
@@ -153,8 +153,8 @@ def outputs(
             require_supported(table, "quantities", model, output.point, output.quantities)
         if analysis.moving and output.known == tuple(OF_MODEL) and "stable" in output.quantities:
             raise table.error("stable is asked of equilibria, and this analysis is a motion", "quantities")
-        found.append(output)
-    return found
+        result.append(output)
+    return result
 
 
 def require_supported(table: Table, key: str, model: Model, point: Point, quantities: Sequence[str]) -> None:
@@ -169,8 +169,8 @@ def critical(output: Output, path: Path) -> dict[str, list[dict[str, Any]]]:
     """Return a row of an output at every limit point and bifurcation of a path."""
     result = {}
     for name in ("limit_points", "bifurcations"):
-        found = getattr(path, name)
-        result[name] = [row for state in found for row in replace(output, at="last").rows(_alone(path, state))]
+        states = getattr(path, name)
+        result[name] = [row for state in states for row in replace(output, at="last").rows(_alone(path, state))]
     return result
 
 

@@ -27,7 +27,11 @@ def build_own(table: Table, types: Types) -> Any:
         signature, hints = inspect.signature(maker), _hints(maker)
     except (TypeError, ValueError, NameError) as error:
         raise table.error(f"the parameters of {name} cannot be read: {error}", "class") from None
-    named = [each for each in signature.parameters.values() if each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)]
+    named = [
+        parameter
+        for parameter in signature.parameters.values()
+        if parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+    ]
 
     def made(**given: Any) -> Any:
         try:
@@ -39,7 +43,7 @@ def build_own(table: Table, types: Types) -> Any:
 
     made.__signature__ = signature.replace(parameters=named)  # type: ignore[attr-defined]
     made.__annotations__ = hints
-    readers = {each.name: reader for each in named if (reader := _reader(hints.get(each.name), types))}
+    readers = {parameter.name: reader for parameter in named if (reader := _reader(hints.get(parameter.name), types))}
     rest = Table(table.source, table.path, {key: value for key, value in table.values.items() if key != "class"})
     return build(rest, made, readers)
 

@@ -34,9 +34,9 @@ def sections(root: Table, material: Named, function: Named) -> Named:
     value = value_by(function)
 
     def layers(table: Table, key: str) -> Any:
-        made = varying(Layer)
-        found = [build(layer, made, {"material": material, "thickness": value}) for layer in table.tables(key)]
-        return VaryingList(tuple(found)) if any(map(callable, found)) else found
+        make_layer = varying(Layer)
+        result = [build(layer, make_layer, {"material": material, "thickness": value}) for layer in table.tables(key)]
+        return VaryingList(tuple(result)) if any(map(callable, result)) else result
 
     readers: dict[str, Reader] = {"layers": layers} | dict.fromkeys(_NUMBERS, value)
     kinds = {kind: varying(make) for kind, make in SECTIONS.items()}
@@ -52,8 +52,8 @@ def functions(root: Table) -> Named:
     """Return the functions of a file."""
 
     def make(table: Table) -> Any:
-        types: dict[Any, Reader] = {Callable: value_by(found)}
+        types: dict[Any, Reader] = {Callable: value_by(result)}
         return build_own_or_kind(table, FUNCTIONS, {"function": own_code}, types)
 
-    found = Named("function", root.named("functions"), {}, make, FUNCTIONS)
-    return found
+    result = Named("function", root.named("functions"), {}, make, FUNCTIONS)
+    return result

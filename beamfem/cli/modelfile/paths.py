@@ -80,13 +80,13 @@ class Crossing:
 
     def of_model(self, model: Model) -> Bifurcation:
         """Return the bifurcation. Raises InputError, ConvergenceError."""
-        found = _followed(self, model).bifurcations
-        if self.bifurcation > len(found):
+        points = _followed(self, model).bifurcations
+        if self.bifurcation > len(points):
             raise InputError(
-                f"start is at the bifurcation {self.bifurcation}, but its path has {len(found)}; until or points of "
+                f"start is at the bifurcation {self.bifurcation}, but its path has {len(points)}; until or points of "
                 "start may end it too early"
             )
-        return found[self.bifurcation - 1]
+        return points[self.bifurcation - 1]
 
 
 def _check_path(path: Trace | Crossing) -> None:

@@ -118,8 +118,8 @@ def in_keys(message: str) -> str:
     """Return a message of the library as a user of model files reads it."""
     for python, toml in _PHRASES:
         message = message.replace(python, toml)
-    message = _RADIANS.sub(lambda found: f"{math.radians(float(found[1])):.12g}", message)
-    return _ARGUMENT.sub(r"\1 = ", _NAME.sub(lambda found: _NAMES[found[0]], message))
+    message = _RADIANS.sub(lambda match: f"{math.radians(float(match[1])):.12g}", message)
+    return _ARGUMENT.sub(r"\1 = ", _NAME.sub(lambda match: _NAMES[match[0]], message))
 
 
 @contextmanager

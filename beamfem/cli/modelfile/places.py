@@ -41,9 +41,9 @@ def moved(old: Model, new: Model) -> Moved:
 
 def _points(model: Model) -> list[Point]:
     """Return all points with supports, loads, joints or connectors."""
-    found = [support.point for support in model.point_supports] + [load.point for load in model.point_loads]
-    found += [point for joint in model.joints for point in (joint.a, joint.b)]
-    return found + [point for connector in model.connectors for point in connector.points]
+    points = [support.point for support in model.point_supports] + [load.point for load in model.point_loads]
+    points += [point for joint in model.joints for point in (joint.a, joint.b)]
+    return points + [point for connector in model.connectors for point in connector.points]
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,19 @@ class Places:
 
     def _point(self, table: Table, key: str) -> Point:
         text = table.text(key)
-        found = _POINT.fullmatch(text.strip())
-        if not found:
+        match = _POINT.fullmatch(text.strip())
+        if not match:
             prefix = text.partition(".")[0]
             name = prefix if prefix in self.beams else next(iter(self.beams), "NAME")
             such = f'"{name}.start", "{name}.end" or "{name}.at(0.5)"'
             raise table.error(f'must be a point such as {such}, got "{text}"', key)
         try:
-            if found["beam"] in self.frames and found["fraction"]:
-                return self.frames[found["beam"]].at(*_numbers(table, key, found["fraction"], 2))
-            beam = self._beam(table, key, found["beam"])
-            if found["end"]:
-                return beam.start if found["end"] == "start" else beam.end
-            return beam.at(*_numbers(table, key, found["fraction"], 1))
+            if match["beam"] in self.frames and match["fraction"]:
+                return self.frames[match["beam"]].at(*_numbers(table, key, match["fraction"], 2))
+            beam = self._beam(table, key, match["beam"])
+            if match["end"]:
+                return beam.start if match["end"] == "start" else beam.end
+            return beam.at(*_numbers(table, key, match["fraction"], 1))
         except InputError as error:
             raise table.error(getattr(error, "message", str(error)), key) from None
 
@@ -112,12 +112,12 @@ class Places:
 
     def _set(self, table: Table, key: str, one: str) -> tuple[Frame, str]:
         text = table.text(key)
-        found = _SET.fullmatch(text)
-        if not found or found["frame"] not in self.frames:
-            near = f"; {nearest(found['frame'] if found else text, self.frames)}" if self.frames else ""
+        match = _SET.fullmatch(text)
+        if not match or match["frame"] not in self.frames:
+            near = f"; {nearest(match['frame'] if match else text, self.frames)}" if self.frames else ""
             right = f'must be a list such as ["{one}"], or a set of a frame, "FRAME.SET", got "{text}"'
             raise table.error(right + near, key)
-        return self.frames[found["frame"]], found["set"]
+        return self.frames[match["frame"]], match["set"]
 
 
 def _numbers(table: Table, key: str, text: str, count: int) -> list[float]:

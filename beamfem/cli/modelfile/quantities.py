@@ -42,33 +42,33 @@ UNITS = {
 
 
 def _at_point(method: str, component: int | None, solution: Solution, point: Any) -> np.ndarray:
-    found: np.ndarray = getattr(solution, method)(point)
-    return found if component is None else found[:, component]
+    values: np.ndarray = getattr(solution, method)(point)
+    return values if component is None else values[:, component]
 
 
 def _component(field: str, component: str, solution: Solution, point: Any) -> np.ndarray:
-    found: np.ndarray = getattr(getattr(solution.fields(point), field), component)
-    return found
+    values: np.ndarray = getattr(getattr(solution.fields(point), field), component)
+    return values
 
 
 def _force(name: str, solution: Solution, beam: Any) -> np.ndarray:
-    found: np.ndarray = getattr(solution.section_forces(beam), name)
-    return found
+    values: np.ndarray = getattr(solution.section_forces(beam), name)
+    return values
 
 
 def _stress(name: str, solution: Solution, beam: Any) -> np.ndarray:
-    found: np.ndarray = getattr(solution.stresses(beam), name)
-    return found
+    values: np.ndarray = getattr(solution.stresses(beam), name)
+    return values
 
 
 def _energy(name: str, solution: Solution, _: Any) -> np.ndarray:
-    found: np.ndarray = getattr(solution.energy(), name)
-    return found
+    values: np.ndarray = getattr(solution.energy(), name)
+    return values
 
 
 def _connector_force(part: int, solution: Solution, connector: Any) -> np.ndarray:
-    found: np.ndarray = solution.connector_force(connector)[..., part]
-    return found
+    values: np.ndarray = solution.connector_force(connector)[..., part]
+    return values
 
 
 AT_POINT: Quantities = {

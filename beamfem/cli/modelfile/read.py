@@ -149,15 +149,15 @@ def job_of(root: Table) -> Job:
     title = root.text("title") if "title" in root.values else root.source.file.stem
     function = parts.functions(root)
     function.check_all()
-    known = actions.structure(root, function)
-    moving = analysis(root, known.places).moving
-    return _job(root, known, actions.model(root, known, function, moving), title, imperfection(root))
+    structure = actions.structure(root, function)
+    moving = analysis(root, structure.places).moving
+    return _job(root, structure, actions.model(root, structure, function, moving), title, imperfection(root))
 
 
 def _job(root: Table, known: Structure, model: Model, title: str, crooked: Imperfection | None) -> Job:
     chosen = analysis(root, known.places)
     kind = root.values.get("analysis", {}).get("kind", "static")
     connectors = dict(zip(root.values.get("connectors", {}), model.connectors, strict=True))
-    asked = tuple(outputs(root, known.places, model, chosen, connectors))
+    requested = tuple(outputs(root, known.places, model, chosen, connectors))
     drawn, written = curves(root, known.places, model, chosen), files(root, known.places, model, chosen)
-    return Job(title, known, model, kind, chosen, asked, drawn, written, varied(root), root, crooked)
+    return Job(title, known, model, kind, chosen, requested, drawn, written, varied(root), root, crooked)

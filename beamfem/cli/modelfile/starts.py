@@ -45,8 +45,8 @@ def state_of(start: Start, model: Model) -> State | None:
 
 def newton(table: Table, key: str) -> Newton:
     """Return the Newton of a table. Raises ModelFileError."""
-    found: Newton = build(table.table(key), Newton)
-    return found
+    result: Newton = build(table.table(key), Newton)
+    return result
 
 
 def start(table: Table, key: str) -> Start:
@@ -58,13 +58,13 @@ def start(table: Table, key: str) -> Start:
     if value in ("reference", "static"):
         return Equilibrium() if value == "static" else None
     if isinstance(value, dict):
-        own = table.table(key)
-        found: Start
+        subtable = table.table(key)
+        result: Start
         if "file" in value:
-            found = build(own, _saved, {"file": lambda part, name: part.source.file.parent / part.text(name)})
+            result = build(subtable, _saved, {"file": lambda part, name: part.source.file.parent / part.text(name)})
         else:
-            found = build(own, Equilibrium, {"newton": newton})
-        return found
+            result = build(subtable, Equilibrium, {"newton": newton})
+        return result
     if isinstance(value, bool | str | list):
         raise table.error(
             f'{key} must be "reference" or "static", a load factor, or a table with load_factor or file, got '
@@ -80,10 +80,10 @@ def start(table: Table, key: str) -> Start:
 def _saved(file: Path, row: int | None = None) -> State:
     """Return a state of a results file. Raises InputError."""
     try:
-        found = load(file)
+        solution = load(file)
     except FileError as error:
         raise InputError(f"file: {error}") from error
-    number: Any = len(found) if row is None else count("row", row)
-    if number > len(found):
-        raise InputError(f"row is {row}, but {file.name} has {len(found)} rows")
-    return found[number - 1]
+    number: Any = len(solution) if row is None else count("row", row)
+    if number > len(solution):
+        raise InputError(f"row is {row}, but {file.name} has {len(solution)} rows")
+    return solution[number - 1]

@@ -30,7 +30,7 @@ class PointOfFile:
     def job(self, values: dict[str, Any]) -> Job:
         """Return the model and analysis with these values by name. Raises ModelFileError."""
         try:
-            return job_of(with_values(self.root, {each.path: values[each.name] for each in self.varied}))
+            return job_of(with_values(self.root, {parameter.path: values[parameter.name] for parameter in self.varied}))
         except ModelFileError as error:
             where = ", ".join(f"{name} = {value}" for name, value in values.items())
             raise ModelFileError(f"{error.message} (with {where})", error.file, error.line, error.key) from error
@@ -43,11 +43,11 @@ class PointOfFile:
 def solve_sweep(job: Job) -> Sweep:
     """Return the results of a file with a sweep, one row per point. Raises ModelFileError before the first solve."""
     point = PointOfFile(job.root, job.varied)
-    first = {each.name: each.values[0] for each in job.varied}
-    for each in job.varied:
-        for value in each.values:
-            _require_single_rows(point.job(first | {each.name: value}))
-    parameters: Any = {each.name: each.values for each in job.varied}
+    first = {parameter.name: parameter.values[0] for parameter in job.varied}
+    for parameter in job.varied:
+        for value in parameter.values:
+            _require_single_rows(point.job(first | {parameter.name: value}))
+    parameters: Any = {parameter.name: parameter.values for parameter in job.varied}
     return sweep(point, **parameters)
 
 

@@ -28,10 +28,10 @@ class Source:
 
     def error(self, path: KeyPath, message: str) -> ModelFileError:
         """Return the error of a key; for a missing key, with the line of the table that should contain it."""
-        known = path
-        while known and known not in self.lines:
-            known = known[:-1]
-        return ModelFileError(message, self.file, self.lines.get(known), written(path) or None)
+        prefix = path
+        while prefix and prefix not in self.lines:
+            prefix = prefix[:-1]
+        return ModelFileError(message, self.file, self.lines.get(prefix), written(path) or None)
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,8 @@ class Table:
         values = self.values[key]
         if not isinstance(values, dict):
             raise self.error(f"must be tables with a name, each headed [{key}.NAME], got {shown(values)}", key)
-        found = self.table(key)
-        return {name: found.table(name) for name in found.values}
+        subtable = self.table(key)
+        return {name: subtable.table(name) for name in subtable.values}
 
     def text(self, key: str) -> str:
         """Return the text at a key. Raises ModelFileError for any other value."""
@@ -162,8 +162,8 @@ def _plain(table: Table, key: str, hint: Any) -> Any:
     if hint in (float, int, float | None) and isinstance(value, bool | dict | list | str):
         raise table.error(f"must be a number, got {shown(value)}", key)
     if isinstance(value, bool) != (hint is bool):
-        wanted = "true or false" if hint is bool else "a number, an array or a text"
-        raise table.error(f"must be {wanted}, got {shown(value)}", key)
+        expected = "true or false" if hint is bool else "a number, an array or a text"
+        raise table.error(f"must be {expected}, got {shown(value)}", key)
     return value
 
 

@@ -24,7 +24,7 @@ class Varied:
 
 def varied(root: Table) -> tuple[Varied, ...]:
     """Return what the tables [[sweep]] of a file vary. Raises ModelFileError."""
-    found: list[Varied] = []
+    result: list[Varied] = []
     for table in root.tables("sweep"):
         table.require_known(("key", "values"))
         for key in ("key", "values"):
@@ -34,12 +34,12 @@ def varied(root: Table) -> tuple[Varied, ...]:
         if not isinstance(values, list) or not values:
             raise table.error(f"must be an array of the values that {name} takes, got {shown(values)}", "values")
         path = _path(table, root)
-        for other in found:
+        for other in result:
             shared = min(len(path), len(other.path))
             if path[:shared] == other.path[:shared]:
                 raise table.error(f"{name} and {other.name} vary the same key", "key")
-        found.append(Varied(name, path, values))
-    return tuple(found)
+        result.append(Varied(name, path, values))
+    return tuple(result)
 
 
 def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
@@ -56,11 +56,11 @@ def with_values(root: Table, values: Mapping[Path, Any]) -> Table:
 def _path(table: Table, root: Table) -> Path:
     """Return the path of the key of a sweep in the file. Raises ModelFileError if it is not there."""
     name, path, end = table.text("key"), [], 0
-    for found in _PART.finditer(name):
-        if found.start() != end:
+    for match in _PART.finditer(name):
+        if match.start() != end:
             break
-        end = found.end()
-        path.append(found["key"] if found["key"] else int(found["item"]) - 1)
+        end = match.end()
+        path.append(match["key"] if match["key"] else int(match["item"]) - 1)
     if not path or end != len(name):
         such = 'such as "sections.NAME.height" or "loads[1].vector[2]", with items counted from 1'
         raise table.error(f'must be a key {such}, got "{name}"', "key")

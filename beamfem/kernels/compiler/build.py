@@ -23,9 +23,9 @@ class Build:
         """Call a function of LLVM or of the C library whose arguments and result are of one kind."""
         types = [each.kind.llvm for each in (value, *others)]
         functions = self.builder.module.globals
-        own = functions.get(name) or ir.Function(self.builder.module, ir.FunctionType(types[0], types), name)
+        callee = functions.get(name) or ir.Function(self.builder.module, ir.FunctionType(types[0], types), name)
         arguments = [each.llvm for each in (value, *others)]
-        return Value(value.kind, self.builder.call(own, arguments, fastmath=self.flags))
+        return Value(value.kind, self.builder.call(callee, arguments, fastmath=self.flags))
 
     def same(self, number: ir.Value) -> ir.Value:
         """Return a vector whose lanes all hold one number or integer."""
@@ -59,15 +59,15 @@ class Build:
         """Return the address of an entry of a pointer."""
         if index.kind is not WHOLE:
             raise TypeError(f"a {index.kind.name} is no place in memory")
-        place = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)
-        return self.builder.bitcast(place, LANES.llvm.as_pointer()) if pointer.kind is ROWS else place
+        address = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)
+        return self.builder.bitcast(address, LANES.llvm.as_pointer()) if pointer.kind is ROWS else address
 
     def read(self, pointer: Value, index: Value) -> Value:
         """Return an entry of a pointer."""
         kind = _entry(pointer)
         align = 8 if kind is LANES else None
-        found = self.builder.load(self.place(pointer, index), align=align)
-        return Value(kind, self.builder.sext(found, WHOLE.llvm) if pointer.kind.stored != kind.llvm else found)
+        entry = self.builder.load(self.place(pointer, index), align=align)
+        return Value(kind, self.builder.sext(entry, WHOLE.llvm) if pointer.kind.stored != kind.llvm else entry)
 
     def write(self, pointer: Value, index: Value, value: Value) -> None:
         """Set an entry of a pointer."""

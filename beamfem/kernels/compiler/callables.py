@@ -31,6 +31,6 @@ class Inlined:
 
 def operation(emit: Callable[..., Value | None]) -> Any:
     """Return the operation whose instructions are written by emit(build, *values); usable as a decorator."""
-    made = Operation(emit)
-    object.__setattr__(made, "__doc__", emit.__doc__)
-    return made
+    result = Operation(emit)
+    object.__setattr__(result, "__doc__", emit.__doc__)
+    return result

@@ -43,9 +43,9 @@ def object_of(scope: Scope, node: ast.expr) -> Any:
 
 def one_value(scope: Scope, node: ast.expr) -> Value:
     """Return the value of an expression that has exactly one. Raises TypeError otherwise."""
-    found = values(scope, node)
-    if isinstance(found, Value):
-        return found
+    value = values(scope, node)
+    if isinstance(value, Value):
+        return value
     raise TypeError(f"{ast.unparse(node)} is not one value")
 
 
@@ -63,8 +63,8 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
         case ast.Name(id=name) if name in scope.variables:
             if name not in scope.assigned:
                 raise TypeError(f"{name} may have no value here")
-            kind, place = scope.variables[name]
-            return Value(kind, build.builder.load(place))
+            kind, address = scope.variables[name]
+            return Value(kind, build.builder.load(address))
         case ast.Constant() | ast.Name() | ast.Attribute():
             return _constant(object_of(scope, node))
         case ast.Subscript(value=pointer, slice=index):
@@ -87,8 +87,8 @@ def values(scope: Scope, node: ast.expr) -> Value | list[Value]:
 
 
 def _constant(found: Any) -> Value:
-    for kind, own in ((FLAG, bool), (WHOLE, int), (NUMBER, float)):
-        if isinstance(found, own):
+    for kind, python_type in ((FLAG, bool), (WHOLE, int), (NUMBER, float)):
+        if isinstance(found, python_type):
             return Value(kind, ir.Constant(kind.llvm, found))
     raise TypeError(f"{found!r} is no number")
 
@@ -97,8 +97,8 @@ def _called(scope: Scope, function: Any, arguments: list[Value]) -> Value | list
     if isinstance(function, Operation):
         return function.emit(scope.build, *arguments) or []
     if isinstance(function, Inlined):
-        found = scope.inline(function, arguments)
-        return found[0] if len(found) == 1 else found
+        results = scope.inline(function, arguments)
+        return results[0] if len(results) == 1 else results
     if function in FUNCTIONS:
         return FUNCTIONS[function](scope.build, *arguments)
     raise TypeError(f"{function!r} cannot be called in compiled code")
@@ -106,36 +106,36 @@ def _called(scope: Scope, function: Any, arguments: list[Value]) -> Value | list
 
 def _either(build: Build, condition: ir.Value, first: Callable[[], Value], second: Callable[[], Value]) -> Value:
     """Return one of two values by a branch, so that only this one is computed."""
-    builder, found = build.builder, list[tuple[Value, ir.Block]]()
+    builder, branches = build.builder, list[tuple[Value, ir.Block]]()
     then, otherwise, after = (builder.append_basic_block(name) for name in ("then", "else", "after"))
     builder.cbranch(condition, then, otherwise)
     for block, computed in ((then, first), (otherwise, second)):
         builder.position_at_end(block)
-        found.append((computed(), builder.block))
-    kind = max((value.kind for value, _ in found), key=lambda kind: kind.rank)
+        branches.append((computed(), builder.block))
+    kind = max((value.kind for value, _ in branches), key=lambda kind: kind.rank)
     builder.position_at_end(after)
-    chosen = builder.phi(kind.llvm)
-    for value, block in found:
+    phi = builder.phi(kind.llvm)
+    for value, block in branches:
         builder.position_at_end(block)
-        chosen.add_incoming(build.converted(value, kind), block)
+        phi.add_incoming(build.converted(value, kind), block)
         builder.branch(after)
     builder.position_at_end(after)
-    return Value(kind, chosen)
+    return Value(kind, phi)
 
 
 def _joined(scope: Scope, all_hold: bool, first: ast.expr, others: list[ast.expr]) -> Value:
     """Return the conjunction or disjunction of conditions, evaluated only as far as needed."""
-    here = one_value(scope, first)
-    if here.kind is not FLAG:
-        raise TypeError(f"and, or join conditions, and {ast.unparse(first)} is a {here.kind.name}")
+    condition = one_value(scope, first)
+    if condition.kind is not FLAG:
+        raise TypeError(f"and, or join conditions, and {ast.unparse(first)} is a {condition.kind.name}")
     if not others:
-        return here
+        return condition
 
     def rest() -> Value:
         return _joined(scope, all_hold, others[0], others[1:])
 
-    both = (rest, lambda: here) if all_hold else (lambda: here, rest)
-    return _either(scope.build, here.llvm, *both)
+    both = (rest, lambda: condition) if all_hold else (lambda: condition, rest)
+    return _either(scope.build, condition.llvm, *both)
 
 
 def _compared(scope: Scope, a: ast.expr, operations: list[ast.cmpop], others: list[ast.expr]) -> Value:

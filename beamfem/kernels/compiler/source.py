@@ -12,19 +12,19 @@ from typing import Any
 @cache
 def _functions(file: str, text: str) -> dict[int, ast.FunctionDef]:
     """Return the functions of a file by the number of their first line, decorators included."""
-    found = (node for node in ast.walk(ast.parse(text, file)) if isinstance(node, ast.FunctionDef))
-    return {min([node.lineno, *(each.lineno for each in node.decorator_list)]): node for node in found}
+    functions = (node for node in ast.walk(ast.parse(text, file)) if isinstance(node, ast.FunctionDef))
+    return {min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)]): node for node in functions}
 
 
 @cache
 def _codes(file: str, text: str) -> list[CodeType]:
     """Return the code objects of all functions of a file."""
-    found, left = list[CodeType](), [compile(text, file, "exec", dont_inherit=True)]
-    while left:
-        inner = [constant for constant in left.pop().co_consts if isinstance(constant, CodeType)]
-        found += inner
-        left += inner
-    return found
+    codes, pending = list[CodeType](), [compile(text, file, "exec", dont_inherit=True)]
+    while pending:
+        inner = [constant for constant in pending.pop().co_consts if isinstance(constant, CodeType)]
+        codes += inner
+        pending += inner
+    return codes
 
 
 def definition(function: Callable[..., Any]) -> ast.FunctionDef:
@@ -36,25 +36,25 @@ def definition(function: Callable[..., Any]) -> ast.FunctionDef:
     code = function.__code__
     linecache.checkcache(code.co_filename)
     text = "".join(linecache.getlines(code.co_filename, function.__globals__))
-    found = _functions(code.co_filename, text).get(code.co_firstlineno)
-    if found is None or code not in _codes(code.co_filename, text):
+    tree = _functions(code.co_filename, text).get(code.co_firstlineno)
+    if tree is None or code not in _codes(code.co_filename, text):
         raise TypeError(
             f"the text of {function.__qualname__} is not in {code.co_filename}, or it has been changed since it was "
             "imported, and without it nothing is compiled"
         )
-    given = found.args
-    if given.posonlyargs or given.kwonlyargs or given.vararg or given.kwarg or given.defaults:
-        raise TypeError(f"arguments of compiled code are names without defaults, those of {found.name} are more")
-    return found
+    arguments = tree.args
+    if arguments.posonlyargs or arguments.kwonlyargs or arguments.vararg or arguments.kwarg or arguments.defaults:
+        raise TypeError(f"arguments of compiled code are names without defaults, those of {tree.name} are more")
+    return tree
 
 
 def outside(function: Callable[..., Any]) -> dict[str, Any]:
     """Return by name what a function finds outside: built-ins, globals and the variables of enclosing functions."""
     code = function.__code__
-    known = vars(builtins) | function.__globals__ | dict(_enclosed(function))
+    objects = vars(builtins) | function.__globals__ | dict(_enclosed(function))
     for name in (*code.co_varnames, *code.co_cellvars):
-        known.pop(name, None)
-    return known
+        objects.pop(name, None)
+    return objects
 
 
 def _enclosed(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:

@@ -35,20 +35,20 @@ def translate(
     """
     module, result = ir.Module(name), RESULTS[returns]
     outer = ir.VoidType() if result is None else result.llvm
-    own = ir.Function(module, ir.FunctionType(outer, [KINDS[kind].llvm for kind in kinds]), name)
-    own.attributes.add("nounwind")
-    builder = ir.IRBuilder(own.append_basic_block("entry"))
-    given = [Value(KINDS[kind], argument) for kind, argument in zip(kinds, own.args, strict=True)]
-    for place, argument in enumerate(definition(function).args.args):
+    llvm_function = ir.Function(module, ir.FunctionType(outer, [KINDS[kind].llvm for kind in kinds]), name)
+    llvm_function.attributes.add("nounwind")
+    builder = ir.IRBuilder(llvm_function.append_basic_block("entry"))
+    arguments = [Value(KINDS[kind], argument) for kind, argument in zip(kinds, llvm_function.args, strict=True)]
+    for index, argument in enumerate(definition(function).args.args):
         if argument.arg in fixed:
-            given[place] = Value(WHOLE, WHOLE.llvm(fixed[argument.arg]))
-    found = _Body(Build(builder, tuple(flags)), function, given).run()
+            arguments[index] = Value(WHOLE, WHOLE.llvm(fixed[argument.arg]))
+    results = _Body(Build(builder, tuple(flags)), function, arguments).run()
     if result is None:
         builder.ret_void()
-    elif len(found) == 1:
-        builder.ret(Build(builder).converted(found[0], result))
+    elif len(results) == 1:
+        builder.ret(Build(builder).converted(results[0], result))
     else:
-        raise TypeError(f"{function.__qualname__} returns {len(found)} values, not one {result.name}")
+        raise TypeError(f"{function.__qualname__} returns {len(results)} values, not one {result.name}")
     return module
 
 
@@ -74,7 +74,7 @@ class _Body:
             raise TypeError(f"{self._function.__qualname__} returns a value, but not where it ends")
         self._branch(self._end)
         self._builder.position_at_end(self._end)
-        return [Value(kind, self._builder.load(place)) for kind, place in self._results or ()]
+        return [Value(kind, self._builder.load(address)) for kind, address in self._results or ()]
 
     def _inline(self, inlined: Inlined, arguments: Sequence[Value]) -> list[Value]:
         flags = self._build.flags if inlined.flags is None else inlined.flags
@@ -109,9 +109,9 @@ class _Body:
         scope = self._scope
         match statement:
             case ast.Assign(targets=targets, value=value):
-                found = values(scope, value)
+                computed = values(scope, value)
                 for target in targets:
-                    self._assign(target, found)
+                    self._assign(target, computed)
             case ast.AugAssign(target=target, op=operation, value=value):
                 self._change(target, operation, value)
             case ast.Expr(value=ast.Constant()) | ast.Pass():
@@ -131,14 +131,14 @@ class _Body:
                 endless = isinstance(test, ast.Constant) and test.value is True
                 self._loop(lambda: truth(scope, test), body, endless=endless)
             case ast.Break():
-                others = self._breaks[-1]
-                self._breaks[-1] = self._scope.assigned & (self._scope.assigned if others is None else others)
+                at_breaks = self._breaks[-1]
+                self._breaks[-1] = self._scope.assigned & (self._scope.assigned if at_breaks is None else at_breaks)
                 self._builder.branch(self._loops[-1][1])
             case ast.Continue():
                 self._builder.branch(self._loops[-1][0])
             case ast.Return(value=value):
-                found = [] if value is None else values(scope, value)
-                self._return([found] if isinstance(found, Value) else found)
+                computed = [] if value is None else values(scope, value)
+                self._return([computed] if isinstance(computed, Value) else computed)
             case _:
                 raise TypeError(f"{ast.unparse(statement).splitlines()[0]} is not known to compiled code")
 
@@ -147,8 +147,8 @@ class _Body:
             case ast.Tuple(elts=targets), list():
                 if len(targets) != len(value):
                     raise TypeError(f"{len(value)} values for {len(targets)} names")
-                for own, each in zip(targets, value, strict=True):
-                    self._assign(own, each)
+                for part, item in zip(targets, value, strict=True):
+                    self._assign(part, item)
             case ast.Name(id=name), Value():
                 self._set(name, value)
             case ast.Subscript(value=pointer, slice=index), Value():
@@ -160,9 +160,9 @@ class _Body:
         variables = self._scope.variables
         self._scope.assigned.add(name)
         if name in variables:
-            kind, place = variables[name]
+            kind, address = variables[name]
             if kind is value.kind or kind.rank > value.kind.rank > 0:
-                self._builder.store(self._build.converted(value, kind), place)
+                self._builder.store(self._build.converted(value, kind), address)
                 return
             if self._depth > 0:
                 raise TypeError(f"{name} is a {kind.name} and cannot become a {value.kind.name} in a loop or branch")
@@ -184,8 +184,8 @@ class _Body:
             self._results = [(each.kind, self._build.space(each.kind.llvm)) for each in found]
         if len(self._results) != len(found):
             raise TypeError("a function returns as many values everywhere")
-        for (kind, place), value in zip(self._results, found, strict=True):
-            self._builder.store(self._build.converted(value, kind), place)
+        for (kind, address), value in zip(self._results, found, strict=True):
+            self._builder.store(self._build.converted(value, kind), address)
         self._builder.branch(self._end)
 
     def _fork(self, condition: ir.Value, body: Sequence[ast.stmt], other: Sequence[ast.stmt]) -> None:
@@ -243,11 +243,11 @@ class _Body:
             self._builder.unreachable()
 
     def _count(self, target: ast.Name, limits: list[ast.expr], body: Sequence[ast.stmt]) -> None:
-        found = [one_value(self._scope, each) for each in limits]
-        if any(each.kind is not WHOLE for each in found):
+        bounds = [one_value(self._scope, each) for each in limits]
+        if any(each.kind is not WHOLE for each in bounds):
             raise TypeError("a range counts whole numbers")
-        start, stop = found[:2] if len(found) > 1 else (Value(WHOLE, WHOLE.llvm(0)), found[0])
-        step = self._step(limits[2]) if len(found) > 2 else 1
+        start, stop = bounds[:2] if len(bounds) > 1 else (Value(WHOLE, WHOLE.llvm(0)), bounds[0])
+        step = self._step(limits[2]) if len(bounds) > 2 else 1
         counter = self._build.space(WHOLE.llvm)
         self._builder.store(start.llvm, counter)
 
@@ -258,8 +258,8 @@ class _Body:
             self._set(target.id, Value(WHOLE, self._builder.load(counter)))
 
         def advance() -> None:
-            here = self._builder.load(counter)
-            self._builder.store(self._builder.add(here, WHOLE.llvm(step), flags=("nsw",)), counter)
+            current = self._builder.load(counter)
+            self._builder.store(self._builder.add(current, WHOLE.llvm(step), flags=("nsw",)), counter)
 
         self._loop(condition, body, begin, advance)
 
@@ -269,9 +269,9 @@ class _Body:
             case ast.UnaryOp(op=ast.USub(), operand=value):
                 return -self._step(value)
             case ast.Name(id=name) if name in self._scope.variables:
-                found = None
+                step = None
             case _:
-                found = object_of(self._scope, node)
-        if type(found) is not int or found == 0:
+                step = object_of(self._scope, node)
+        if type(step) is not int or step == 0:
             raise TypeError("the step of a range is a number that is known when it is compiled")
-        return found
+        return step

@@ -34,7 +34,7 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
     SegmentLostError.
     """
     extrema = sorted([*limits, *segment.turned])
-    found = [turning(segment, x) for x in segment.turned]
+    result = [turning(segment, x) for x in segment.turned]
     start = 0.0
     for i, x in enumerate(extrema):
         low, high = max(x - _BESIDE, start), min(x + _BESIDE, 1.0)
@@ -43,13 +43,13 @@ def bifurcations(segment: Segment, limits: list[float]) -> list[Crossing]:
                 raise SegmentLostError("several paths cross where the load factor turns")
             low = max(x - _WINDOW, start)
             high = min(x + _WINDOW, 0.5 * (x + extrema[i + 1]) if i + 1 < len(extrema) else 1.0)
-            found += without_limit(segment, x, list(_search(segment, low, high)))
+            result += without_limit(segment, x, list(_search(segment, low, high)))
         if start < low:
-            found += _search(segment, start, low)
+            result += _search(segment, start, low)
         start = high
     if start < 1.0:
-        found += _search(segment, start, 1.0)
-    return sorted(found, key=lambda one: one.fraction)
+        result += _search(segment, start, 1.0)
+    return sorted(result, key=lambda crossing: crossing.fraction)
 
 
 def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
@@ -75,8 +75,8 @@ def _search(segment: Segment, start: float, end: float) -> Iterator[Crossing]:
 def _require_one_path(segment: Segment, start: float, end: float) -> None:
     """Raise SegmentLostError if two points are further apart than a path between them allows."""
     line = segment.line
-    apart = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
-    if apart > 2.0 * (end - start) + _JUMP:
+    ratio = line.length(segment.at(end).y - segment.at(start).y) / line.length(segment.chord)
+    if ratio > 2.0 * (end - start) + _JUMP:
         raise SegmentLostError("the step leads to another path")
 
 
@@ -121,20 +121,20 @@ def _shows(start: Condensed, end: Condensed, change: int, symmetric: bool) -> bo
     If they are not symmetric, only the sign of the determinant counts.
     """
     if not symmetric:
-        signs = [np.sign(np.linalg.det(one.stiffness)) for one in (start, end)]
+        signs = [np.sign(np.linalg.det(sample.stiffness)) for sample in (start, end)]
         return bool(signs[0] * signs[1] == (-1.0) ** change)
-    before, after = (int(np.sum(np.linalg.eigvalsh(one.stiffness) < 0.0)) for one in (start, end))
+    before, after = (int(np.sum(np.linalg.eigvalsh(sample.stiffness) < 0.0)) for sample in (start, end))
     return after - before == change
 
 
 def _softer(segment: Segment, start: float, end: float, count: int) -> np.ndarray:
     """Return the softest modes (count, n + 1) at that end of a part of a segment where they are softer."""
-    line, found = segment.line, []
+    line, candidates = segment.line, []
     for x in (start, end):
         modes = line.softest_modes(segment.at(x).factors, count)
         stiffness = condensed(line, segment.at(x), modes).stiffness
-        found.append((float(np.abs(np.linalg.eigvalsh(stiffness)).max()), modes))
-    return min(found, key=lambda one: one[0])[1]
+        candidates.append((float(np.abs(np.linalg.eigvalsh(stiffness)).max()), modes))
+    return min(candidates, key=lambda candidate: candidate[0])[1]
 
 
 def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[float, float]) -> np.ndarray:
@@ -153,10 +153,10 @@ def _roots(known: dict[float, Condensed], fractions: np.ndarray, within: tuple[f
     reach = np.where(_GRID < 0.0, centre - within[0], within[1] - centre)
     grid = centre + _GRID * reach
     signs = np.sign(eigenvalues(grid))
-    found = []
+    roots = []
     for number, row in enumerate(signs.T):
         changes = np.flatnonzero(row[1:] != row[:-1])
         if len(changes):
             i = changes[np.argmin(np.abs(changes - len(grid) // 2))]
-            found.append(brentq(lambda x, j=number: eigenvalues(x)[j], grid[i], grid[i + 1], xtol=1e-15))
-    return np.sort(found)
+            roots.append(brentq(lambda x, j=number: eigenvalues(x)[j], grid[i], grid[i + 1], xtol=1e-15))
+    return np.sort(roots)

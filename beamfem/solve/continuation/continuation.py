@@ -149,8 +149,8 @@ class Continuation:
         which the iteration is given up; counted: whether to count the negative pivots of all iterations.
         """
         problem = _InPlane(self, start, stresses, normal, farthest, counted)
-        found = iterate(problem, self.newton)
-        return Corrected(problem.state, found.iterations, found.ended, problem.counts)
+        result = iterate(problem, self.newton)
+        return Corrected(problem.state, result.iterations, result.ended, problem.counts)
 
     def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:
         """Return the point y with its tangent in the sense of `like` (n + 1,). Raises LinAlgError."""
@@ -170,11 +170,11 @@ class Continuation:
         basis = np.random.default_rng(0).standard_normal((len(free), min(count, len(free))))
         for _ in range(_INVERSE_ITERATIONS):
             basis = np.linalg.qr(basis)[0]
-            found = np.column_stack([factors.solve(roots * column) * roots for column in basis.T])
-            outside = found - basis @ (basis.T @ found)
-            still = np.all(np.linalg.norm(outside, axis=0) < _STILL * np.linalg.norm(found, axis=0))
-            basis = found
-            if still:
+            improved = np.column_stack([factors.solve(roots * column) * roots for column in basis.T])
+            outside = improved - basis @ (basis.T @ improved)
+            converged = np.all(np.linalg.norm(outside, axis=0) < _STILL * np.linalg.norm(improved, axis=0))
+            basis = improved
+            if converged:
                 break
         result = np.zeros((basis.shape[1], len(self.scale)))
         result[:, free] = (np.linalg.qr(basis)[0] / roots[:, None]).T

@@ -87,10 +87,10 @@ class Segment:
         best, least = y, np.inf
         try:
             for _ in range(_BALANCINGS):
-                left = balance_of(line.system, y[:-1], float(y[-1])).largest
-                if not left < least:
+                largest = balance_of(line.system, y[:-1], float(y[-1])).largest
+                if not largest < least:
                     break
-                best, least = y, left
+                best, least = y, largest
                 step, _, _ = line.solve(y, None)
                 for mode in modes:
                     step -= line.dot(mode, step) * mode
@@ -133,19 +133,19 @@ class Segment:
         An extremum at which another path crosses is a bifurcation: its fraction is added to `turned`.
         """
         stops = self._stops()
-        found: list[float] = []
+        limits: list[float] = []
         self.turned = []
         for start, end in pairwise(stops):
             left, right = self.at(start).tangent[-1], self.at(end).tangent[-1]
             if left * right < 0.0:
                 x, crossed = self._extremum(start, end)
-                (self.turned if crossed else found).append(x)
+                (self.turned if crossed else limits).append(x)
             elif right == 0.0 != left:
-                found.append(end)
+                limits.append(end)
         rise = self.chord[-1]
-        if not found and not self.turned and rise * self.slopes[0][-1] < 0.0 and rise * self.slopes[1][-1] < 0.0:
+        if not limits and not self.turned and rise * self.slopes[0][-1] < 0.0 and rise * self.slopes[1][-1] < 0.0:
             raise SegmentLostError("the load factor goes another way than the tangents at both ends")
-        return found
+        return limits
 
     @cached_property
     def symmetric(self) -> bool:
@@ -226,7 +226,9 @@ class Segment:
         """
         points, width = (self.at(start), self.at(end)), end - start
         squared = self.line.dot(self.chord, self.chord)
-        left, right = (width * squared * one.tangent[-1] / self.line.dot(one.tangent, self.chord) for one in points)
+        left, right = (
+            width * squared * point.tangent[-1] / self.line.dot(point.tangent, self.chord) for point in points
+        )
         rise = points[1].load_factor - points[0].load_factor
         curvature = 6.0 * (left + right - 2.0 * rise)
         if left * right <= 0.0 or curvature == 0.0:

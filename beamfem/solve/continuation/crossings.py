@@ -57,11 +57,11 @@ class Samples:
 
     @cached_property
     def shapes(self) -> np.ndarray:
-        return np.array([one.shapes for one in self.condensed])
+        return np.array([sample.shapes for sample in self.condensed])
 
     def stiffness(self, x: float) -> np.ndarray:
         """Return the condensed tangent (k, k) at a fraction."""
-        return self.at(x, np.array([one.stiffness for one in self.condensed]))
+        return self.at(x, np.array([sample.stiffness for sample in self.condensed]))
 
     def at(self, x: float, values: np.ndarray) -> np.ndarray:
         """Return values (s, ...) at the samples, interpolated at a fraction."""
@@ -80,7 +80,7 @@ def crossings(samples: Samples, roots: np.ndarray) -> list[Crossing]:
             groups[-1].append(right)
         else:
             groups.append([right])
-    return [found for group in groups for found in _at_one_place(samples, float(np.mean(group)), len(group))]
+    return [crossing for group in groups for crossing in _at_one_place(samples, float(np.mean(group)), len(group))]
 
 
 def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
@@ -88,8 +88,8 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
 
     False if it does not because the fractions are too close to be distinguished. Raises SegmentLostError.
     """
-    x, apart = 0.5 * (left + right), right - left
-    if apart < _ONE * samples.distance:
+    x, gap = 0.5 * (left + right), right - left
+    if gap < _ONE * samples.distance:
         return False
     line, y = samples.segment.line, samples.at(x, samples.y)
     zeros = np.zeros(len(y) - 1)
@@ -97,7 +97,7 @@ def _apart(samples: Samples, left: float, right: float, passed: int) -> bool:
     count = tangent.factorised(line.system.rotated).negative_pivots
     if count == samples.segment.at(samples.before).negative_pivots + passed * np.sign(samples.change):
         return True
-    if apart > _RESOLVED * samples.distance:
+    if gap > _RESOLVED * samples.distance:
         raise SegmentLostError("the tangent is not singular where its modes lose their stiffness")
     return False
 
@@ -141,8 +141,8 @@ def _require_crossing(samples: Samples, x: float, mode: np.ndarray, rate: float)
     aside = [line.dot(mode, y) for y in samples.y]
     bend = np.linalg.lstsq(basis, np.array(aside))[0][-1]
     zeros = np.zeros(len(mode) - 1)
-    left = max(abs(mode[:-1] @ residual(line.system, y[:-1], zeros, zeros, float(y[-1]))) for y in samples.y)
-    if abs(bend) > max(_IMPERFECT, _LEFT * left / (abs(rate) * samples.distance)):
+    unbalanced = max(abs(mode[:-1] @ residual(line.system, y[:-1], zeros, zeros, float(y[-1]))) for y in samples.y)
+    if abs(bend) > max(_IMPERFECT, _LEFT * unbalanced / (abs(rate) * samples.distance)):
         raise SegmentLostError("the step leads to another path")
 
 
@@ -175,9 +175,9 @@ def without_limit(segment: Segment, x: float, found: list[Crossing]) -> list[Cro
     fractions = segment.beside(x, x, _BESIDE, 0.0, 1.0)
     along = interpolation_weights(fractions, x) @ [segment.at(at).tangent for at in fractions.tolist()]
     along[-1] = 0.0
-    nearest = sorted(found, key=lambda one: abs(one.fraction - x))
+    nearest = sorted(found, key=lambda crossing: abs(crossing.fraction - x))
     for count in range(1, len(nearest) + 1):
-        modes = np.array(_orthonormal(line, [one.mode for one in nearest[:count]]))
+        modes = np.array(_orthonormal(line, [crossing.mode for crossing in nearest[:count]]))
         parts = modes @ (line.weights * along)
         if line.length(along - parts @ modes) < _ALONG * line.length(along):
             others = _orthonormal(line, np.linalg.svd(parts[None])[2][1:] @ modes)

@@ -40,11 +40,11 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     known = rigid
     correction = np.zeros_like(pencil.p)
     correction[pencil.system.free_dofs] = -factors.solve(pencil.unbalanced)
-    found, missing = nothing_known(n), wanted
+    pairs, missing = nothing_known(n), wanted
     for _ in range(_SEARCHES):
-        more = largest_pairs(pencil.mass, factors, min(missing, available - len(found[0])), known)
-        found = _sorted(np.append(found[0], start + 1.0 / more[0]), np.column_stack([found[1], more[1]]))
-        squares, vectors = _refined(pencil, *_sharpened(pencil, *found, start if lost > WRONG else None), correction)
+        more = largest_pairs(pencil.mass, factors, min(missing, available - len(pairs[0])), known)
+        pairs = _sorted(np.append(pairs[0], start + 1.0 / more[0]), np.column_stack([pairs[1], more[1]]))
+        squares, vectors = _refined(pencil, *_sharpened(pencil, *pairs, start if lost > WRONG else None), correction)
         if len(squares) == available:
             return squares, vectors
         below = count + int(np.argmax(np.diff(squares[count - 1 :])))
@@ -80,11 +80,11 @@ def _sharpened(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, start: 
 
 def _solved(pencil: Pencil, tangent: Tangent, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Return vectors (n, m) after inverse iterations, without their components along known ones (n, k)."""
-    factors, own = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
+    factors, result = tangent.factorised(pencil.system.rotated), _besides(pencil, known, vectors)
     for _ in range(_SOLVES):
-        own = np.column_stack([factors.solve(column) for column in (pencil.mass @ own).T])
-        own = _besides(pencil, known, own)
-    return own
+        result = np.column_stack([factors.solve(column) for column in (pencil.mass @ result).T])
+        result = _besides(pencil, known, result)
+    return result
 
 
 def _besides(pencil: Pencil, known: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -112,7 +112,7 @@ def _refined(pencil: Pencil, squares: np.ndarray, vectors: np.ndarray, correctio
                 "the tangent of such a slender model has no reliable digits, so that modes cannot be distinguished"
             ) from None
         parts.append((values, vectors[:, part] @ mixed))
-    return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([found for _, found in parts]))
+    return _sorted(np.concatenate([values for values, _ in parts]), np.column_stack([x for _, x in parts]))
 
 
 def _alike(squares: np.ndarray) -> list[slice]:

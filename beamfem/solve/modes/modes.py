@@ -270,10 +270,10 @@ def solve_modes(model: Model, count: int = 10, about: State | Solution | None = 
     if count > unknown:
         raise InputError(f"count is {count}, but this model has only {unknown} unknown coordinates")
     pencil = Pencil(system, p, load_factor)
-    left = left_over(system, p, load_factor)
-    if left > 0.0:
+    force = left_over(system, p, load_factor)
+    if force > 0.0:
         raise InputError(
-            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {left:.3g} "
+            f"the state to vibrate about is not in equilibrium: at load factor {load_factor:g} a force of {force:.3g} "
             "is unbalanced. Give about= a state of solve_static with the same loads"
         )
     if count > pencil.size:
@@ -308,10 +308,10 @@ def _general(pencil: Pencil, count: int, rigid: np.ndarray) -> Pairs:
     factors, stiffness = tangent.factorised(pencil.system.rotated), tangent.sparse(UNROTATED)
     known = np.full(rigid.shape[1], -1.0 / shift), rigid
     reciprocal, vectors = general_pairs(pencil.mass, stiffness, factors, count + _SPARE, known)
-    found = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
-    vectors = vectors[:, found]
+    finite = np.abs(reciprocal) > np.finfo(float).eps * np.abs(reciprocal).max()
+    vectors = vectors[:, finite]
     sizes = np.real((np.conj(vectors) * (pencil.mass @ vectors)).sum(axis=0))
-    return shift + 1.0 / reciprocal[found], vectors / np.sqrt(sizes)
+    return shift + 1.0 / reciprocal[finite], vectors / np.sqrt(sizes)
 
 
 def _rates(squares: np.ndarray) -> np.ndarray:

@@ -33,18 +33,18 @@ def unresisted(pencil: Pencil) -> tuple[np.ndarray, tuple[str, ...]]:
     loads = weak_stiffness(system, p, pencil.load_factor, stresses_of(system, p, np.zeros_like(p), pencil.load_factor))
     resistance = loads @ shapes[:, free].T * system.scale[free][:, None]
     _, sizes, combinations = svd(resistance, full_matrices=False)
-    still = sizes <= _negligible_force(pencil) * system.extent * np.sqrt(resistance.size)
-    found = combinations[still] @ shapes
-    if not len(found):
-        return found, ()
-    return sort_rigid(pencil, solve_triangular(cholesky(_product(pencil, found, found), lower=True), found, lower=True))
+    mask = sizes <= _negligible_force(pencil) * system.extent * np.sqrt(resistance.size)
+    rigid = combinations[mask] @ shapes
+    if not len(rigid):
+        return rigid, ()
+    return sort_rigid(pencil, solve_triangular(cholesky(_product(pencil, rigid, rigid), lower=True), rigid, lower=True))
 
 
 def _negligible_force(pencil: Pencil) -> float:
     """Return the force [N] that a unit rotation of the state may cause by round-off and by the residual of Newton."""
-    system, p, still = pencil.system, pencil.p, np.zeros_like(pencil.p)
-    forces = [*system.point_values(pencil.load_factor), residual(system, p, still, still, pencil.load_factor)]
-    forces += [stresses[..., 0] for stresses in stresses_of(system, p, still, pencil.load_factor)]
+    system, p, zeros = pencil.system, pencil.p, np.zeros_like(pencil.p)
+    forces = [*system.point_values(pencil.load_factor), residual(system, p, zeros, zeros, pencil.load_factor)]
+    forces += [stresses[..., 0] for stresses in stresses_of(system, p, zeros, pencil.load_factor)]
     largest = max(float(np.abs(values).max(initial=0.0)) for values in forces)
     return _UNBALANCED * largest + round_off_floor(system, p)
 
@@ -56,12 +56,12 @@ def sort_rigid(pencil: Pencil, shapes: np.ndarray) -> tuple[np.ndarray, tuple[st
     """
     basis = np.empty((0, len(pencil.p)))
     for candidate in np.vstack([_whole(pencil, shapes), shapes]):
-        rest = candidate
+        remainder = candidate
         for _ in range(2):
-            rest = rest - _product(pencil, basis, rest) @ basis
-        size = np.sqrt(_product(pencil, rest, rest))
+            remainder = remainder - _product(pencil, basis, remainder) @ basis
+        size = np.sqrt(_product(pencil, remainder, remainder))
         if size > _SMALL * np.sqrt(_product(pencil, candidate, candidate)) and len(basis) < len(shapes):
-            basis = np.vstack([basis, rest / size])
+            basis = np.vstack([basis, remainder / size])
     return basis, tuple(_words(pencil, shape) for shape in basis)
 
 
@@ -100,11 +100,11 @@ def _words(pencil: Pencil, shape: np.ndarray) -> str:
         turn = float((arm[:, 0] * moved[:, 1] - arm[:, 1] * moved[:, 0]).sum() / (arm**2).sum())
         motions.append((moved.mean(axis=0), turn, centre, float(np.hypot(*arm.T).max())))
     sizes = [np.hypot(*translation) + abs(turn) * reach for translation, turn, _, reach in motions]
-    said = [
+    descriptions = [
         describe(*motion) if size > _SMALL * max(sizes) else "stays"
         for motion, size in zip(motions, sizes, strict=True)
     ]
-    if len(set(said)) == 1:
-        return said[0]
+    if len(set(descriptions)) == 1:
+        return descriptions[0]
     beams = pencil.system.model.beams
-    return ", ".join(f"{beam_in_words(beams, number)} {words}" for number, words in enumerate(said))
+    return ", ".join(f"{beam_in_words(beams, number)} {words}" for number, words in enumerate(descriptions))

@@ -42,14 +42,14 @@ class BandMotion:
         space = self._space
         body, values, imposing = _sample_loads(self._system, times)
         if space.loads is not None:
-            values = tuple(values[0][:, own] for own in space.loads)
+            values = tuple(values[0][:, indices] for indices in space.loads)
         varying = len(body) > 1
         assembler, solver = space.assembler, space.solver
         places = assembler.load(body, values)
         natural = np.array(assembler.impose(imposing), dtype=np.int64)
-        given = np.array(places[1:], dtype=np.int64)
-        n, place = state.shape[1], address_of(state)
-        states = place, place + 8 * n, place + 16 * n
+        load_addresses = np.array(places[1:], dtype=np.int64)
+        n, address = state.shape[1], address_of(state)
+        states = address, address + 8 * n, address + 16 * n
         assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
         arrays = {
             record.PRESCRIBED_VALUES: prescribed,
@@ -57,13 +57,13 @@ class BandMotion:
             record.TURN_TABLE: counted,
             record.TURNED_BY: turned_by,
             record.SAVED_TURNS: saved_turns,
-            record.LOAD_VALUES: given,
+            record.LOAD_VALUES: load_addresses,
             record.NATURALS: natural,
         }
         if not all(array.flags.c_contiguous for array in arrays.values()):
             raise ValueError("compiled code takes contiguous arrays")
         numbers = {
-            record.STATE: place,
+            record.STATE: address,
             record.BODIES: places[0],
             record.BODY_STRIDE: body[0].size if varying else 0,
             record.LOADS_VARY: int(varying),
@@ -76,9 +76,9 @@ class BandMotion:
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
         with routines(self._system, space.in_two) as calls:
-            done = int(march(assembler.address, solver, calls))
+            completed = int(march(assembler.address, solver, calls))
         assembler.raise_errors()
-        return done
+        return completed
 
 
 def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, time: float) -> np.ndarray | None:
@@ -88,11 +88,11 @@ def acceleration(system: System, space: MotionWorkspace, motion: np.ndarray, tim
     place of those of the motion, which would otherwise need as much memory again.
     """
     assembler, solver, loads = space.assembler, space.solver, system.loads_at(time)
-    assembler.load(loads.body, [loads.points[0][own] for own in space.loads or ()], loads.imposing)
+    assembler.load(loads.body, [loads.points[0][indices] for indices in space.loads or ()], loads.imposing)
     assembler.weigh(_INERTIA)
     assembler.require("tangent")
-    place, row = address_of(motion), 8 * motion.shape[1]
-    states = place, place + row, place + 2 * row
+    address, row = address_of(motion), 8 * motion.shape[1]
+    states = address, address + row, address + 2 * row
     assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
     with routines(system, space.in_two) as calls:
         ratio = solve_once(assembler.address, solver, calls)
@@ -107,6 +107,6 @@ def _sample_loads(system: System, times: np.ndarray) -> tuple[np.ndarray, tuple[
     """
     if not system.varying:
         times = times[:1]
-    loads = [system.loads_at(now) for now in times]
-    points = tuple(np.array([own.points[i] for own in loads]) for i in range(len(system.blocks)))
-    return np.array([own.body for own in loads]), points, np.array([own.imposing for own in loads])
+    loads = [system.loads_at(time) for time in times]
+    points = tuple(np.array([sample.points[i] for sample in loads]) for i in range(len(system.blocks)))
+    return np.array([sample.body for sample in loads]), points, np.array([sample.imposing for sample in loads])

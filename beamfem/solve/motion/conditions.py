@@ -28,14 +28,14 @@ def require_met(system: System, p: np.ndarray, v: np.ndarray, duration: float) -
                 f"conditions of {item.name} depend on time, which simulate does not support; let a Prescribed support "
                 "move"
             )
-        own = item.own - system.model.coordinates
-        if np.any(np.abs(gaps[own]) > _MET * system.extent):
+        rows = item.own - system.model.coordinates
+        if np.any(np.abs(gaps[rows]) > _MET * system.extent):
             raise InputError(
-                f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[own]}"
+                f"the start of the motion does not satisfy the conditions of {item.name}, which are off by {gaps[rows]}"
             )
-        if np.any(np.abs(rates[own]) > _MET * fastest):
+        if np.any(np.abs(rates[rows]) > _MET * fastest):
             raise InputError(
-                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[own]} "
+                f"the initial velocity does not satisfy the conditions of {item.name}, which change by {rates[rows]} "
                 f"per {system.model.unit('s')}. Give all that it connects compatible velocities, such as one "
                 "RigidVelocity"
             )

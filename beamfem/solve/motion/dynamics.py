@@ -85,14 +85,14 @@ def simulate(
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
-    own = not isinstance(integrator, GeneralizedAlpha | None)
-    if own and (isinstance(integrator, type) or not callable(getattr(integrator, "step", None))):
+    user_defined = not isinstance(integrator, GeneralizedAlpha | None)
+    if user_defined and (isinstance(integrator, type) or not callable(getattr(integrator, "step", None))):
         raise InputError(
             "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end) as "
             f"bf.Integrator describes it, got {shown(integrator)}"
         )
     system = system_to_solve(model, static=False)
-    if own:
+    if user_defined:
         refuse_what_own_steps_lack(system)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)

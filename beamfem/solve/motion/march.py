@@ -58,9 +58,9 @@ class Last:
 
     def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
         """Record another step by a single assignment, so that the record is complete even after an interruption."""
-        before, room = self.step[1], np.empty_like(state) if self._spare is None else self._spare
-        room[:] = state
-        self.step = done, room, turned.copy()
+        before, buffer = self.step[1], np.empty_like(state) if self._spare is None else self._spare
+        buffer[:] = state
+        self.step = done, buffer, turned.copy()
         self._spare = before
 
 
@@ -89,14 +89,14 @@ def march(
     """
     statistics = record.statistics
     done, row, failed = 0, 0, None
-    own = not isinstance(integrator, GeneralizedAlpha)
+    user_defined = not isinstance(integrator, GeneralizedAlpha)
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration; laws with history know rates by differences only
     relaxed = isinstance(integrator, GeneralizedAlpha) and (
         bool(system.history.laws) or (damped and integrator.rho_inf < 1.0)
     )
     # a user-defined integrator may raise any exception; the states reached before are kept
-    size = 1 if own else max(_FIRST_CHUNK // system.model.size, 1)
+    size = 1 if user_defined else max(_FIRST_CHUNK // system.model.size, 1)
     turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
@@ -108,26 +108,26 @@ def march(
                 statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
-            loaded = np.append(part.times[1:-1], part.loads_to)
-            begun, steps = 0, len(loaded)
+            load_times = np.append(part.times[1:-1], part.loads_to)
+            begun, steps = 0, len(load_times)
             with _steps(system, integrator, part, statistics) as motion:
                 while begun < steps and failed is None:
-                    now = min(size, steps - begun) if part.whole else steps
-                    rows = slice(begun, begun + now)
+                    chunk = min(size, steps - begun) if part.whole else steps
+                    rows = slice(begun, begun + chunk)
                     which = (done + 1, record.every) if part.whole else (1, steps + 1)
                     saving = (record.states, *which, *counting)
                     started = clock.perf_counter()
-                    completed = motion.advance(state, prescribed[row + 1 : row + now + 1], loaded[rows], saving)
+                    completed = motion.advance(state, prescribed[row + 1 : row + chunk + 1], load_times[rows], saving)
                     spent = clock.perf_counter() - started
                     row, begun = row + completed, begun + completed
                     done += completed if part.whole else 0
-                    if completed < now:
+                    if completed < chunk:
                         why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
                         failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
                     if part.whole and completed:
                         last.reach(done, state[:3], turned)
                         report(float(part.times[begun]))
-                    if part.whole and spent < _CHUNK_SECONDS and not own:
+                    if part.whole and spent < _CHUNK_SECONDS and not user_defined:
                         size *= 4
             if failed is not None:
                 break

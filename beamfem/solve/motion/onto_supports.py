@@ -26,16 +26,16 @@ def require_on_supports(system: System, p: np.ndarray, prescribed: np.ndarray, g
     gaps = prescribed - p[system.prescribed_dofs]
     gaps -= _unfelt_turns(system, gaps)
     jumps = _large(system.prescribed_dofs, gaps, near * system.scale[system.prescribed_dofs])
-    beside = np.array([normal @ (p - system.reference)[dof : dof + 2] for dof, normal in system.inclined])
-    slides = _large(np.array([dof for dof, _ in system.inclined]), beside, near * system.extent)
+    offsets = np.array([normal @ (p - system.reference)[dof : dof + 2] for dof, normal in system.inclined])
+    slides = _large(np.array([dof for dof, _ in system.inclined]), offsets, near * system.extent)
     if not jumps and not slides:
         return
     for support in system.model.point_supports:
         mesh = system.model.mesh_of(support.point)
         numbers = mesh.coordinates_of(mesh.node_at(support.point.fraction))
-        names = {way: coordinate_of(support, way) for way in support.prescribed()}
+        names = {direction: coordinate_of(support, direction) for direction in support.prescribed()}
         if any(name is not None and numbers[name] in jumps for name in names.values()):
-            dofs = {way: (_NAMES[name], numbers[name]) for way, name in names.items() if name is not None}
+            dofs = {direction: (_NAMES[name], numbers[name]) for direction, name in names.items() if name is not None}
             raise InputError(_jumping(system, support, p, dofs, jumps, given))
         if None in names.values() and numbers["r^x"] in slides:
             raise InputError(_sliding(system, support, slides[numbers["r^x"]]))
@@ -87,17 +87,17 @@ def _jumping(
     """
     metre, prescribed = system.model.unit("m"), support.prescribed()
     held, there, hold, driven = [], [], [], False
-    apart = {metre: 0.0, "rad": 0.0}
-    for way, (name, dof) in dofs.items():
-        unit = "rad" if way == "rotation" else metre
-        here = p[dof] - system.reference[dof]
-        hold.append(f"{name} = {_number(system, dof, here, 12)}")
+    sizes = {metre: 0.0, "rad": 0.0}
+    for direction, (name, dof) in dofs.items():
+        unit = "rad" if direction == "rotation" else metre
+        value = p[dof] - system.reference[dof]
+        hold.append(f"{name} = {_number(system, dof, value, 12)}")
         if dof in jumps:
-            held.append(f"{name} = {_number(system, dof, here + jumps[dof])} {unit}")
-            there.append(f"{name} = {_number(system, dof, here)} {unit}")
-            apart[unit] = float(np.hypot(apart[unit], jumps[dof]))
-            driven = driven or callable(prescribed[way])
-    jump = " and ".join(f"{size:.4g} {unit}" for unit, size in apart.items() if size > 0.0)
+            held.append(f"{name} = {_number(system, dof, value + jumps[dof])} {unit}")
+            there.append(f"{name} = {_number(system, dof, value)} {unit}")
+            sizes[unit] = float(np.hypot(sizes[unit], jumps[dof]))
+            driven = driven or callable(prescribed[direction])
+    jump = " and ".join(f"{size:.4g} {unit}" for unit, size in sizes.items() if size > 0.0)
     message = (
         f"{type(support).__name__} at {support.point}, prescribes {', '.join(held)} when the motion begins, but "
         f"{'start' if given else 'the reference'} has {', '.join(there)} there: it would jump by {jump}. "

@@ -112,8 +112,8 @@ class EquationsOfMotion:
         float, [J]
             Their sum.
         """
-        rest, at = np.zeros((1, len(p))), np.array([time])
-        energy = Solution(self.system.model, False, at, p[None], rest, rest, Statistics(0, 0, 0, "")).energy()
+        zeros, at = np.zeros((1, len(p))), np.array([time])
+        energy = Solution(self.system.model, False, at, p[None], zeros, zeros, Statistics(0, 0, 0, "")).energy()
         return float(energy.strain[0] + energy.potential[0])
 
     def solve(self, blocks: Sequence[Sequence[csr_array]], right: np.ndarray) -> np.ndarray:
@@ -145,12 +145,12 @@ class EquationsOfMotion:
         kept = np.tile(kept, stages)
         turn = csr_array(block_diag([turning(unknown, self.system.rotated)] * stages))
         matrix = csr_array(turn @ block_array(blocks) @ turn.T)[kept][:, kept]
-        found = np.zeros(right.size)
+        solution = np.zeros(right.size)
         try:
-            found[kept] = superlu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
+            solution[kept] = superlu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
-        return np.asarray(turn.T @ found).reshape(right.shape)
+        return np.asarray(turn.T @ solution).reshape(right.shape)
 
 
 class Integrator(Protocol):
@@ -210,11 +210,11 @@ class OwnSteps:
                     f"step of {type(self.integrator).__name__} must return a State of the model, such as "
                     f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
                 )
-            found = np.array([reached.p, reached.v, reached.a])
-            if not np.isfinite(found).all():
+            values = np.array([reached.p, reached.v, reached.a])
+            if not np.isfinite(values).all():
                 self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
                 return step
-            state[:3] = found
+            state[:3] = values
             state[:3, self.system.prescribed_dofs] = prescribed[step]
             state[3] = state[2]
             self.time = time

@@ -48,5 +48,5 @@ def routines(system: System, in_two: bool) -> Iterator[np.ndarray]:
 @cache
 def _address_of_yield() -> int:
     """Return the address of the system's function that yields the core to other threads, 0 if there is none."""
-    found = CDLL("kernel32").SwitchToThread if os.name == "nt" else getattr(CDLL(None), "sched_yield", None)
-    return (cast(found, c_void_p).value if found else 0) or 0
+    function = CDLL("kernel32").SwitchToThread if os.name == "nt" else getattr(CDLL(None), "sched_yield", None)
+    return (cast(function, c_void_p).value if function else 0) or 0

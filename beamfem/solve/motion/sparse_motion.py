@@ -80,8 +80,8 @@ class SparseMotion:
         nearer.
         """
         order = float(self.statistics[6])
-        kept = self.statistics[4] >= 0.0 and self._factors is not None
-        if kept and self._iterate(state, before, prescribed, time, order, full=False, fresh=False):
+        reusable = self.statistics[4] >= 0.0 and self._factors is not None
+        if reusable and self._iterate(state, before, prescribed, time, order, full=False, fresh=False):
             return True
         solved = self._iterate(state, before, prescribed, time, order, full=False, fresh=True)
         near = -1.0 if order < 0.0 or self.statistics[7] == 0.0 else 0.0  # nothing is known before the first step
@@ -115,9 +115,9 @@ class SparseMotion:
         stay_on_planes(self._size, len(first), first, normal, free, state, before)
         state[0, self._multipliers] = before[0, self._multipliers]
         while iteration < most and not done:
-            own = fresh or full or self._factors is None
+            renew = fresh or full or self._factors is None
             try:
-                right = self._correction(state, time, own, stresses)
+                right = self._correction(state, time, renew, stresses)
             except LinAlgError:
                 break
             if full:
@@ -141,7 +141,7 @@ class SparseMotion:
                 *(
                     iteration,
                     int(full),
-                    int(own),
+                    int(renew),
                     far,
                     size,
                     last,

@@ -57,7 +57,7 @@ def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]
     bulging = np.flatnonzero(np.any([steps for steps, _ in looks], axis=0))
     divided = np.union1d(np.searchsorted(grid, kinks[inside]) - 1, bulging)
     bounds = np.unique(np.concatenate([grid[[0, -1]], kinks[inside], grid[divided], grid[divided + 1], list(jumps)]))
-    found = []
+    result = []
     for begin, end in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         whole = int(np.searchsorted(grid, 0.5 * (begin + end))) - 1 not in divided
         if whole:
@@ -67,8 +67,8 @@ def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]
             times, size = np.linspace(begin, end, parts + 1), (end - begin) / parts
         loads_from = jumps[begin] + SIDE * step if begin in jumps else begin
         loads_to = jumps[end] - SIDE * step if end in jumps else end
-        found.append(Stretch(times, size, begin in grid, end in grid, whole, loads_from, loads_to))
-    return tuple(found)
+        result.append(Stretch(times, size, begin in grid, end in grid, whole, loads_from, loads_to))
+    return tuple(result)
 
 
 def _apart(kinks: np.ndarray, near: float, end_time: float) -> np.ndarray:

@@ -73,15 +73,15 @@ class Course:
 def courses(system: System) -> list[Course]:
     """Return every function of time that acts on the model of a system, each once."""
     model = system.model
-    found: dict[int, Course] = {}
+    by_id: dict[int, Course] = {}
     for load in model.loads:
         amplitude = load.amplitude  # a method is a new object at each access
         if amplitude is not None:
-            found.setdefault(id(amplitude), Course(f"amplitude of {_name(load, model)}", amplitude, True))
+            by_id.setdefault(id(amplitude), Course(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
         if callable(item.value):
-            found.setdefault(id(item.value), Course(f"motion prescribed at {item.point}", item.value, False))
-    return list(found.values())
+            by_id.setdefault(id(item.value), Course(f"motion prescribed at {item.point}", item.value, False))
+    return list(by_id.values())
 
 
 def name_unresolved(courses: list[Course], ends: np.ndarray, side: float, second: str) -> list[str]:
@@ -89,19 +89,19 @@ def name_unresolved(courses: list[Course], ends: np.ndarray, side: float, second
 
     second: the unit of time.
     """
-    found = []
+    names = []
     for course in courses:
         bulging, _ = course.look(ends, side)
         if bulging.any():
             first = int(np.argmax(bulging))
-            found.append(course.name)
+            names.append(course.name)
             warn(
                 f"the {course.name} varies more within the step from {ends[first]:.6g} {second} to "
                 f"{ends[first + 1]:.6g} {second} than between its ends, where steps take it ({int(bulging.sum())} "
                 "such steps): what happens in between is not resolved. Take smaller steps, or let an amplitude declare "
                 "its kinks, as Piecewise does",
             )
-    return found
+    return names
 
 
 def _name(load: Load, model: Model) -> str:

@@ -31,9 +31,9 @@ def correct(
     is needed.
     """
     predicted = predicts and change is None
-    left = _both(pool, lambda half: _eliminate(half, predicted, change), substructures)
+    condensed = _both(pool, lambda half: _eliminate(half, predicted, change), substructures)
     # in the second half the shared unknowns are in reverse order
-    schur, right, diagonal = (a + np.flip(b) for a, b in zip(*left, strict=True))
+    schur, right, diagonal = (a + np.flip(b) for a, b in zip(*condensed, strict=True))
     if change is not None:
         right -= change[1][substructures[0].free[substructures[0].inner :]]
     if not (diagonal > 0.0).all():
@@ -42,8 +42,8 @@ def correct(
     if not np.abs(pivots).min(initial=1.0) > SMALLEST_PIVOT:
         raise LinAlgError("the tangent is singular")
     shared = np.linalg.solve(schur, right)
-    for half, known in zip(substructures, (shared, shared[::-1]), strict=True):
-        half.right[half.inner :] = known
+    for half, values in zip(substructures, (shared, shared[::-1]), strict=True):
+        half.right[half.inner :] = values
     return float(np.max(_both(pool, lambda half: _advance(half, predicts, change), substructures))), pivots
 
 
@@ -70,8 +70,8 @@ def _eliminate(half: Substructure, predicted: bool, change: Change) -> tuple[np.
     if change is not None:
         right[:inner] -= change[1][half.place][half.free[:inner]]
     diagonal = np.abs(rows[inner:, middle])
-    own = band(middle)
-    if not own.factor(len(rows), inner, middle, 1, half.reach, rows, right, half.step) > SMALLEST_PIVOT:
+    solver = band(middle)
+    if not solver.factor(len(rows), inner, middle, 1, half.reach, rows, right, half.step) > SMALLEST_PIVOT:
         raise LinAlgError("a pivot is tiny")
     i, j = np.ogrid[: len(diagonal), : len(diagonal)]
     return rows[inner + i, middle + j - i], right[inner:].copy(), diagonal

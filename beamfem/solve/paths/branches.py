@@ -34,14 +34,14 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
         if corrected.ended.good:
             moved = corrected.y - start
             if line.length(moved) < 2.0 * distance:
-                found = [corrected.y]
+                equilibria = [corrected.y]
             else:
                 reason = "the equilibrium beside it is far away"
-                found = [y for y in others if _same_way(line, y - start, moved)]
+                equilibria = [y for y in others if _same_way(line, y - start, moved)]
                 others.append(corrected.y)
             try:
-                if found:
-                    return line.linearised(found[0], found[0] - start)
+                if equilibria:
+                    return line.linearised(equilibria[0], equilibria[0] - start)
             except LinAlgError:
                 reason = "the tangent is singular"
         distance *= 0.5
@@ -50,8 +50,8 @@ def leave(line: Continuation, bifurcation: Bifurcation, direction: int) -> PathP
 
 def _same_way(line: Continuation, one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether two changes of y (n + 1,) have the same direction."""
-    apart = one / line.length(one) - other / line.length(other)
-    return line.length(apart) < _ALIKE
+    difference = one / line.length(one) - other / line.length(other)
+    return line.length(difference) < _ALIKE
 
 
 def _other_way(line: Continuation, start: np.ndarray, bifurcation: Bifurcation) -> np.ndarray:

@@ -203,17 +203,17 @@ def _step(
     size = min(size, longest_step(line, point))
     reasons: list[str] = []
     while True:
-        taken = take_step(line, point, size)
-        record.iterations += taken.iterations
-        if isinstance(taken, Step):
+        outcome = take_step(line, point, size)
+        record.iterations += outcome.iterations
+        if isinstance(outcome, Step):
             try:
-                landing = None if end is None else _landing(line, taken, end)
+                landing = None if end is None else _landing(line, outcome, end)
             except SegmentLostError as error:
-                taken = Refused(f"the load factor {end:g} was not found on the path: {error}", taken.iterations)
+                outcome = Refused(f"the load factor {end:g} was not found on the path: {error}", outcome.iterations)
             else:
-                return taken if not reasons else replace(taken, next_size=min(taken.next_size, size)), landing
+                return outcome if not reasons else replace(outcome, next_size=min(outcome.next_size, size)), landing
         record.cuts += 1
-        reasons.append(taken.reason)
+        reasons.append(outcome.reason)
         size *= 0.5
         if too_small(line, point, size):
             record.ended = max(reasons, key=reasons.count)

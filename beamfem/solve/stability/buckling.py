@@ -269,24 +269,24 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         )
     farthest = load_factor + _LARGEST_LOAD * float(linearised[-1] - load_factor)
     with digits_for("critical load factors"):
-        found, ended, status = _criticals(path, count, farthest)
-    if not found and path.lost:
+        criticals, ended, status = _criticals(path, count, farthest)
+    if not criticals and path.lost:
         raise ConvergenceError(
             f"the loading path was lost before any load factor was critical: {ended}", path.solution()
         )
-    uncertainty = np.array([point.uncertainty for point in found])
+    uncertainty = np.array([point.uncertainty for point in criticals])
     if np.any(uncertainty > _UNCERTAIN):
         errors = ", ".join(f"{value:.0e}" for value in uncertainty)
-        said = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
-        warn(said, RoundOffWarning)
-    shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in found]
+        message = f"round-off leaves few digits of critical load factors, relative errors are up to {errors}"
+        warn(message, RoundOffWarning)
+    shapes = [point.mode / largest_translation(model, point.p, point.mode) for point in criticals]
     return Buckling(
         model,
-        np.array([point.load_factor for point in found]),
-        tuple(point.kind for point in found),
+        np.array([point.load_factor for point in criticals]),
+        tuple(point.kind for point in criticals),
         linearised,
         upright(np.array(shapes).reshape(-1, model.size)),
-        np.array([point.p for point in found]).reshape(-1, model.size),
+        np.array([point.p for point in criticals]).reshape(-1, model.size),
         uncertainty,
         ended,
         status,
@@ -295,35 +295,35 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
 
 def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Critical], str, Status]:
     """Return the first `count` critical points up to the first limit point, why there are no more, and the status."""
-    found: list[Critical] = []
-    here = path.start
+    criticals: list[Critical] = []
+    current = path.start
     while len(path.points) < _MOST_POINTS:
         try:
-            following = path.advance(here)
-            more, here = critical_points(path, here, following)
+            following = path.advance(current)
+            more, current = critical_points(path, current, following)
         except PathLostError as error:
-            if not path.shorten(here):
-                return found, str(error), Status.STOPPED
+            if not path.shorten(current):
+                return criticals, str(error), Status.STOPPED
             continue
         except ConvergenceError as error:
             path.lost = True
-            return found, str(error), Status.STOPPED
-        here = path.add(here)
+            return criticals, str(error), Status.STOPPED
+        current = path.add(current)
         for point in more:
             # what a step happens to find beyond the limits depends on its length
             beyond = _beyond(path, point.p, point.load_factor, farthest)
-            if beyond or len(found) == count:
+            if beyond or len(criticals) == count:
                 break
-            found.append(point)
+            criticals.append(point)
             if point.kind == LIMIT_POINT:
-                return found, "the path has its largest load factor there", Status.COMPLETED
+                return criticals, "the path has its largest load factor there", Status.COMPLETED
         else:
-            beyond = _beyond(path, here.y[:-1], here.load_factor, farthest)
-        if len(found) == count:
-            return found, f"the requested number, {count}, was found", Status.COMPLETED
+            beyond = _beyond(path, current.y[:-1], current.load_factor, farthest)
+        if len(criticals) == count:
+            return criticals, f"the requested number, {count}, was found", Status.COMPLETED
         if beyond:
-            return found, beyond, Status.STOPPED
-    return found, f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
+            return criticals, beyond, Status.STOPPED
+    return criticals, f"the {_MOST_POINTS} points of the path are used up", Status.STOPPED
 
 
 def _beyond(path: LoadingPath, p: np.ndarray, load_factor: float, farthest: float) -> str:

@@ -53,9 +53,9 @@ def critical_points(path: LoadingPath, before: PathPoint, after: PathPoint) -> t
         search = Search(path, before, after)
         if not search.changes:
             return [], after
-        found, first, last = search.located(search.estimate())
+        criticals, first, last = search.located(search.estimate())
         if search.distance(first) <= 0.0 or not Search(path, before, first).changes:
-            return found, last
+            return criticals, last
         if search.distance(first) > _NEARER * search.reach:
             raise PathLostError("a change of stability was found again where there is none")
         after = first
@@ -74,10 +74,10 @@ def _between(path: LoadingPath, before: PathPoint, after: PathPoint) -> PathPoin
         extreme = (2.0 * slopes[0] + slopes[1] - 3.0 * rise) / (3.0 * curvature)
         fraction = extreme if 0.1 < extreme < 0.9 else 0.5
     foretold = smooth(path, normal, (before, after), fraction * reach)
-    found = on_path(path, normal, (before, after), fraction * reach)
-    if path.line.length(found.y - foretold) > _SMOOTH * path.line.length(after.y - before.y):
+    middle = on_path(path, normal, (before, after), fraction * reach)
+    if path.line.length(middle.y - foretold) > _SMOOTH * path.line.length(after.y - before.y):
         raise PathLostError("the path turns too sharply")
-    return found
+    return middle
 
 
 class Search:
@@ -125,22 +125,22 @@ class Search:
                 before = []
                 continue
             try:
-                found = self._read(window, inside)
+                criticals = self._read(window, inside)
             except PathLostError:
                 if best is None:
                     raise
                 break
-            if len(found) == len(before):
-                found = [
-                    replace(one, uncertainty=abs(one.load_factor / other.load_factor - 1.0))
-                    for one, other in zip(found, before, strict=True)
+            if len(criticals) == len(before):
+                criticals = [
+                    replace(critical, uncertainty=abs(critical.load_factor / previous.load_factor - 1.0))
+                    for critical, previous in zip(criticals, before, strict=True)
                 ]
-                if best is not None and _worst(found) > 0.5 * _worst(best[0]):
+                if best is not None and _worst(criticals) > 0.5 * _worst(best[0]):
                     break
-                best = found, window.points[0], window.points[-1]
-                if _worst(found) < _EXACT:
+                best = criticals, window.points[0], window.points[-1]
+                if _worst(criticals) < _EXACT:
                     break
-            before = found
+            before = criticals
         if best is None:
             raise PathLostError("critical points are too close together to be distinguished")
         return best
@@ -173,7 +173,7 @@ class Search:
                 self._require_crossing(window, zero, mode)
             y = window.weights(at) @ window.rows
             result.append(Critical(kind, float(y[-1]), y[:-1], mode, np.inf))
-        return sorted(result, key=lambda one: one.load_factor)
+        return sorted(result, key=lambda critical: critical.load_factor)
 
     def _require_crossing(self, window: Window, zero: Zero, mode: np.ndarray) -> None:
         """Raise PathLostError if the path bends aside along the mode, on a hyperbola, instead of being crossed.
@@ -185,11 +185,11 @@ class Search:
         largest = float(np.max(np.abs(mode) / system.scale))
         basis = np.column_stack([fractions**0, fractions, fractions**2, fractions**3, 1.0 / fractions])
         bend = largest * abs(np.linalg.lstsq(basis, window.aside(mode))[0][-1])
-        left = max(abs(float(mode @ self.path.unbalanced(point))) for point in window.points)
+        unbalanced = max(abs(float(mode @ self.path.unbalanced(point))) for point in window.points)
         stiffness = min(float(np.abs(soft.values).min()) for soft in window.softest)
-        if bend > max(_IMPERFECT, _ROUND_OFF * left * largest / stiffness):
+        if bend > max(_IMPERFECT, _ROUND_OFF * unbalanced * largest / stiffness):
             raise PathLostError("the path bends aside")
 
 
 def _worst(found: list[Critical]) -> float:
-    return max(one.uncertainty for one in found)
+    return max(critical.uncertainty for critical in found)

@@ -65,18 +65,18 @@ def _softest_place(path: LoadingPath, before: PathPoint, middle: PathPoint, afte
     normal = path.normal(before, after)
     try:
         modes = line.softest_modes(before.factors, _MODES)
-        found = np.array([np.linalg.eigvalsh(condensed(line, point, modes).stiffness) for point in points])
+        eigenvalues = np.array([np.linalg.eigvalsh(condensed(line, point, modes).stiffness) for point in points])
     except LinAlgError:
         return None
-    steady = np.flatnonzero(np.all(found > 0.0, axis=0) | np.all(found < 0.0, axis=0))
+    steady = np.flatnonzero(np.all(eigenvalues > 0.0, axis=0) | np.all(eigenvalues < 0.0, axis=0))
     if not len(steady):
         return None
     at = np.array([line.dot(normal, point.y - before.y) for point in points])
     grid = at[-1] * _GRID
-    left = interpolation_weights(at, grid) @ (
-        found / found[np.argmin(np.abs(found), axis=0), np.arange(found.shape[1])]
+    shares = interpolation_weights(at, grid) @ (
+        eigenvalues / eigenvalues[np.argmin(np.abs(eigenvalues), axis=0), np.arange(eigenvalues.shape[1])]
     )
-    place, mode = np.unravel_index(np.argmin(left[:, steady]), (len(grid), len(steady)))
-    if left[place, steady[mode]] > _SHARE:
+    row, mode = np.unravel_index(np.argmin(shares[:, steady]), (len(grid), len(steady)))
+    if shares[row, steady[mode]] > _SHARE:
         return None
-    return np.asarray(interpolation_weights(at, float(grid[place])) @ np.array([point.y for point in points]))
+    return np.asarray(interpolation_weights(at, float(grid[row])) @ np.array([point.y for point in points]))

@@ -44,8 +44,8 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
     zeros = np.zeros_like(p)
-    left = linearise(system, p, zeros, zeros, load_factor, STATICS)[0]
-    correction[system.free_dofs] = -factors.solve(left[system.free_dofs])
+    unbalanced = linearise(system, p, zeros, zeros, load_factor, STATICS)[0]
+    correction[system.free_dofs] = -factors.solve(unbalanced[system.free_dofs])
     rates = eigh(
         -shapes.T @ (rate @ shapes), stiffness_of_modes(system, p, load_factor, modes, correction), eigvals_only=True
     )[::-1]

@@ -92,8 +92,8 @@ class LoadingPath:
     def unbalanced(self, point: PathPoint) -> np.ndarray:
         """Return the residual (n,) of the unknown coordinates at a point."""
         result = np.zeros(len(point.y) - 1)
-        left = Pencil(self.system, point.y[:-1], point.load_factor).unbalanced
-        result[self.system.free_dofs] = left
+        unbalanced = Pencil(self.system, point.y[:-1], point.load_factor).unbalanced
+        result[self.system.free_dofs] = unbalanced
         return result
 
     def moved(self, p: np.ndarray) -> float:
@@ -127,9 +127,9 @@ class LoadingPath:
         shift = self._shift or None
         while shift is not None and not pencil.clear_of(shift):
             shift *= 4.0
-        found = lowest_pairs(pencil, min(count, pencil.size), none, shift)
-        if not len(found[0]):
+        pairs = lowest_pairs(pencil, min(count, pencil.size), none, shift)
+        if not len(pairs[0]):
             raise ConvergenceError("round-off leaves no digits of the softest modes of the tangent")
         # of the size of the lowest eigenvalues, which change little from one state to the next
-        self._shift = 2.0 * min(float(found[0][0]), 0.0) - float(np.abs(found[0][:2]).max())
-        return Softest(found[0][:count], found[1][:, :count])
+        self._shift = 2.0 * min(float(pairs[0][0]), 0.0) - float(np.abs(pairs[0][:2]).max())
+        return Softest(pairs[0][:count], pairs[1][:, :count])

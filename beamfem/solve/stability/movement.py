@@ -26,12 +26,12 @@ def largest_displacement(system: System, change: np.ndarray) -> float:
 
 def largest_movement(system: System, change: np.ndarray) -> float:
     """Return the largest component of a change (n,): displacements in sizes of the model, gradients, angles [rad]."""
-    known = np.append(change, 0.0)
+    padded = np.append(change, 0.0)
     largest = largest_displacement(system, change) / size_of(system)
     for block in system.blocks:
         plain = np.isin(block.node_kind, (GRADIENTS, TURNED_GRADIENTS))
         rotations, gradients = block.dof[~plain, 2:], block.dof[plain, 2:].reshape(-1, 2)
-        moved = np.hypot(*known[gradients].T), np.abs(known[rotations])
+        moved = np.hypot(*padded[gradients].T), np.abs(padded[rotations])
         largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))
     return largest
 

@@ -22,13 +22,13 @@ def stable_start(system: System, about: State | Solution | None) -> tuple[np.nda
     p, load_factor = resting_state(system, about)
     if left_over(system, p, load_factor) > 0.0:
         if about is None:
-            begun, wanted = first_equilibrium(system, Newton()), "under the loads that do not scale"
+            equilibrium, description = first_equilibrium(system, Newton()), "under the loads that do not scale"
         else:
-            begun = solve_equilibrium(system, p, load_factor, Newton())
-            wanted = f"at load factor {load_factor:g} to start from"
-        if not begun.ended.good:
-            raise ConvergenceError(f"no equilibrium {wanted}: {begun.ended.value}")
-        p = begun.state
+            equilibrium = solve_equilibrium(system, p, load_factor, Newton())
+            description = f"at load factor {load_factor:g} to start from"
+        if not equilibrium.ended.good:
+            raise ConvergenceError(f"no equilibrium {description}: {equilibrium.ended.value}")
+        p = equilibrium.state
     # imposed strains, as of heat, may load a beam between its supports without moving it
     imposed = any(block.imposed is not None for block in system.blocks)
     if not imposed and not _moves(system, load_slope(system, p, load_factor)):

@@ -66,9 +66,9 @@ class Window:
 
     def weights(self, x: float) -> np.ndarray:
         """Return the weights (points,) of the polynomial through all points, at a distance x."""
-        apart = self.at[:, None] - self.at
-        np.fill_diagonal(apart, 1.0)
-        parts = np.tile(x - self.at, (len(self.at), 1)) / apart
+        differences = self.at[:, None] - self.at
+        np.fill_diagonal(differences, 1.0)
+        parts = np.tile(x - self.at, (len(self.at), 1)) / differences
         np.fill_diagonal(parts, 1.0)
         return np.asarray(parts.prod(axis=1))
 
@@ -82,10 +82,10 @@ class Window:
         if not len(changing):
             return slice(0, 0)
         first, last = int(changing[0]), int(changing[-1]) + 1
-        apart = _APART * float((high - low)[changing].max())
-        while last < count and low[last] < high[last - 1] + apart:
+        gap = _APART * float((high - low)[changing].max())
+        while last < count and low[last] < high[last - 1] + gap:
             last += 1
-        while first > 0 and high[first - 1] > low[first] - apart:
+        while first > 0 and high[first - 1] > low[first] - gap:
             first -= 1
         return slice(first, last)
 
@@ -97,10 +97,10 @@ class Window:
         reference = self.mass @ self.softest[_REFERENCE].vectors[:, self._soft]
         vectors, stiffness, least = [], [], 1.0
         for soft in self.softest:
-            own = soft.vectors[:, self._soft]
-            left, cosines, right = svd(own.T @ reference)
+            modes = soft.vectors[:, self._soft]
+            left, cosines, right = svd(modes.T @ reference)
             turn = left @ right
-            vectors.append(own @ turn)
+            vectors.append(modes @ turn)
             stiffness.append(turn.T @ (soft.values[self._soft, None] * turn))
             least = min(least, float(cosines.min()))
         return np.array(vectors), np.array(stiffness), least
@@ -123,8 +123,8 @@ class Window:
         ends = self.centre - reach, self.centre + reach
         values = [self._modes(x)[0] for x in ends]
         changing = np.flatnonzero(values[0] * values[1] < 0.0)
-        found = [Zero(brentq(stiffness, *ends, args=(int(i),), xtol=1e-15, rtol=1e-14), int(i)) for i in changing]
-        return sorted(found, key=lambda zero: zero.at)
+        zeros = [Zero(brentq(stiffness, *ends, args=(int(i),), xtol=1e-15, rtol=1e-14), int(i)) for i in changing]
+        return sorted(zeros, key=lambda zero: zero.at)
 
     def mode(self, zero: Zero) -> np.ndarray:
         """Return the mode (n,) whose stiffness vanishes at a zero."""
@@ -168,5 +168,5 @@ def smooth(path: LoadingPath, normal: np.ndarray, ends: tuple[PathPoint, PathPoi
     if x >= reach:
         return np.asarray(after + (x - reach) * slopes[1])
     t = x / reach
-    place = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * before + t**2 * (3.0 - 2.0 * t) * after
-    return np.asarray(place + reach * t * (1.0 - t) * ((1.0 - t) * slopes[0] - t * slopes[1]))
+    interpolated = (1.0 - t) ** 2 * (1.0 + 2.0 * t) * before + t**2 * (3.0 - 2.0 * t) * after
+    return np.asarray(interpolated + reach * t * (1.0 - t) * ((1.0 - t) * slopes[0] - t * slopes[1]))

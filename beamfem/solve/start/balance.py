@@ -14,27 +14,27 @@ def left_over(system: System, p: np.ndarray, load_factor: float) -> float:
     """Return the largest unbalanced force [N, N m] in the state p (n,); 0 if it is small enough."""
     zeros = np.zeros_like(p)
     unbalanced, tangent = linearise(system, p, zeros, zeros, load_factor, STATICS)
-    left = np.abs(system.along_free(unbalanced))
+    remaining = np.abs(system.along_free(unbalanced))
     acting = [float(np.abs(values).max(initial=0.0)) for values in system.point_values(load_factor)]
     if system.imposing(load_factor).any():
         acting.append(load_size(system, system.loads_at(load_factor)) / system.extent)
     force = max([float(np.abs(unbalanced).max()), *acting])
     reach = max([float(np.abs(p).max()), *(beam.curve.length for beam in system.model.beams)])
     round_off = _CANCELLED * reach * np.asarray(abs(tangent.sparse(system.rotated)).sum(axis=1))
-    if np.all(left <= _TOLERANCE * force):
+    if np.all(remaining <= _TOLERANCE * force):
         return 0.0
     # small loads may be below the round-off of stiff rows, but still bend a slender beam
-    if np.all(left <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
+    if np.all(remaining <= np.maximum(_TOLERANCE * force, round_off)) and _sure(system, p, load_factor):
         return 0.0
-    return float(left.max())
+    return float(remaining.max())
 
 
 def _sure(system: System, p: np.ndarray, load_factor: float) -> bool:
     """Return whether a state (n,) balances the loads except for its last digits; without loads, all rows count."""
     if not system.loads_at(load_factor).any:
         zeros = np.zeros_like(p)
-        left = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
-        if np.all(left <= row_floors(system, p)[system.free_dofs]):
+        unbalanced = np.abs(system.along_free(residual(system, p, zeros, zeros, load_factor)))
+        if np.all(unbalanced <= row_floors(system, p)[system.free_dofs]):
             return True
     if digits_of(system, p, load_factor) >= 1.0:
         return True

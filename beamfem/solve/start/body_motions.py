@@ -45,13 +45,13 @@ class Conditions:
         self.entries: list[tuple[int, int, float]] = []
         self.count = 0
         for support in model.point_supports:
-            here = self.displacement(support.point)
-            own = int(body[model.number_of(support.point.beam)])
-            rows = {"ux": here[0], "uy": here[1], "rotation": np.array([0.0, 0.0, 1.0])}
+            displacement = self.displacement(support.point)
+            body_number = int(body[model.number_of(support.point.beam)])
+            rows = {"ux": displacement[0], "uy": displacement[1], "rotation": np.array([0.0, 0.0, 1.0])}
             if support.direction is not None:
-                rows["normal"] = support.direction @ here
+                rows["normal"] = support.direction @ displacement
             for direction in (*support.prescribed(), *support.springs()):
-                self._add({own: rows[direction]})
+                self._add({body_number: rows[direction]})
         for foundation in model.line_supports:
             number = model.number_of(foundation.beam)
             for position in self.nodes[number]:
@@ -71,12 +71,12 @@ class Conditions:
         moved = [np.vstack([self.extent * self.displacement(point), [0.0, 0.0, 1.0]]) for point in points]
         bodies = [int(self.body[self.model.number_of(point.beam)]) for point in points]
         for row in stopped:
-            parts = {own: np.zeros(3) for own in bodies}
-            for own, motion, here in zip(bodies, row.reshape(-1, 3), moved, strict=True):
-                parts[own] += motion @ here
+            parts = {number: np.zeros(3) for number in bodies}
+            for number, coefficients, motion in zip(bodies, row.reshape(-1, 3), moved, strict=True):
+                parts[number] += coefficients @ motion
             size = max(float(np.abs(part).max()) for part in parts.values())
             if size > NEGLIGIBLE * self.extent:
-                self._add({own: part / size for own, part in parts.items()})
+                self._add({number: part / size for number, part in parts.items()})
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement (2, 3) of a point per unit of a, b and turn of its body."""
@@ -89,8 +89,8 @@ class Conditions:
         return np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
 
     def _add(self, parts: dict[int, np.ndarray]) -> None:
-        for own, row in parts.items():
-            self.entries += [(self.count, 3 * own + i, float(value)) for i, value in enumerate(row)]
+        for number, row in parts.items():
+            self.entries += [(self.count, 3 * number + i, float(value)) for i, value in enumerate(row)]
         self.count += 1
 
     def matrix(self) -> csr_array:

@@ -49,8 +49,8 @@ def require_independent(system: System, p: np.ndarray) -> None:
     scale = system.scale[system.free_dofs][:-multipliers]
     rows = (tangent[-multipliers:, :-multipliers].toarray() * scale).T
     sizes = np.linalg.norm(rows, axis=0)
-    left = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
-    if len(left) < multipliers or np.any(left <= _DEPENDENT):
+    diagonal = np.abs(np.diagonal(qr(rows / np.where(sizes > 0.0, sizes, 1.0), mode="r", pivoting=True)[0]))
+    if len(diagonal) < multipliers or np.any(diagonal <= _DEPENDENT):
         raise InputError(dependent(system))
 
 

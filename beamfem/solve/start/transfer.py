@@ -39,14 +39,14 @@ def transferred(state: State, system: System, name: str) -> tuple[np.ndarray, np
         values, rates = _by_label(old, state)
         for label, nodes, dofs in coordinate_columns(new):
             # a rotated vector belongs to the first of the joined nodes
-            own = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
-            p[dofs[own]], v[dofs[own]] = values[label][nodes[own]], rates[label][nodes[own]]
+            mask = new.carried.node_kind[nodes] != TURNED_GRADIENTS if label.startswith("r_y") else slice(None)
+            p[dofs[mask]], v[dofs[mask]] = values[label][nodes[mask]], rates[label][nodes[mask]]
         if _keeps_history(old, new):
             p[new.history] = state.p[old.history]
-    known = {id(item.item): item for item in system_of(source, system.static).connectors.items}
+    source_items = {id(item.item): item for item in system_of(source, system.static).connectors.items}
     for item in system.connectors.items:
-        if id(item.item) in known:
-            p[item.memory] = state.p[known[id(item.item)].memory]
+        if id(item.item) in source_items:
+            p[item.memory] = state.p[source_items[id(item.item)].memory]
     return p, v
 
 
@@ -91,8 +91,8 @@ def transferred_turns(state: State | None, model: Model, name: str) -> np.ndarra
 
 def _rotations(mesh: BeamMesh, state: State) -> np.ndarray:
     """Return the rotation of each node's section (nodes,) [rad] in a state."""
-    own = number_uncounted(state.model, mesh)
-    turned = None if own is None or state.turned is None else state.turned[[own]]
+    indices = number_uncounted(state.model, mesh)
+    turned = None if indices is None or state.turned is None else state.turned[[indices]]
     return np.asarray(postprocess.nodal_rotations(mesh, state.p[None], turned)[0])
 
 
@@ -121,25 +121,25 @@ def _by_label(mesh: BeamMesh, state: State) -> tuple[dict[str, np.ndarray], dict
 
 def _matched(source: Model, target: Model, name: str) -> list[tuple[BeamMesh, BeamMesh]]:
     """Return the mesh of each beam in both models. Raises InputError if a beam has no counterpart."""
-    own = {id(mesh.beam): mesh for mesh in source.meshes}
-    left = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
+    by_beam = {id(mesh.beam): mesh for mesh in source.meshes}
+    unmatched = [mesh for mesh in source.meshes if all(mesh.beam is not new.beam for new in target.meshes)]
     pairs = []
     for new in target.meshes:
-        old = own.get(id(new.beam)) or next((mesh for mesh in left if _alike(mesh, new)), None)
+        old = by_beam.get(id(new.beam)) or next((mesh for mesh in unmatched if _alike(mesh, new)), None)
         if old is None or not _alike(old, new):
-            like = old or next((mesh for mesh in left if _divided_alike(mesh, new)), None)
+            like = old or next((mesh for mesh in unmatched if _divided_alike(mesh, new)), None)
             if like is not None and (parted := _parted(source, target, like, new, name)):
                 raise InputError(parted)
             other = [old] if old is not None else source.meshes[:5]
-            there = "; ".join(_described(source, mesh) for mesh in other)
+            beams = "; ".join(_described(source, mesh) for mesh in other)
             raise InputError(
-                f"{name} does not have the {_described(target, new)} of this model, it has {there}, or nodes elsewhere "
+                f"{name} does not have the {_described(target, new)} of this model, it has {beams}, or nodes elsewhere "
                 f"in between; {_ADVICE}"
             )
-        left = [mesh for mesh in left if mesh is not old]
+        unmatched = [mesh for mesh in unmatched if mesh is not old]
         pairs.append((old, new))
-    if left:
-        raise InputError(f"this model does not have the {_described(source, left[0])} of {name}; {_ADVICE}")
+    if unmatched:
+        raise InputError(f"this model does not have the {_described(source, unmatched[0])} of {name}; {_ADVICE}")
     return pairs
 
 
@@ -148,9 +148,9 @@ def _alike(old: BeamMesh, new: BeamMesh) -> bool:
     if old.vectors != new.vectors or old.nodes != new.nodes:
         return False
     near = _SAME * new.arc[-1]
-    apart = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
+    distance = max(np.abs(old.position - new.position).max(), np.abs(old.arc - new.arc).max())
     turned = np.abs(old.tangent * old.speed[:, None] - new.tangent * new.speed[:, None]).max()
-    return bool(apart <= near and turned <= _SAME * new.speed.max())
+    return bool(distance <= near and turned <= _SAME * new.speed.max())
 
 
 def _divided_alike(old: BeamMesh, new: BeamMesh) -> bool:
@@ -168,9 +168,9 @@ def _parted(source: Model, target: Model, old: BeamMesh, new: BeamMesh, name: st
     """
     beam, message = beam_in_words(target.beams, target.number_of(new.beam)), []
     for one, mesh, other in ((source, old, new), (target, new, old)):
-        asked = nodes_asked(one)[one.number_of(mesh.beam)]
-        there = other.vertices / other.vertices[-1]
-        only = {at: part for at, part in sorted(asked) if np.abs(there - at).min() > _SAME}
+        requested = nodes_asked(one)[one.number_of(mesh.beam)]
+        fractions = other.vertices / other.vertices[-1]
+        only = {at: part for at, part in sorted(requested) if np.abs(fractions - at).min() > _SAME}
         if not only:
             continue
         parts = ", ".join(f"{part} at fraction {at:.12g}" for at, part in list(only.items())[:_SEVERAL])

@@ -151,11 +151,11 @@ def _step(line: Continuation, point: PathPoint, size: float) -> tuple[Step, int,
     size = min(size, longest_step(line, point))
     iterations = cuts = 0
     while True:
-        taken = take_step(line, point, size)
-        iterations += taken.iterations
-        if isinstance(taken, Step):
-            return taken, iterations, cuts
+        outcome = take_step(line, point, size)
+        iterations += outcome.iterations
+        if isinstance(outcome, Step):
+            return outcome, iterations, cuts
         cuts += 1
         size *= 0.5
         if too_small(line, point, size):
-            raise PathLostError(f"{taken.reason}, with steps along it cut to round-off", iterations, cuts)
+            raise PathLostError(f"{outcome.reason}, with steps along it cut to round-off", iterations, cuts)

@@ -42,8 +42,8 @@ def reach(
     """
     remembers = len(system.history.numbers) > 0
     # with history, the result depends on the steps, so the end of each requested step is a stop, even if it is cut
-    asked = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
-    ahead = sorted({stop for stop in asked if SAME < stop < end - SAME} | {end})
+    requested = [*stops, *(step * np.arange(1, round(1.0 / step))).tolist()] if remembers else stops
+    ahead = sorted({stop for stop in requested if SAME < stop < end - SAME} | {end})
     follower = PathFollower(system, newton, done.state, done.reached)
     cuts, refused = 0, done.reached
     longest = step if remembers else 1.0
@@ -116,9 +116,9 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
     except PathLostError as lost:
         done.iterations += lost.iterations
         done.cuts += lost.cuts
-        here = np.append(done.state, done.reached)
+        reached = np.append(done.state, done.reached)
         lost_near_by = len(done.rows) > 1 and not isinstance(lost, OutOfReachError)
-        if lost_near_by and _merges(follower, done, here, 2.0 * here - np.append(done.rows[-2][1], 0.0), to[1]):
+        if lost_near_by and _merges(follower, done, reached, 2.0 * reached - np.append(done.rows[-2][1], 0.0), to[1]):
             return
         raise ConvergenceError(
             f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}", done.solution()
@@ -137,11 +137,11 @@ def _merges(follower: PathFollower, done: StaticRecord, point: np.ndarray, beyon
     if not below or below[-1][1] != 0 or target <= load_factor:
         return False
     farthest = float(np.max(np.abs(below[-1][0] - point[:-1]) / follower.system.scale))
-    found = rest_state(follower.system, np.append(point[:-1], target), beyond, follower.newton, farthest)
-    done.iterations += found.iterations
-    if found.ended.good:
-        done.add(target, found.state, 0, found.ended, found.digits)
-    return found.ended.good
+    result = rest_state(follower.system, np.append(point[:-1], target), beyond, follower.newton, farthest)
+    done.iterations += result.iterations
+    if result.ended.good:
+        done.add(target, result.state, 0, result.ended, result.digits)
+    return result.ended.good
 
 
 def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap: Snap) -> None:
@@ -160,8 +160,8 @@ def _jump(follower: PathFollower, done: StaticRecord, turn: TurnsBackError, snap
             f"{where}, and the structure comes back to it each time it leaves it", load_factor, done.solution()
         )
     follower.left = turn.limit
-    found = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
-    done.iterations += found.iterations
-    if not found.ended.good:
+    result = rest_state(follower.system, turn.limit, turn.beyond, follower.newton)
+    done.iterations += result.iterations
+    if not result.ended.good:
         raise LimitPointError(f"{where}, and no state of rest was found beyond it", load_factor, done.solution())
-    done.add(load_factor, found.state, found.negative_pivots, found.ended, found.digits)
+    done.add(load_factor, result.state, result.negative_pivots, result.ended, result.digits)

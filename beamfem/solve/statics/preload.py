@@ -54,16 +54,16 @@ def _free_of_force(system: System) -> bool:
 def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult:
     """Return the end of the path along which the loads at load factor 0 increase from zero."""
     growing = system_of(_growing(system.model), static=True)
-    done = StaticRecord(growing.model, growing.symmetric)
-    done.iterations = failed.iterations
-    done.add(0.0, growing.reference, 0, Termination.CONVERGED)
+    record = StaticRecord(growing.model, growing.symmetric)
+    record.iterations = failed.iterations
+    record.add(0.0, growing.reference, 0, Termination.CONVERGED)
     try:
-        reach(growing, done, 1.0, newton, "error")
+        reach(growing, record, 1.0, newton, "error")
     except LimitPointError:
-        return replace(failed, iterations=done.iterations, ended=Termination.LIMIT)
+        return replace(failed, iterations=record.iterations, ended=Termination.LIMIT)
     except ConvergenceError:
-        return replace(failed, iterations=done.iterations)
-    return NewtonResult(done.state, done.iterations, done.ended, done.negative_pivots, done.digits)
+        return replace(failed, iterations=record.iterations)
+    return NewtonResult(record.state, record.iterations, record.ended, record.negative_pivots, record.digits)
 
 
 def _growing(model: Model) -> Model:
@@ -86,19 +86,19 @@ def _in_step(support: PointSupport) -> tuple[PointSupport, ...]:
         for name, value in support.prescribed().items()
         if name != "normal"
     }
-    found: tuple[PointSupport, ...] = (Prescribed(support.point, **values),)
+    supports: tuple[PointSupport, ...] = (Prescribed(support.point, **values),)
     if support.direction is not None:
-        found = (*found, Roller(support.point, tuple(support.direction)))
+        supports = (*supports, Roller(support.point, tuple(support.direction)))
     if springs := support.springs():
         kx, ky, rotational = (springs.get(name, 0.0) for name in DIRECTIONS)
-        found = (*found, Spring(support.point, (kx, ky), rotational))
-    return found
+        supports = (*supports, Spring(support.point, (kx, ky), rotational))
+    return supports
 
 
 def _in_proportion(load: Load) -> Load:
     """Return a load whose factor is proportional to the load factor, with its value at load factor 0 reached at 1."""
     weight = factor(load, 0.0, True)
-    found: Load = copy(load)
+    result: Load = copy(load)
     # whether or not it is a field of its class
-    object.__setattr__(found, "amplitude", lambda load_factor: weight * load_factor)
-    return found
+    object.__setattr__(result, "amplitude", lambda load_factor: weight * load_factor)
+    return result

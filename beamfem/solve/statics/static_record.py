@@ -57,22 +57,22 @@ class StaticRecord:
         if complete and self.ended is Termination.ROUND_OFF:
             status = Status.ROUND_OFF
         ended = self.ended.value
-        said: tuple[str, ...] = ()
+        messages: tuple[str, ...] = ()
         if unstable.any():
             status = Status.UNSTABLE if complete else status
-            said = (_describe(unstable, load_factors),)
+            messages = (_describe(unstable, load_factors),)
             if unstable[-1] and self.symmetric:
                 ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
             elif unstable[-1]:
                 ended += "; the equilibrium is unstable, the determinant of its tangent is negative"
             if complete:
-                warn(said[0], UnstableWarning)
+                warn(messages[0], UnstableWarning)
         if self.digits < FEW_DIGITS:
             few = f"round-off leaves {self.digits:.0f} digits of the forces"
             ended += f"; {few}"
-            said += (few,)
+            messages += (few,)
             warn(few, RoundOffWarning)
-        statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, said, self.digits)
+        statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, messages, self.digits)
         return Solution(
             self.model,
             True,

@@ -87,27 +87,27 @@ def solve_static(
     """
     if at is None:
         return solve_through(model, (), steps, newton, snap=snap)
-    wanted = _ascending(at)
-    return _rows_at(solve_through(model, wanted, steps, newton, snap=snap, end=wanted[-1]), wanted)
+    load_factors = _ascending(at)
+    return _rows_at(solve_through(model, load_factors, steps, newton, snap=snap, end=load_factors[-1]), load_factors)
 
 
 def _ascending(at: Sequence[float]) -> list[float]:
     """Return the load factors requested by a user. Raises InputError."""
-    wanted = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
-    rising = all(after - before > SAME for before, after in pairwise(wanted))
-    if not wanted or not rising or wanted[0] < 0.0 or wanted[-1] > 1.0:
+    load_factors = [finite(f"at[{i}]", value) for i, value in enumerate(items("at", at))]
+    rising = all(after - before > SAME for before, after in pairwise(load_factors))
+    if not load_factors or not rising or load_factors[0] < 0.0 or load_factors[-1] > 1.0:
         raise InputError(
             "at of solve_static must be ascending load factors between 0 and 1, such as [0.25, 0.5, 1.0], got "
             f"{shown(at)}"
         )
-    return wanted
+    return load_factors
 
 
 def _rows_at(solution: Solution, wanted: Sequence[float]) -> Solution:
     """Return the rows at some load factors, with the rotations counted over all rows."""
     near = np.abs(solution.at - np.array(wanted)[:, None]) <= SAME
     # after a jump, the last of several states at a load factor
-    rows = np.array([np.flatnonzero(own)[-1] for own in near if own.any()], dtype=int)
+    rows = np.array([np.flatnonzero(mask)[-1] for mask in near if mask.any()], dtype=int)
     stability = None if solution.stability is None else solution.stability[rows]
     states = {name: getattr(solution, name)[rows] for name in ("at", "p", "v", "a")}
     return replace(solution, **states, stability=stability, turned=start_rotations(solution)[rows])
@@ -130,19 +130,19 @@ def solve_through(
     require_support(system)
     require_independent(system, system.reference)
     newton = require_newton(newton, _NEWTON)
-    done = StaticRecord(model, system.symmetric)
+    record = StaticRecord(model, system.symmetric)
     first = first_equilibrium(system, newton)
-    done.iterations += first.iterations
+    record.iterations += first.iterations
     if not first.ended.good:
-        done.add(0.0, system.reference, 0, first.ended)
+        record.add(0.0, system.reference, 0, first.ended)
         raise ConvergenceError(
-            f"no equilibrium under the loads that do not scale: {first.ended.value}", done.solution()
+            f"no equilibrium under the loads that do not scale: {first.ended.value}", record.solution()
         )
     state = system.history.in_equilibrium(first.state, 0.0, system.imposing(0.0))
-    done.add(0.0, state, first.negative_pivots, first.ended, first.digits)
-    with kept(done.solution):
+    record.add(0.0, state, first.negative_pivots, first.ended, first.digits)
+    with kept(record.solution):
         try:
-            reach(system, done, 1.0 / steps, newton, snap, stops, end)
+            reach(system, record, 1.0 / steps, newton, snap, stops, end)
         except LinAlgError as error:
-            raise ConvergenceError(f"beyond load factor {done.reached:.6g}: {error}", done.solution()) from error
-    return done.solution(complete=True)
+            raise ConvergenceError(f"beyond load factor {record.reached:.6g}: {error}", record.solution()) from error
+    return record.solution(complete=True)

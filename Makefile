@@ -7,6 +7,9 @@ PYTHON ?= python3
 run: $(VENV)/.ready
 	$(BIN)/python -m studies.all
 
+# two workers already use the cores of a small machine; threads of linear algebra beside them take three times as long
+test verify: export OPENBLAS_NUM_THREADS = 1
+
 test: $(VENV)/.ready lint
 	$(BIN)/python -m pytest -n auto --maxprocesses 2 --dist loadgroup
 

@@ -5,22 +5,23 @@ import numpy as np
 from beamfem.element.coordinates import Gradients
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.once import kept_with
 
 
+@kept_with
 def uncounted(model: Model) -> list[BeamMesh]:
     """Return the meshes (m,) of the beams without a node whose rotation is a coordinate."""
-    cache: dict[str, list[BeamMesh]] = model.__dict__
-    if "_uncounted" not in cache:
-        cache["_uncounted"] = [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
-    return cache["_uncounted"]
+    return [mesh for mesh in model.meshes if _has_gradients_only(mesh)]
 
 
 def number_uncounted(model: Model, mesh: BeamMesh) -> int | None:
     """Return the number of a mesh of the model among those of `uncounted`, None if it is not one of them."""
-    known: dict[str, dict[int, int]] = model.__dict__
-    if "_numbers_uncounted" not in known:
-        known["_numbers_uncounted"] = {id(own): number for number, own in enumerate(uncounted(model))}
-    return known["_numbers_uncounted"].get(id(mesh))
+    return _numbers_uncounted(model).get(id(mesh))
+
+
+@kept_with
+def _numbers_uncounted(model: Model) -> dict[int, int]:
+    return {id(mesh): number for number, mesh in enumerate(uncounted(model))}
 
 
 def _has_gradients_only(mesh: BeamMesh) -> bool:

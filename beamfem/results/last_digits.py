@@ -12,6 +12,7 @@ import numpy as np
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.round_off import digits_of, remainder
 from beamfem.assembly.system import system_of
+from beamfem.once import kept_with
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -31,12 +32,10 @@ def remainders(solution: "Solution") -> np.ndarray:
     return result
 
 
+@kept_with
 def _corrected(solution: "Solution") -> np.ndarray:
     """Return whether each row has remainders (steps,)."""
-    known: dict[str, np.ndarray] = solution.__dict__
-    if "_corrected" not in known:
-        known["_corrected"] = np.asarray(solution.remainders.any(axis=1))
-    return known["_corrected"]
+    return np.asarray(solution.remainders.any(axis=1))
 
 
 def exactly(

@@ -8,7 +8,9 @@ import numpy as np
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
 from beamfem.model.returned import heat_of
+from beamfem.once import kept_with
 from beamfem.results.loading import imposing
 from beamfem.section.protocol import CrossSection
 from beamfem.section.thermal import expands_evenly, thermal_strain
@@ -32,7 +34,7 @@ def self_stress(
     the one at the axis. It does not contribute to section forces.
     """
     beam = mesh.beam
-    imposed = _imposed_on(solution).get(id(beam), [])
+    imposed = _imposed_on(solution.model).get(id(beam), [])
     if not imposed:
         return 0.0
     arc = mesh.section_arc_length(element, xi)
@@ -50,15 +52,13 @@ def self_stress(
     return result
 
 
-def _imposed_on(solution: "Solution") -> dict[int, list[tuple[int, ImposedStrain]]]:
+@kept_with
+def _imposed_on(model: Model) -> dict[int, list[tuple[int, ImposedStrain]]]:
     """Return the loads that impose strains on each beam, with their numbers, by the identity of the beam."""
-    known: dict[str, dict[int, list[tuple[int, ImposedStrain]]]] = solution.model.__dict__
-    if "_imposed_on" not in known:
-        found: defaultdict[int, list[tuple[int, ImposedStrain]]] = defaultdict(list)
-        for number, (_, load) in enumerate(solution.model.imposing):
-            found[id(load.beam)].append((number, load))
-        known["_imposed_on"] = found
-    return known["_imposed_on"]
+    result: defaultdict[int, list[tuple[int, ImposedStrain]]] = defaultdict(list)
+    for number, (_, load) in enumerate(model.imposing):
+        result[id(load.beam)].append((number, load))
+    return result
 
 
 def _each(sections: list[CrossSection], y: np.ndarray) -> list[CrossSection]:

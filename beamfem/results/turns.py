@@ -9,6 +9,7 @@ from beamfem.model.beam import Point
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.turns import number_uncounted, uncounted
+from beamfem.once import kept_with
 from beamfem.results import postprocess
 from beamfem.results.nodal import axis_at
 
@@ -28,13 +29,14 @@ def start_rotations(solution: "Solution") -> np.ndarray:
 
     As counted by the solve from step to step; else continued from row to row, the first of them within half a turn.
     """
-    if solution.turned is not None:
-        return solution.turned
-    cache: dict[str, np.ndarray] = solution.__dict__
-    if "_start_rotations" not in cache:
-        parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
-        cache["_start_rotations"] = np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
-    return cache["_start_rotations"]
+    return _continued(solution) if solution.turned is None else solution.turned
+
+
+@kept_with
+def _continued(solution: "Solution") -> np.ndarray:
+    """Return the rotations of `start_rotations` from row to row."""
+    parts = [postprocess.nodal_rotations(mesh, solution.p)[:, :1] for mesh in uncounted(solution.model)]
+    return np.concatenate([np.empty((len(solution), 0)), *parts], axis=1)
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:

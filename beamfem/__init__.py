@@ -45,8 +45,9 @@ Contents; see help(bf.Beam), for example, for details.
 """
 
 import sys
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from beamfem.whole import imports_all, whole_package
 
 if TYPE_CHECKING:
     from beamfem.public import *
@@ -167,11 +168,14 @@ __all__ = [
 ]
 
 
+imports_all("beamfem.public")
+
+
 def __getattr__(name: str) -> Any:
     """Return what is public, imported at the first call: a second or so, which no import of the package pays."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
-    public = import_module("beamfem.public")
+    public = whole_package()
     globals().update({key: getattr(public, key) for key in __all__})
     return globals()[name]
 

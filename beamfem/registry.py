@@ -12,6 +12,7 @@ from typing import Any
 
 from beamfem.extras import needed_for
 from beamfem.keywords import name_of, require_keywords, with_options_listed
+from beamfem.whole import whole_package
 
 _FUNCTIONS: dict[Callable[..., Any], str] = {}
 
@@ -35,7 +36,7 @@ def offered(method: Callable[..., Any]) -> Callable[..., Any]:
     """
     method = unwrap(method)  # its keywords are checked
     if method not in _FUNCTIONS:
-        import_module("beamfem.public")  # an object may come from another process before anything else is imported
+        whole_package()  # an object may come from another process before anything else is imported
     if method not in _FUNCTIONS:
         raise NotImplementedError(f"no room above offers {method.__qualname__}")
     module, name = _FUNCTIONS[method].split(":")

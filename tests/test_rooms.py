@@ -56,6 +56,7 @@ ROOMS = (
     "once",
     "extras",
     "errors",
+    "whole",
 )
 LONGEST = 350  # lines of a file
 FILES = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.py"))
@@ -86,6 +87,8 @@ def imported(tree: ast.AST, package: str) -> Iterator[tuple[str, int]]:
             above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
             base = ".".join([*above, *([node.module] if node.module else [])])
             names = [f"{base}.{alias.name}" if file_of(f"{base}.{alias.name}") else base for alias in node.names]
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            names = [part.value for part in node.args if isinstance(part, ast.Constant)]
         else:
             continue
         yield from ((name, node.lineno) for name in names if name.split(".")[0] == "beamfem")
@@ -122,6 +125,7 @@ def test_imports_go_down():
         "from beamfem import view",
         "from ..view import drawing",
         "from .. import view",
+        "importlib.import_module('beamfem.view.drawing')",
         "def plot(self):\n    from beamfem.view.drawing import plot_shapes",
         "if TYPE_CHECKING:\n    from beamfem.solve.modes.modes import Modes",
     ],

@@ -12,7 +12,6 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache, partial
-from importlib import import_module
 from numbers import Real
 from typing import Any
 
@@ -22,6 +21,7 @@ from beamfem.errors import BeamfemError, InputError
 from beamfem.kernels.compiling import seconds_waited
 from beamfem.progress import no_progress
 from beamfem.results.solution import Solution
+from beamfem.whole import whole_package
 
 ExecutorFactory = Callable[[], Executor]
 Point = Mapping[str, Any]
@@ -69,7 +69,7 @@ def call_all(function: Callable[..., Any], points: Sequence[Point], home: int, a
     if os.getpid() != home:
         end_with_parent()
         _one_thread()
-    import_module("beamfem.public")
+    whole_package()
     with no_progress():
         return [call(function, point) for point in points]
 

@@ -13,9 +13,9 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.kinds import WHOLE, Value
 from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, room
 
-FAST = {"contract", "reassoc", "nsz"}
 KNOWN = (5, 7, 8, 9, 11, 14)  # chains of bilinear, quadratic and cubic elements, and of orders 3 and 4 with rotations
 
 
@@ -57,91 +57,6 @@ def _band(known: int) -> Band:
         return _eliminate(n, count, 0, count, half, eliminates, reach, ab, right, original)
 
     return Band(factor, *(_solves(known, case) if known else (_solve_lower, _solve_upper)))
-
-
-def elimination(known: int, case: str, backwards: bool) -> Routine:
-    """Return the factorisation for a half width, 0: any; backwards: from the last row to the first."""
-    way = -1 if backwards else 1
-
-    @routine("iiiiiisrrr", "d", case, fastmath=FAST)
-    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
-        """Factor in place, ab (n, 2 w + 1); return the smallest ratio of a pivot to the row's original diagonal entry.
-
-        reach (n,): end of the rows that a row and those above are coupled to, which are the only ones that change.
-        The diagonal holds the inverse pivots then. right (n,): eliminated on the way, `solve_upper` does the rest.
-        original (count,): space; so many pivots are taken in all, and the rows below keep what is left of the matrix,
-        their Schur complement. This call takes those from `start`, which is even, to `stop`, and needs the rows before
-        stop + w only. Pivots are taken in pairs, so that rows pass through memory half as often. Backwards ab, right
-        and reach are the last entries, and rows the last ones first.
-        """
-        w = known if known != 0 else half
-        width, worst = 2 * w + 1, 1.0
-        if start == 0:
-            for i in range(min(count, w)):
-                original[i] = abs(ab[way * (i * width + w)])
-        for k in range(start, stop, 2):
-            top = at(ab, way * k * width)
-            if k + w < count:
-                original[k + w] = abs(ab[way * ((k + w) * width + w)])
-            if top[way * w] == 0.0 or original[k] == 0.0:
-                return 0.0
-            worst = min(worst, abs(top[way * w]) / original[k])
-            inverse = 1.0 / top[way * w]
-            top[way * w] = inverse
-            if k + 1 == stop:
-                for i in range(k + 1, min(n, k + w + 1)):
-                    row = at(ab, way * (i * width + w + k - i))
-                    first = row[0] * inverse
-                    row[0] = first
-                    for j in range(1, w + 1):
-                        row[way * j] -= first * top[way * (w + j)]
-                    if eliminates != 0:
-                        right[way * i] -= first * right[way * k]
-                for j in range(1, w + 1):
-                    top[way * (w + j)] *= inverse
-                break
-            below = at(ab, way * (k + 1) * width)
-            if k + 1 + w < count:
-                original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
-            first = below[way * (w - 1)] * inverse
-            below[way * (w - 1)] = first
-            for j in range(1, w + 1):
-                below[way * (w - 1 + j)] -= first * top[way * (w + j)]
-            if below[way * w] == 0.0 or original[k + 1] == 0.0:
-                return 0.0
-            worst = min(worst, abs(below[way * w]) / original[k + 1])
-            inverse_below = 1.0 / below[way * w]
-            below[way * w] = inverse_below
-            upper, lower = 0.0, 0.0
-            if eliminates != 0:
-                right[way * (k + 1)] -= first * right[way * k]
-                upper, lower = right[way * k], right[way * (k + 1)]
-            beside = top[way * (w + 1)]
-            end = min(n, reach[way * (k + 1)])
-            for i in range(k + 2, min(end, k + w + 1)):
-                row = at(ab, way * (i * width + w + k - i))
-                first = row[0] * inverse
-                second = (row[way] - first * beside) * inverse_below
-                row[0], row[way] = first, second
-                for j in range(2, w + 1):
-                    row[way * j] -= first * top[way * (w + j)] + second * below[way * (w + j - 1)]
-                row[way * (w + 1)] -= second * below[way * 2 * w]
-                if eliminates != 0:
-                    right[way * i] -= first * upper + second * lower
-            if k + w + 1 < end:
-                row = at(ab, way * (k + w + 1) * width)
-                second = row[0] * inverse_below
-                row[0] = second
-                for j in range(1, w + 1):
-                    row[way * j] -= second * below[way * (w + j)]
-                if eliminates != 0:
-                    right[way * (k + w + 1)] -= second * lower
-            for j in range(1, w + 1):
-                top[way * (w + j)] *= inverse
-                below[way * (w + j)] *= inverse_below
-        return worst
-
-    return eliminate
 
 
 def _solves(known: int, case: str) -> tuple[Routine, Routine]:

@@ -12,8 +12,10 @@ from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.kinds import LANES, NUMBER, ROWS, WHOLE, WIDTH, Value
 
-__all__ = ["WIDTH", "as_rows", "gathered", "larger", "largest", "merged", "zeros"]
+__all__ = ["WIDTH", "as_rows", "gathered", "lanes_within", "larger", "largest", "merged", "put_within", "zeros"]
 
+_SHORT = ir.IntType(32)
+_MASK = ir.VectorType(ir.IntType(1), WIDTH)
 _BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 
 
@@ -65,3 +67,35 @@ def gathered(build: Build, values: Value, places: Value) -> Value:
         number = builder.load(builder.gep(values.llvm, [index], inbounds=True))
         lanes = builder.insert_element(lanes, number, ir.IntType(32)(lane))
     return Value(LANES, lanes)
+
+
+@operation
+def lanes_within(build: Build, pointer: Value, first: Value, end: Value) -> Value:
+    """Return the lanes from `first` to `end`, constants for the compiler, and zero in the others, which are not read."""
+    memory, mask = LANES.llvm.as_pointer(), _mask(first, end)
+    load = _intrinsic(
+        build, f"llvm.masked.load.v{WIDTH}f64.p0v{WIDTH}f64", LANES.llvm, [memory, _SHORT, _MASK, LANES.llvm]
+    )
+    address = build.builder.bitcast(pointer.llvm, memory)
+    return Value(LANES, build.builder.call(load, [address, _SHORT(8), mask, ir.Constant(LANES.llvm, None)]))
+
+
+@operation
+def put_within(build: Build, pointer: Value, first: Value, end: Value, value: Value) -> None:
+    """Set the lanes from `first` to `end`, constants for the compiler."""
+    memory, mask = LANES.llvm.as_pointer(), _mask(first, end)
+    store = _intrinsic(
+        build, f"llvm.masked.store.v{WIDTH}f64.p0v{WIDTH}f64", ir.VoidType(), [LANES.llvm, memory, _SHORT, _MASK]
+    )
+    address = build.builder.bitcast(pointer.llvm, memory)
+    build.builder.call(store, [build.converted(value, LANES), address, _SHORT(8), mask])
+
+
+def _mask(first: Value, end: Value) -> ir.Constant:
+    return ir.Constant(_MASK, [int(first.llvm.constant <= lane < end.llvm.constant) for lane in range(WIDTH)])
+
+
+def _intrinsic(build: Build, name: str, result: ir.Type, arguments: list[ir.Type]) -> ir.Function:
+    """Return a function of LLVM."""
+    module = build.builder.module
+    return module.globals.get(name) or ir.Function(module, ir.FunctionType(result, arguments), name)

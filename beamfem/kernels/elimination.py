@@ -1,0 +1,202 @@
+"""Elimination of the rows of a band matrix, in pairs of pivots, so that rows pass through memory half as often.
+
+ab (n, 2 w + 1) is factored in place, in row storage: row i holds A[i, i - w .. i + w]. L and U get unit diagonals, and
+the diagonal holds the inverse pivots. If the half width is known to the compiler, a row is changed in whole lanes.
+"""
+
+from beamfem.kernels.compiling import Routine, routine
+from beamfem.kernels.lanes import WIDTH, as_rows, lanes_within, put_within, zeros
+from beamfem.kernels.pointers import at
+
+FAST = {"contract", "reassoc", "nsz"}
+_IN_ORDER = {"contract", "nsz"}  # two multiplications with addition for a number, where reassociation takes three
+
+
+def elimination(known: int, case: str, backwards: bool) -> Routine:
+    """Return the factorisation for a half width, 0: any; backwards: from the last row to the first.
+
+    eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original): the smallest ratio of a pivot to the
+    row's original diagonal entry. reach (n,): end of the rows that a row and those above are coupled to, which are the
+    only ones that change. right (n,): eliminated on the way if `eliminates`, `solve_upper` does the rest. original
+    (count,): space; so many pivots are taken in all, and the rows below keep what is left of the matrix, their Schur
+    complement. A call takes those from `start`, which is even, to `stop`, and needs the rows before stop + w only.
+    Backwards ab, right and reach are the last entries, and rows the last ones first.
+    """
+    return _in_lanes(known, case, -1 if backwards else 1) if known else _one_by_one(case, -1 if backwards else 1)
+
+
+def _in_lanes(w: int, case: str, way: int) -> Routine:
+    width = 2 * w + 1
+
+    def place(first: int) -> int:
+        """Return the first number in memory of the lanes that start `first` numbers on."""
+        return first if way > 0 else 1 - first - WIDTH
+
+    def part(count: int) -> tuple[int, int]:
+        """Return the first lane and the end of the first `count` ones, which are the last ones in memory backwards."""
+        count = max(0, min(count, WIDTH))
+        return (0, count) if way > 0 else (WIDTH - count, WIDTH)
+
+    wide = w > WIDTH
+    (top_first, top_end), (low_first, low_end) = part(w - 1), part(w)
+    (more_top_first, more_top_end), (more_low_first, more_low_end) = part(w - 1 - WIDTH), part(w - WIDTH)
+    of_top, of_low, of_row, of_last = place(w + 2), place(w + 1), place(2), place(1)
+    ahead = WIDTH if way > 0 else -WIDTH
+
+    @routine("iiiiiisrrr", "d", case, fastmath=_IN_ORDER)
+    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
+        worst = 1.0
+        if start == 0:
+            for i in range(min(count, w)):
+                original[i] = abs(ab[way * (i * width + w)])
+        for k in range(start, stop, 2):
+            top = at(ab, way * k * width)
+            if k + w < count:
+                original[k + w] = abs(ab[way * ((k + w) * width + w)])
+            a = top[way * w]
+            if a == 0.0 or original[k] == 0.0:
+                return 0.0
+            if abs(a) < worst * original[k]:
+                worst = abs(a) / original[k]
+            inverse = 1.0 / a
+            if k + 1 == stop:
+                top[way * w] = inverse
+                for i in range(k + 1, min(n, k + w + 1)):
+                    row = at(ab, way * (i * width + w + k - i))
+                    first = row[0] * inverse
+                    row[0] = first
+                    for j in range(1, w + 1):
+                        row[way * j] -= first * top[way * (w + j)]
+                    if eliminates != 0:
+                        right[way * i] -= first * right[way * k]
+                for j in range(1, w + 1):
+                    top[way * (w + j)] *= inverse
+                break
+            below = at(ab, way * (k + 1) * width)
+            if k + 1 + w < count:
+                original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
+            # the second pivot is the determinant of both by the first one: the two divisions need not wait for each other
+            b, c = top[way * (w + 1)], below[way * (w - 1)]
+            determinant = a * below[way * w] - c * b
+            if determinant == 0.0 or original[k + 1] == 0.0:
+                return 0.0
+            inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse)
+            if pivot < worst * original[k + 1]:
+                worst = pivot / original[k + 1]
+            inverse_below, first = a * inverse_determinant, c * inverse
+            top[way * w], below[way * w] = inverse, inverse_below
+            top[way * (w + 1)], below[way * (w - 1)] = b * inverse, first
+            upper, lower = 0.0, 0.0
+            if eliminates != 0:
+                upper = right[way * k]
+                lower = right[way * (k + 1)] - first * upper
+                right[way * (k + 1)] = lower
+            from_top, from_low = at(top, of_top), at(below, of_low)
+            high = lanes_within(from_top, top_first, top_end)
+            low = lanes_within(from_low, low_first, low_end) - first * high
+            more_high, more_low = zeros(), zeros()
+            if wide:
+                more_high = lanes_within(at(from_top, ahead), more_top_first, more_top_end)
+                more_low = lanes_within(at(from_low, ahead), more_low_first, more_low_end) - first * more_high
+            end = min(n, reach[way * (k + 1)])
+            for i in range(k + 2, min(end, k + w + 1)):
+                row = at(ab, way * (i * width + w + k - i))
+                one, two = row[0], row[way]
+                first, second = one * inverse, (two * a - one * b) * inverse_determinant
+                row[0], row[way] = first, second
+                lanes = as_rows(at(row, of_row))
+                lanes[0] = lanes[0] - first * high - second * low
+                if wide:
+                    lanes[ahead] = lanes[ahead] - first * more_high - second * more_low
+                if eliminates != 0:
+                    right[way * i] = right[way * i] - first * upper - second * lower
+            if k + w + 1 < end:
+                row = at(ab, way * (k + w + 1) * width)
+                second = row[0] * inverse_below
+                row[0] = second
+                lanes = as_rows(at(row, of_last))
+                lanes[0] = lanes[0] - second * low
+                if wide:
+                    lanes[ahead] = lanes[ahead] - second * more_low
+                if eliminates != 0:
+                    right[way * (k + w + 1)] -= second * lower
+            put_within(from_top, top_first, top_end, inverse * high)
+            put_within(from_low, low_first, low_end, inverse_below * low)
+            if wide:
+                put_within(at(from_top, ahead), more_top_first, more_top_end, inverse * more_high)
+                put_within(at(from_low, ahead), more_low_first, more_low_end, inverse_below * more_low)
+        return worst
+
+    return eliminate
+
+
+def _one_by_one(case: str, way: int) -> Routine:
+    @routine("iiiiiisrrr", "d", case, fastmath=FAST)
+    def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
+        w, width, worst = half, 2 * half + 1, 1.0
+        if start == 0:
+            for i in range(min(count, w)):
+                original[i] = abs(ab[way * (i * width + w)])
+        for k in range(start, stop, 2):
+            top = at(ab, way * k * width)
+            if k + w < count:
+                original[k + w] = abs(ab[way * ((k + w) * width + w)])
+            if top[way * w] == 0.0 or original[k] == 0.0:
+                return 0.0
+            worst = min(worst, abs(top[way * w]) / original[k])
+            inverse = 1.0 / top[way * w]
+            top[way * w] = inverse
+            if k + 1 == stop:
+                for i in range(k + 1, min(n, k + w + 1)):
+                    row = at(ab, way * (i * width + w + k - i))
+                    first = row[0] * inverse
+                    row[0] = first
+                    for j in range(1, w + 1):
+                        row[way * j] -= first * top[way * (w + j)]
+                    if eliminates != 0:
+                        right[way * i] -= first * right[way * k]
+                for j in range(1, w + 1):
+                    top[way * (w + j)] *= inverse
+                break
+            below = at(ab, way * (k + 1) * width)
+            if k + 1 + w < count:
+                original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
+            first = below[way * (w - 1)] * inverse
+            below[way * (w - 1)] = first
+            for j in range(1, w + 1):
+                below[way * (w - 1 + j)] -= first * top[way * (w + j)]
+            if below[way * w] == 0.0 or original[k + 1] == 0.0:
+                return 0.0
+            worst = min(worst, abs(below[way * w]) / original[k + 1])
+            inverse_below = 1.0 / below[way * w]
+            below[way * w] = inverse_below
+            upper, lower = 0.0, 0.0
+            if eliminates != 0:
+                right[way * (k + 1)] -= first * right[way * k]
+                upper, lower = right[way * k], right[way * (k + 1)]
+            beside = top[way * (w + 1)]
+            end = min(n, reach[way * (k + 1)])
+            for i in range(k + 2, min(end, k + w + 1)):
+                row = at(ab, way * (i * width + w + k - i))
+                first = row[0] * inverse
+                second = (row[way] - first * beside) * inverse_below
+                row[0], row[way] = first, second
+                for j in range(2, w + 1):
+                    row[way * j] -= first * top[way * (w + j)] + second * below[way * (w + j - 1)]
+                row[way * (w + 1)] -= second * below[way * 2 * w]
+                if eliminates != 0:
+                    right[way * i] -= first * upper + second * lower
+            if k + w + 1 < end:
+                row = at(ab, way * (k + w + 1) * width)
+                second = row[0] * inverse_below
+                row[0] = second
+                for j in range(1, w + 1):
+                    row[way * j] -= second * below[way * (w + j)]
+                if eliminates != 0:
+                    right[way * (k + w + 1)] -= second * lower
+            for j in range(1, w + 1):
+                top[way * (w + j)] *= inverse
+                below[way * (w + j)] *= inverse_below
+        return worst
+
+    return eliminate

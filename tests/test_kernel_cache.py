@@ -26,7 +26,7 @@ OUTER = (
 RUN = (
     "import sys; sys.path.insert(0, sys.argv[1])\n"
     "from small.compiler import machine\n"
-    "if sys.argv[2]: machine._processor = lambda: (sys.argv[2], '')\n"
+    "if sys.argv[2]: machine.processor = lambda: (sys.argv[2], '')\n"
     "from small.outer import outer\nfrom small.cache import cache_folder\n"
     "print(outer(2.0), 0 if outer.compiled_here else 1, cache_folder())"
 )

@@ -151,3 +151,26 @@ def test_rows_that_a_chain_does_not_couple_stay_as_they_are(element, extra, rng)
         within, whole = rows.copy(), rows.copy()
         assert factored(within, reach) == factored(whole, whole_band(n, w))
         np.testing.assert_array_equal(within, whole)
+
+
+def from_one_end(w, n, rows):
+    return band(w).factor(n, n, w, 0, whole_band(n, w)[0].copy(), rows, np.empty(n), np.empty(n))
+
+
+def from_both_ends(w, n, rows):
+    return two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n))
+
+
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
+@pytest.mark.parametrize("w", KNOWN)
+def test_nothing_beside_the_matrix_is_read_or_changed(w, factor, rng):
+    """Rows are changed in whole lanes, which may reach over the end of a row but not over that of the matrix."""
+    for n in (1, 2, 3, w, w + 1, w + 2, 3 * w, 3 * w + 1):
+        _, rows = matrix(n, w, rng)
+        memory = np.full(rows.size + 32, np.nan)
+        inside = memory[16:-16].reshape(rows.shape)
+        inside[:] = rows
+        assert factor(w, n, inside) > 0.2
+        assert np.isnan(memory[:16]).all()
+        assert np.isnan(memory[-16:]).all()
+        assert np.isfinite(inside).all()

@@ -6,6 +6,7 @@ import re
 import pytest
 
 from beamfem.kernels import field, inertia, linear_law, stiffness
+from beamfem.kernels.band import band
 from beamfem.kernels.compiler.machine import assembly_code
 from beamfem.kernels.generated import elastic_line, green_lagrange, structural
 
@@ -14,6 +15,7 @@ PASSES = [
     *(field.interpolate, field.spread, linear_law.four_resultants, linear_law.six_resultants),
     *(getattr(forces, name) for forces in (green_lagrange, structural) for name in ("strains", "forces", "rates")),
     *(forces.hessian for forces in (green_lagrange, structural)),
+    *(band(half_width).factor for half_width in (5, 8, 11)),
 ]
 PACKED = {
     "x86_64": r"\bv?(?:{})(?:\d+)?pd\b",
@@ -44,6 +46,4 @@ def test_divisions_and_roots_of_a_pass_are_packed():
 
 def test_a_loop_that_cannot_be_packed_is_told_apart():
     """What the other tests look for is not in every machine code."""
-    from beamfem.kernels.band import band
-
     assert not packed(band(3).solve_lower, "div")

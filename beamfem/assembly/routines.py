@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from beamfem.kernels import (
+    band_assembly,
     element_matrices,
     element_passes,
     field,
@@ -63,7 +64,7 @@ _TASKS: dict[str, dict[int, Routine]] = {
         record.VISCOUS: linear_law.add_viscous,
     },
     "imposed": {record.RELEASE: imposed_strains.release},
-    "band": {record.ADD_TO_BAND: reduction.add_to_band},
+    "band": {record.ADD_TO_BAND: band_assembly.add_to_band},
     "sparse": {record.ADD_TO_SPARSE: reduction.add_to_sparse},
     "angles": {record.TURN: nodes.turn},
     "rotated": {record.ROTATE: nodes.rotate},

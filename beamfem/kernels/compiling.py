@@ -125,13 +125,14 @@ class Routine:
         return translate(self.function, self.kinds, self.returns, self.fastmath, dict(self._fixed), machine.SYMBOL)
 
     @cached_property
-    def _callable(self) -> Callable[..., Any]:
+    def compiled(self) -> Callable[..., Any]:
+        """The compiled function, called without the GIL with numbers and addresses that nobody checks."""
         return CFUNCTYPE(_PLAIN[self.returns], *(_PLAIN.get(kind, c_void_p) for kind in self.kinds))(self.address)
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python, without the GIL; pointers are given as arrays of the right type or as addresses."""
         both = zip(self.kinds, arguments, strict=True)
-        return self._callable(*[_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both])
+        return self.compiled(*[_address(kind, each) if isinstance(each, ndarray) else each for kind, each in both])
 
 
 def _address(kind: str, array: ndarray) -> int:

@@ -6,7 +6,7 @@ from beamfem.kernels.compiling import routine
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 from beamfem.kernels.record import ROW
 
-_columns, _combine, _products = caller("iiidrrrrr"), caller("iiiirrr"), caller("iiiiiiirrrrr")
+_columns, _combine, _products = caller("iiidrrrrr"), caller("iiiirrr"), caller("iiiiiiiiiirrrrrrr", "i")
 _store, _mirror, _clear = caller("iiiiiirrr"), caller("iir"), caller("iir")
 _add_scaled, _add_mass = caller("iidrr"), caller("iiiiiidrrrr")
 _reduce, _add_to_band, _add_to_sparse = caller("iiiiiirrr"), caller("iiiiinirr"), caller("iiiinsrr")
@@ -67,7 +67,8 @@ def form_matrices(group, system, count, x):
             for n in range(m + 1):
                 slope = at(t, (b[r.SLOPE] + n * vectors) * ROW)
                 second = at(t, (b[r.SECOND] + n * vectors * bends) * ROW)
-                _products(
+                turn, to = at(transform, n * gathered * ROW), at(k, (rows * m + n) * coordinates * ROW)
+                done = _products(
                     call[r.PRODUCTS],
                     vectors,
                     bends,
@@ -76,25 +77,19 @@ def form_matrices(group, system, count, x):
                     coordinates,
                     slots_,
                     6 * size,
+                    turned,
+                    turning,
+                    rows,
                     slope,
                     second,
                     at(director, n),
+                    turn,
                     z,
-                    pair,
-                )
-                to = at(k, (rows * m + n) * coordinates * ROW)
-                _store(
-                    call[r.STORE],
-                    size,
-                    turned,
-                    turning,
-                    coordinates,
-                    count,
-                    rows,
-                    at(transform, n * gathered * ROW),
                     pair,
                     to,
                 )
+                if done == 0:
+                    _store(call[r.STORE], size, turned, turning, coordinates, count, rows, turn, pair, to)
         _mirror(call[r.MIRROR], rows, count, k)
     else:
         _clear(call[r.CLEAR], rows * rows, count, k)

@@ -4,8 +4,8 @@ ab (n, 2 w + 1) is factored in place, in row storage: row i holds A[i, i - w .. 
 the diagonal holds the inverse pivots. If the half width is known to the compiler, a row is changed in whole lanes.
 """
 
-from beamfem.kernels.compiling import Routine, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, lanes_within, put_within, zeros
+from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
 from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -26,26 +26,31 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
 
 
 def _in_lanes(w: int, case: str, way: int) -> Routine:
-    width = 2 * w + 1
+    width, wide, outside = 2 * w + 1, w > WIDTH, max(0, WIDTH - w)
 
     def place(first: int) -> int:
         """Return the first number in memory of the lanes that start `first` numbers on."""
         return first if way > 0 else 1 - first - WIDTH
 
-    def part(count: int) -> tuple[int, int]:
-        """Return the first lane and the end of the first `count` ones, which are the last ones in memory backwards."""
-        count = max(0, min(count, WIDTH))
-        return (0, count) if way > 0 else (WIDTH - count, WIDTH)
+    # The last lanes of a row end where those of the pivots end; if w > WIDTH, the first lanes overlap with them. Lanes
+    # before those that change are called outside.
+    last_of_pivot, last_of_row, last_of_end = place(width - WIDTH), place(w + 2 - WIDTH), place(w + 1 - WIDTH)
+    first_of_pivot, first_of_row, first_of_end = place(w + 1), place(2), place(1)
+    next_of_pivot, next_of_first = place(width + 1 - WIDTH), place(w + 2)
 
-    wide = w > WIDTH
-    (top_first, top_end), (low_first, low_end) = part(w - 1), part(w)
-    (more_top_first, more_top_end), (more_low_first, more_low_end) = part(w - 1 - WIDTH), part(w - WIDTH)
-    of_top, of_low, of_row, of_last = place(w + 2), place(w + 1), place(2), place(1)
-    ahead = WIDTH if way > 0 else -WIDTH
+    @inlined
+    def without_outside(lanes, others):
+        """Return lanes in which those outside are replaced by others."""
+        return merged(others, lanes, outside) if way > 0 else merged(lanes, others, WIDTH - outside)
+
+    @inlined
+    def without_last(lanes):
+        """Return lanes in which the one after the end of a row is zero."""
+        return merged(lanes, zeros(), WIDTH - 1) if way > 0 else merged(zeros(), lanes, 1)
 
     @routine("iiiiiisrrr", "d", case, fastmath=_IN_ORDER)
     def eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original):
-        worst = 1.0
+        worst, ones = 1.0, zeros() + 1.0
         if start == 0:
             for i in range(min(count, w)):
                 original[i] = abs(ab[way * (i * width + w)])
@@ -75,7 +80,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             below = at(ab, way * (k + 1) * width)
             if k + 1 + w < count:
                 original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
-            # the second pivot is the determinant of both by the first one: the two divisions need not wait for each other
+            # the second pivot is the determinant of both over the first one: its division waits for no other division
             b, c = top[way * (w + 1)], below[way * (w - 1)]
             determinant = a * below[way * w] - c * b
             if determinant == 0.0 or original[k + 1] == 0.0:
@@ -83,48 +88,48 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse)
             if pivot < worst * original[k + 1]:
                 worst = pivot / original[k + 1]
-            inverse_below, first = a * inverse_determinant, c * inverse
-            top[way * w], below[way * w] = inverse, inverse_below
-            top[way * (w + 1)], below[way * (w - 1)] = b * inverse, first
+            inverse_below, multiplier = a * inverse_determinant, c * inverse
             upper, lower = 0.0, 0.0
             if eliminates != 0:
                 upper = right[way * k]
-                lower = right[way * (k + 1)] - first * upper
+                lower = right[way * (k + 1)] - multiplier * upper
                 right[way * (k + 1)] = lower
-            from_top, from_low = at(top, of_top), at(below, of_low)
-            high = lanes_within(from_top, top_first, top_end)
-            low = lanes_within(from_low, low_first, low_end) - first * high
-            more_high, more_low = zeros(), zeros()
+            top_lanes, below_lanes = as_rows(top), as_rows(below)
+            high, low = top_lanes[last_of_pivot], below_lanes[last_of_pivot]
+            change = without_outside(without_last(top_lanes[next_of_pivot]), zeros())
+            low -= multiplier * change
+            change_below = without_outside(low, zeros())
+            first_high, first_low, first_change = zeros(), zeros(), zeros()
             if wide:
-                more_high = lanes_within(at(from_top, ahead), more_top_first, more_top_end)
-                more_low = lanes_within(at(from_low, ahead), more_low_first, more_low_end) - first * more_high
+                first_high, first_change = top_lanes[first_of_pivot], top_lanes[next_of_first]
+                first_low = below_lanes[first_of_pivot] - multiplier * first_change
             end = min(n, reach[way * (k + 1)])
             for i in range(k + 2, min(end, k + w + 1)):
                 row = at(ab, way * (i * width + w + k - i))
-                one, two = row[0], row[way]
+                lanes, one, two = as_rows(row), row[0], row[way]
                 first, second = one * inverse, (two * a - one * b) * inverse_determinant
-                row[0], row[way] = first, second
-                lanes = as_rows(at(row, of_row))
-                lanes[0] = lanes[0] - first * high - second * low
+                changed = lanes[last_of_row] - first * change - second * change_below
                 if wide:
-                    lanes[ahead] = lanes[ahead] - first * more_high - second * more_low
+                    lanes[first_of_row] = lanes[first_of_row] - first * first_change - second * first_low
+                lanes[last_of_row] = changed
+                row[0], row[way] = first, second
                 if eliminates != 0:
                     right[way * i] = right[way * i] - first * upper - second * lower
             if k + w + 1 < end:
                 row = at(ab, way * (k + w + 1) * width)
-                second = row[0] * inverse_below
-                row[0] = second
-                lanes = as_rows(at(row, of_last))
-                lanes[0] = lanes[0] - second * low
+                lanes, second = as_rows(row), row[0] * inverse_below
+                changed = lanes[last_of_end] - second * change_below
                 if wide:
-                    lanes[ahead] = lanes[ahead] - second * more_low
+                    lanes[first_of_end] = lanes[first_of_end] - second * first_low
+                lanes[last_of_end] = changed
+                row[0] = second
                 if eliminates != 0:
                     right[way * (k + w + 1)] -= second * lower
-            put_within(from_top, top_first, top_end, inverse * high)
-            put_within(from_low, low_first, low_end, inverse_below * low)
             if wide:
-                put_within(at(from_top, ahead), more_top_first, more_top_end, inverse * more_high)
-                put_within(at(from_low, ahead), more_low_first, more_low_end, inverse_below * more_low)
+                top_lanes[first_of_pivot], below_lanes[first_of_pivot] = first_high * inverse, first_low * inverse_below
+            top_lanes[last_of_pivot] = high * without_outside(ones * inverse, ones)
+            below_lanes[last_of_pivot] = low * without_outside(ones * inverse_below, ones)
+            top[way * w], below[way * (w - 1)], below[way * w] = inverse, multiplier, inverse_below
         return worst
 
     return eliminate

@@ -8,14 +8,27 @@ beyond its count. Rows are padded for them; the values in them have no meaning a
 
 from llvmlite import ir
 
+from beamfem.kernels.compiler import machine
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
 from beamfem.kernels.compiler.kinds import LANES, NUMBER, ROWS, WHOLE, WIDTH, Value
 
-__all__ = ["WIDTH", "as_rows", "gathered", "lanes_within", "larger", "largest", "merged", "put_within", "zeros"]
+__all__ = [
+    "COLUMNS",
+    "WIDTH",
+    "WRITES_PARTS",
+    "add_columns",
+    "as_rows",
+    "gathered",
+    "larger",
+    "largest",
+    "merged",
+    "zeros",
+]
 
-_SHORT = ir.IntType(32)
-_MASK = ir.VectorType(ir.IntType(1), WIDTH)
+COLUMNS = 4  # most rows that `add_columns` takes
+# whether the processor writes a part of a vector as fast as a whole one; others may take twenty times as long
+WRITES_PARTS = "+avx512vl" in machine.processor()[1].split(",")
 _BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 
 
@@ -44,8 +57,7 @@ def larger(build: Build, a: Value, b: Value) -> Value:
 def largest(build: Build, value: Value) -> Value:
     """Return the largest of non-negative lanes, or NaN if one of them is NaN."""
     name = f"llvm.vector.reduce.smax.v{WIDTH}i64"
-    functions, kind = build.builder.module.globals, ir.FunctionType(WHOLE.llvm, [_BITS])
-    reduce = functions.get(name) or ir.Function(build.builder.module, kind, name)
+    reduce = build.declared(name, ir.FunctionType(WHOLE.llvm, [_BITS]))
     bits = build.builder.call(reduce, [build.builder.bitcast(value.llvm, _BITS)])
     return Value(NUMBER, build.builder.bitcast(bits, NUMBER.llvm))
 
@@ -70,32 +82,60 @@ def gathered(build: Build, values: Value, places: Value) -> Value:
 
 
 @operation
-def lanes_within(build: Build, pointer: Value, first: Value, end: Value) -> Value:
-    """Return the lanes from `first` to `end`, constants for the compiler, and zero in the others, which are not read."""
-    memory, mask = LANES.llvm.as_pointer(), _mask(first, end)
-    load = _intrinsic(
-        build, f"llvm.masked.load.v{WIDTH}f64.p0v{WIDTH}f64", LANES.llvm, [memory, _SHORT, _MASK, LANES.llvm]
+def add_columns(
+    build: Build, columns: Value, count: Value, apart: Value, source: Value, step: Value, target: Value
+) -> None:
+    """Add lane i of the j-th of some rows to the entry j after `step` i, for all i < count and j < columns.
+
+    source: first row of lanes, the next one `apart` numbers on; columns: at most `COLUMNS`; at least one lane is added.
+    """
+    builder, inside, rows = build.builder, [ir.Constant(WHOLE.llvm, j) for j in range(COLUMNS)], []
+    for j in inside:  # the first row stands for those that are not there
+        there = builder.icmp_signed("<", j, columns.llvm)
+        place = builder.select(there, builder.mul(apart.llvm, j), inside[0])
+        rows.append(build.read(Value(ROWS, source.llvm), Value(WHOLE, place)).llvm)
+    several = build.same(columns.llvm, COLUMNS)
+    mask = builder.icmp_signed("<", ir.Constant(several.type, inside), several)
+    # pairs of columns side by side, of the even and of the odd lanes
+    even, odd = ([lane + part for lane in range(first, WIDTH, 2) for part in (0, WIDTH)] for first in (0, 1))
+    pairs = [[_shuffled(build, rows[j], rows[j + 1], lanes) for j in (0, 2)] for lanes in (even, odd)]
+    done = builder.append_basic_block("added")
+    for lane in range(WIDTH):
+        if lane:
+            further = builder.append_basic_block("further")
+            builder.cbranch(builder.icmp_signed(">", count.llvm, WHOLE.llvm(lane)), further, done)
+            builder.position_at_end(further)
+        first = lane // 2 * 2
+        left, right = pairs[lane % 2]
+        entries = _shuffled(build, left, right, [first, first + 1, WIDTH + first, WIDTH + first + 1])
+        address = builder.gep(target.llvm, [builder.mul(step.llvm, WHOLE.llvm(lane))], inbounds=True)
+        before = _load(build, address, mask, COLUMNS)
+        _store(build, builder.fadd(before, entries), address, mask, COLUMNS)
+    builder.branch(done)
+    builder.position_at_end(done)
+
+
+def _shuffled(build: Build, first: ir.Value, second: ir.Value, lanes: list[int]) -> ir.Value:
+    """Return some lanes of two vectors, those of the second one counted on from those of the first one."""
+    return build.builder.shuffle_vector(first, second, ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes))
+
+
+def _load(build: Build, address: ir.Value, mask: ir.Value, lanes: int) -> ir.Value:
+    """Return the numbers at an address where a mask is set, and zero elsewhere."""
+    vector, short = ir.VectorType(NUMBER.llvm, lanes), ir.IntType(32)
+    kind = ir.FunctionType(vector, [vector.as_pointer(), short, mask.type, vector])
+    place = build.builder.bitcast(address, vector.as_pointer())
+    return build.builder.call(
+        build.declared(f"llvm.masked.load.v{lanes}f64.p0v{lanes}f64", kind),
+        [place, short(8), mask, ir.Constant(vector, None)],
     )
-    address = build.builder.bitcast(pointer.llvm, memory)
-    return Value(LANES, build.builder.call(load, [address, _SHORT(8), mask, ir.Constant(LANES.llvm, None)]))
 
 
-@operation
-def put_within(build: Build, pointer: Value, first: Value, end: Value, value: Value) -> None:
-    """Set the lanes from `first` to `end`, constants for the compiler."""
-    memory, mask = LANES.llvm.as_pointer(), _mask(first, end)
-    store = _intrinsic(
-        build, f"llvm.masked.store.v{WIDTH}f64.p0v{WIDTH}f64", ir.VoidType(), [LANES.llvm, memory, _SHORT, _MASK]
+def _store(build: Build, value: ir.Value, address: ir.Value, mask: ir.Value, lanes: int) -> None:
+    """Set the numbers at an address where a mask is set."""
+    vector, short = ir.VectorType(NUMBER.llvm, lanes), ir.IntType(32)
+    kind = ir.FunctionType(ir.VoidType(), [vector, vector.as_pointer(), short, mask.type])
+    place = build.builder.bitcast(address, vector.as_pointer())
+    build.builder.call(
+        build.declared(f"llvm.masked.store.v{lanes}f64.p0v{lanes}f64", kind), [value, place, short(8), mask]
     )
-    address = build.builder.bitcast(pointer.llvm, memory)
-    build.builder.call(store, [build.converted(value, LANES), address, _SHORT(8), mask])
-
-
-def _mask(first: Value, end: Value) -> ir.Constant:
-    return ir.Constant(_MASK, [int(first.llvm.constant <= lane < end.llvm.constant) for lane in range(WIDTH)])
-
-
-def _intrinsic(build: Build, name: str, result: ir.Type, arguments: list[ir.Type]) -> ir.Function:
-    """Return a function of LLVM."""
-    module = build.builder.module
-    return module.globals.get(name) or ir.Function(module, ir.FunctionType(result, arguments), name)

@@ -30,9 +30,8 @@ def at(build: Build, pointer: Value, count: Value) -> Value:
 def fetch(build: Build, pointer: Value, count: Value) -> None:
     """Ask for the memory `count` entries ahead, so that it is in the cache when needed; any address is allowed."""
     address = build.builder.gep(pointer.llvm, [count.llvm])
-    module, byte, number = build.builder.module, ir.IntType(8).as_pointer(), ir.IntType(32)
-    kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
-    callee = module.globals.get(_FETCH) or ir.Function(module, kind, _FETCH)
+    byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+    callee = build.declared(_FETCH, ir.FunctionType(ir.VoidType(), [byte, number, number, number]))
     constants = [ir.Constant(number, value) for value in (0, 3, 1)]  # to read, keep in all caches, data
     build.builder.call(callee, [build.builder.bitcast(address, byte), *constants])
 

@@ -1,4 +1,4 @@
-"""Reduction to coordinates, e' = B p': forces B^T f, matrices B^T k B, and their assembly into the model.
+"""Reduction to coordinates, e' = B p': forces B^T f, matrices B^T k B, and their addition to a sparse matrix.
 
 The coordinates of a node are its first components of nodal vectors, followed by those on which the last `turned`
 components depend: B = diag(1, b) with b (turned, turning) for each node. Coordinates that a node lacks are numbered -1.
@@ -59,68 +59,6 @@ def reduce_rows(nodes, size, turned, turning, count, stride, b, k, space):
                     source, to = at(space, row * ROW), at(entries, row * ROW)
                     for i in range(0, count, WIDTH):
                         to[i] = source[i]
-
-
-@inlined
-def _lacks_some(rows, stride, number):
-    """Return whether an element has prescribed coordinates, or none; number: (rows, stride) from this element on."""
-    for row in range(rows):
-        if number[row * stride] < 0:
-            return True
-    return False
-
-
-@inlined
-def _are_shifted(rows, count, stride, number, step):
-    """Return whether the numbers (rows, stride) of each element are those of the first one, plus a step for each."""
-    wrong = 0
-    for row in range(rows):
-        numbers = at(number, row * stride)
-        for i in range(count):
-            wrong += abs(numbers[i] - numbers[0] - i * step)
-    return wrong == 0
-
-
-@inlined
-def _add_one_by_one(begin, end, width, half, row_numbers, column_numbers, value, matrix):
-    """Add an entry of some elements where neither its row nor its column is prescribed."""
-    for i in range(begin, end):
-        row, column = row_numbers[i], column_numbers[i]
-        if row >= 0 and column >= 0:
-            matrix[width * row + half + column] += value[i]
-
-
-@routine("iiiiinirr")
-def add_to_band(nodes, size, coordinates, count, stride, number, half, k, matrix):
-    """Add the reduced matrices k of a batch to a band matrix (n, 2 half + 1); number (nodes * coordinates, stride).
-
-    Between elements with prescribed coordinates at the ends of a chain, entries need not be looked up.
-    """
-    rows, per, width = nodes * size, nodes * coordinates, 2 * half
-    begin, end, shift = 0, count, 0
-    while begin < end and _lacks_some(per, stride, at(number, begin)):
-        begin += 1
-    while begin < end and _lacks_some(per, stride, at(number, end - 1)):
-        end -= 1
-    if end - begin > 1:
-        step = number[begin + 1] - number[begin]
-        shift = (width + 1) * step
-        if not _are_shifted(per, end - begin, stride, at(number, begin), step):
-            begin, end = count, count
-    for m in range(nodes):
-        for column_dof in range(coordinates):
-            column_numbers = at(number, (m * coordinates + column_dof) * stride)
-            for n in range(nodes):
-                for row_dof in range(coordinates):
-                    row_numbers = at(number, (n * coordinates + row_dof) * stride)
-                    value = at(k, (rows * (m * size + column_dof) + n * size + row_dof) * ROW)
-                    _add_one_by_one(0, begin, width, half, row_numbers, column_numbers, value, matrix)
-                    if begin < end:
-                        entry = at(matrix, width * row_numbers[begin] + half + column_numbers[begin])
-                        own = at(value, begin)
-                        for i in range(end - begin):
-                            entry[i * shift] += own[i]
-                    _add_one_by_one(end, count, width, half, row_numbers, column_numbers, value, matrix)
 
 
 @routine("iiiinsrr")

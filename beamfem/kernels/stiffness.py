@@ -74,6 +74,11 @@ def combine(rows, turned, turning, count, b, own, space):
     b (turned, turning, ROW); space (turning, ROW): workspace.
     """
     for row in range(rows):
+        if turned == 2 and turning == 1:
+            x, y, sine = at(own, row * ROW), at(own, (rows + row) * ROW), at(b, ROW)
+            for i in range(0, count, WIDTH):
+                x[i] = x[i] * b[i] + y[i] * sine[i]
+            continue
         for column in range(turning):
             to = at(space, column * ROW)
             for part in range(0, turned, 2):
@@ -91,14 +96,37 @@ def combine(rows, turned, turning, count, b, own, space):
                 to[i] = source[i]
 
 
-@routine("iiiiiiivvrvv", fastmath=FAST)
-def products(vectors, bends, count, points, coordinates, slots, z_stride, slope, second, director, z, k):
+@routine("iiiiiiiiiivvrvvvv", "i", fastmath=FAST)
+def products(
+    vectors,
+    bends,
+    count,
+    points,
+    coordinates,
+    slots,
+    z_stride,
+    turned,
+    turning,
+    rows,
+    slope,
+    second,
+    director,
+    b,
+    z,
+    own,
+    k,
+):
     """Fill the rows of one node in the columns of another one: T^T z, summed over quadrature points.
 
     z (points, z_stride, ROW): 6 rows for each coordinate; slope, second (points, slots, ROW) and director (points,
-    nodes): tables T, from the node of the rows on; k (coordinates, 2 vectors, ROW).
+    nodes): tables T, from the node of the rows on; b (turned, turning, ROW): of this node. Return 1 if its rows of k
+    are done, see `store`, or 0 if own (coordinates, 2 vectors, ROW) has them before their multiplication by b^T.
     """
-    last, size, nodes = vectors - 1, 2 * vectors, slots // vectors
+    last, nodes = vectors - 1, slots // vectors
+    done = turned == 0 or (turned == 2 and turning == 1)
+    into, size = own, 2 * vectors
+    if done:
+        into, size = k, rows
     for c in range(coordinates):
         for s in range(vectors):
             for i in range(0, count, WIDTH):
@@ -115,8 +143,12 @@ def products(vectors, bends, count, points, coordinates, slots, z_stride, slope,
                         x, y = x + u * column[2 * ROW], y + u * column[3 * ROW]
                         if bends == 0:
                             x, y = x + w * column[4 * ROW], y + w * column[5 * ROW]
-                to = at(k, (c * size + 2 * s) * ROW + i)
-                to[0], to[ROW] = x, y
+                to = at(into, (c * size + 2 * s) * ROW + i)
+                if done and turned != 0 and s == last:
+                    to[0] = x * b[i] + y * b[ROW + i]
+                else:
+                    to[0], to[ROW] = x, y
+    return 1 if done else 0
 
 
 @routine("iiiiiivvv", fastmath=FAST)

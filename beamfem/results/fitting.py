@@ -90,5 +90,5 @@ def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _R
 
 
 def _require_finite(name: str, values: np.ndarray) -> None:
-    if not np.isfinite(values).all():
+    if np.count_nonzero(np.isfinite(values)) < values.size:
         raise InputError(f"{name} must be finite, but contains nan or infinity; use a state found by a solver")

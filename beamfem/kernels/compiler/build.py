@@ -22,15 +22,19 @@ class Build:
     def call(self, name: str, value: Value, *others: Value) -> Value:
         """Call a function of LLVM or of the C library whose arguments and result are of one kind."""
         types = [each.kind.llvm for each in (value, *others)]
-        functions = self.builder.module.globals
-        callee = functions.get(name) or ir.Function(self.builder.module, ir.FunctionType(types[0], types), name)
+        callee = self.declared(name, ir.FunctionType(types[0], types))
         arguments = [each.llvm for each in (value, *others)]
         return Value(value.kind, self.builder.call(callee, arguments, fastmath=self.flags))
 
-    def same(self, number: ir.Value) -> ir.Value:
+    def declared(self, name: str, kind: ir.FunctionType) -> ir.Function:
+        """Return a function of LLVM or of the C library."""
+        module = self.builder.module
+        return module.globals.get(name) or ir.Function(module, kind, name)
+
+    def same(self, number: ir.Value, lanes: int = WIDTH) -> ir.Value:
         """Return a vector whose lanes all hold one number or integer."""
-        undefined = ir.Constant(ir.VectorType(number.type, WIDTH), ir.Undefined)
-        first = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None)
+        undefined = ir.Constant(ir.VectorType(number.type, lanes), ir.Undefined)
+        first = ir.Constant(ir.VectorType(ir.IntType(32), lanes), None)
         inserted = self.builder.insert_element(undefined, number, ir.IntType(32)(0))
         return self.builder.shuffle_vector(inserted, undefined, first)
 

@@ -28,7 +28,7 @@ def _target() -> llvm.Target:
 
 
 @cache
-def _processor() -> tuple[str, str]:
+def processor() -> tuple[str, str]:
     """Return the name and the features of the processor."""
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
@@ -36,12 +36,12 @@ def _processor() -> tuple[str, str]:
 def description() -> str:
     """Return a description of the target of machine code: system, processor and version of LLVM."""
     _target()
-    return repr((llvm.get_process_triple(), *_processor(), llvm.llvm_version_info))
+    return repr((llvm.get_process_triple(), *processor(), llvm.llvm_version_info))
 
 
 def _new_machine() -> llvm.TargetMachine:
-    processor, features = _processor()
-    return _target().create_target_machine(processor, features, opt=3, jit=True)
+    name, features = processor()
+    return _target().create_target_machine(name, features, opt=3, jit=True)
 
 
 _machine = cache(_new_machine)

@@ -43,7 +43,7 @@ class BandProblem:
     def correct(self) -> Correction:
         """Take corrections until one is small or stagnant. Raises LinAlgError if pivoting is needed."""
         space, found = self.space, self.space.found
-        factorised = iterate(*space.addresses)
+        factorised = iterate.compiled(*space.addresses)
         space.assembler.raise_errors()
         if not factorised:
             raise LinAlgError("a pivot is tiny")
@@ -70,7 +70,7 @@ class BandProblem:
         space = self.space
         space.step[:] = space.linear - self.start
         space.p[:] = self.start
-        count = int(count_after_step(*space.addresses))
+        count = int(count_after_step.compiled(*space.addresses))
         space.assembler.raise_errors()
         return count
 

@@ -16,7 +16,7 @@ class PrescribedStep:
         self.step = np.zeros(len(start))
         dofs = system.prescribed_dofs
         change = system.prescribed_values(load_factor) - start[dofs]
-        self.moves = bool(change.any())
+        self.moves = np.count_nonzero(change) > 0
         if self.moves:
             self.step[dofs] = change
 

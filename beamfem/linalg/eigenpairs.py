@@ -63,10 +63,6 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
         return values[::-1], solve_triangular(root.T, y[:, ::-1])
 
     def few(vectors: int) -> Pairs:
-        def projected(b: np.ndarray) -> np.ndarray:
-            solved = factors.solve(b - carried @ (known.T @ b))
-            return np.asarray(solved - known @ (carried.T @ solved))
-
         inverse = LinearOperator((n, n), matvec=projected, dtype=float)
         # ARPACK does not use the matrix itself if it is given the inverse
         reciprocal, x = eigsh(
@@ -80,7 +76,18 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
             v0=first_vector(n),
         )
         order = np.argsort(reciprocal, kind="stable")
-        return 1.0 / reciprocal[order], x[:, order]
+        return 1.0 / reciprocal[order], solved_once_more(x[:, order])
+
+    def projected(b: np.ndarray) -> np.ndarray:
+        solved = factors.solve(b - carried @ (known.T @ b))
+        return np.asarray(solved - known @ (carried.T @ solved))
+
+    def solved_once_more(x: np.ndarray) -> np.ndarray:
+        # The last vectors of a multiple eigenvalue come from round-off and have parts along stiff directions, which are
+        # small in x^T M x but not in x^T K x; a solve removes them.
+        x = np.column_stack([projected(column) for column in (mass @ x).T])
+        root = cholesky(x.T @ (mass @ x), lower=True)
+        return np.asarray(solve_triangular(root, x.T, lower=True).T)
 
     mu, x = first_that_works(dense, few, n, count)
     for _ in range(2):

@@ -85,3 +85,37 @@ def test_a_row_of_equal_portals_sways_as_each_of_them():
     for count in (1, 7, 60, 150):
         found = bf.solve_modes(portals(40), count).frequencies
         assert found == pytest.approx(np.repeat(one, 40)[:count], rel=1e-10)
+
+
+def test_no_copy_of_a_mode_beside_a_follower_load_is_missed():
+    """Seven equal columns and one under a small follower force: one of the seven was missed, without a word."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Rectangle(0.01, 0.01)
+    force = -0.5 * section.rigidity(steel).bending
+
+    def columns(loaded):
+        beams = [bf.Beam(bf.Line((0, i), (1, i)), 40, bf.CRBF(3), section, steel) for i in range(len(loaded))]
+        loads = [bf.PointForce(beams[i].end, (force, 0.0), follower=True) for i in np.flatnonzero(loaded)]
+        model = bf.Model(beams, [bf.Clamp(beam.start) for beam in beams], loads)
+        return model, bf.solve_static(model) if loads else None
+
+    plain, loaded = (bf.solve_modes(model, 3, about).frequencies for model, about in (columns([0]), columns([1])))
+    model, about = columns([1] + 7 * [0])
+    exact = np.sort(np.concatenate([loaded, np.repeat(plain, 7)]))
+    for count in (2, 8, 12):
+        assert bf.solve_modes(model, count, about).frequencies == pytest.approx(exact[:count], rel=1e-9)
+
+
+def test_a_hundred_equal_columns_buckle_at_the_same_load():
+    """Linearised, some of them seemed to buckle at the second load of a column, nine times the first."""
+    steel, section = bf.Material(2e11, 0.3, 7800.0), bf.Circle(0.01)
+
+    def columns(number):
+        beams = [bf.Beam(bf.Line((0.1 * i, 0), (0.1 * i, 1)), 2, bf.CRBF(3), section, steel) for i in range(number)]
+        force = (0.0, -section.rigidity(steel).bending)
+        return bf.Model(beams, [bf.Clamp(b.start) for b in beams], [bf.PointForce(b.end, force) for b in beams])
+
+    one = bf.solve_buckling(columns(1), 1)
+    found = bf.solve_buckling(columns(PARTS), PARTS)
+    assert found.load_factors == pytest.approx(np.repeat(one.load_factors, PARTS), rel=1e-9)
+    assert found.linearised == pytest.approx(np.repeat(one.linearised, PARTS), rel=1e-8)
+    assert np.linalg.matrix_rank(found.modes) == PARTS

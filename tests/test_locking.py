@@ -271,6 +271,25 @@ def test_warnings_of_a_solver_come_first_and_are_saved(tmp_path):
     assert bf.load(tmp_path / "marked.h5").warnings == ("take care",)
 
 
+def test_the_lobatto_rules_go_by_the_strain_measures_of_forces_not_by_their_class():
+    """Forces with measures of their own were integrated as those of a continuum, without a word."""
+
+    class Own(bf.Structural):
+        code = 3
+
+    class Green(bf.Structural):
+        code = bf.ContinuumMechanics().code
+        shear_measures = bf.ContinuumMechanics().shear_measures
+
+    with pytest.raises(bf.InputError, match=r'"lobatto" has no rule for the strain measures of Own: .* use "full"'):
+        bf.ANCF(Own(), integration="lobatto")
+    assert bf.ANCF(Own()).integration == bf.ANCF(Green()).integration == "full"
+    body, own = (bf.ANCF(forces, integration="lobatto") for forces in (bf.ContinuumMechanics(), Green()))
+    assert own.energy_points()[0] == pytest.approx(body.energy_points()[0])
+    stiffness, jacobian = np.eye(6)[None, None] * np.ones((1, 3, 1, 1)), np.ones((1, 3))
+    assert own.energy_stiffness(stiffness, jacobian) == pytest.approx(body.energy_stiffness(stiffness, jacobian))
+
+
 def test_the_lobatto_points_need_nodes_with_r_x():
     with pytest.raises(bf.InputError, match="cubic field"):
         bf.CRBF(2, integration="lobatto")

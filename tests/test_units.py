@@ -96,3 +96,16 @@ point = "strip.start"
     with pytest.raises(ModelFileError, match="'furlong' is none") as caught:
         read_model_file(path)
     assert caught.value.line == 2
+
+
+def test_printed_results_tell_their_units():
+    """A peak printed bare numbers, a motion the times of its rows without the second."""
+    beam, model = strip()
+    solution, motion = bf.solve_static(model), bf.simulate(model, 1e-3, 1e-4)
+    peak = solution.stresses(beam).peak("tension")
+    assert repr(peak) == f"Peak(tension {peak.value:.4g} MPa at 0 mm in row 1, load factor 1, of {beam!r})"
+    assert f"tension {peak.in_words}" in repr(solution.stresses(beam))
+    assert "von_mises" in repr(motion.peak_stress())
+    assert repr(motion.peak_stress()).endswith(f" mm in row 10, t = 0.001 s, of {beam!r})")
+    assert "utilisation is not known" in repr(solution.stresses(beam).peak("utilisation"))
+    assert "time 0 to 0.001 s" in repr(motion)

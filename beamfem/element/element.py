@@ -12,7 +12,7 @@ from beamfem.element import lobatto
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree, labels
 from beamfem.element.field_checks import require_field
 from beamfem.element.fields import Cubic, Field, Lagrange
-from beamfem.element.forces import ElasticLine, Forces, Structural
+from beamfem.element.forces import ElasticLine, Forces
 from beamfem.errors import InputError
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
@@ -70,12 +70,17 @@ class Element:
         require_field(self.field)
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:
-            free_of_locking = has_stations(self.field) and isinstance(self.forces, Structural | ElasticLine)
+            free_of_locking = has_stations(self.field) and lobatto.is_default(self.forces)
             object.__setattr__(self, "integration", "lobatto" if free_of_locking else "full")
         if self.integration == "lobatto" and not has_stations(self.field):
             raise InputError(
                 f'integration="lobatto" is for the cubic field, whose two nodes have r_x; on the {self.field.name} '
                 'field "reduced" does not lock'
+            )
+        if self.integration == "lobatto" and not lobatto.knows(self.forces):
+            raise InputError(
+                f'integration="lobatto" has no rule for the strain measures of {type(self.forces).__name__}: it is for '
+                'those of Structural, ElasticLine and the continuum forces; use "full" or "reduced"'
             )
         if isinstance(self.coordinates, ShearFree) and not has_slope:
             raise InputError(

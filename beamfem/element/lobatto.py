@@ -9,7 +9,8 @@ remain.
 import numpy as np
 
 from beamfem.element.coordinates import Coordinates, Gradients, ShearFree
-from beamfem.element.forces import ElasticLine, Forces, Structural
+from beamfem.element.forces import Forces
+from beamfem.kernels.block import ELASTIC_LINE, GREEN_LAGRANGE, STRUCTURAL
 
 POINTS = np.array([0.0, 0.5, 1.0])
 WEIGHTS = np.array([1.0, 4.0, 1.0]) / 6.0
@@ -23,13 +24,23 @@ _BUBBLE = 2.0 / 3.0
 _STRETCH, _CURVATURE, _THICKNESS = 0, 2, 3
 
 
+def knows(forces: Forces) -> bool:
+    """Return whether there are rules here for the strain measures of forces, which their code number determines."""
+    return forces.code in (STRUCTURAL, ELASTIC_LINE, GREEN_LAGRANGE)
+
+
+def is_default(forces: Forces) -> bool:
+    """Return whether these rules are the default of forces; the paper integrates those of a continuum fully."""
+    return forces.code in (STRUCTURAL, ELASTIC_LINE)
+
+
 def energy_points(forces: Forces) -> tuple[np.ndarray, np.ndarray]:
     """Return points (nq,) and weights (nq,) on [0, 1]: the Lobatto points, then two more for structural curvature.
 
     The rotation rate of an interpolated d is not a polynomial: 3 Gauss points give its energy five times more
     accurately.
     """
-    if isinstance(forces, Structural):
+    if forces.code == STRUCTURAL:
         return np.append(POINTS, _OUTER), np.append(WEIGHTS, _GAUSS[[0, 2]])
     return POINTS.copy(), WEIGHTS.copy()
 
@@ -45,7 +56,7 @@ def energy_stiffness(
     result = stiffness.copy()
     inner = result[:, : len(POINTS)]
     inner[:] = np.swapaxes(table, -1, -2) @ inner @ table
-    if isinstance(forces, Structural):
+    if forces.code == STRUCTURAL:
         _spread_curvature(result)
     for j in np.flatnonzero(_at_nodes(forces)).tolist():
         inner[..., j, j] *= _TRAPEZOID / WEIGHTS
@@ -66,7 +77,7 @@ def assumed(forces: Forces, coordinates: Coordinates, jacobian: np.ndarray) -> n
     """
     count = len(forces.shear_measures)
     table = np.tile(np.eye(count), (*jacobian.shape, 1, 1))
-    body = not isinstance(forces, Structural | ElasticLine)
+    body = forces.code == GREEN_LAGRANGE
     if not isinstance(coordinates, Gradients):
         for j in (_THICKNESS, 5) if body else (_THICKNESS,):
             table[..., j, j] = 0.0
@@ -82,9 +93,9 @@ def _at_nodes(forces: Forces) -> np.ndarray:
     Between the nodes, a linear d would make the angle of r_x linear as well, and so the curvature of the elastic line
     constant.
     """
-    if isinstance(forces, Structural):
+    if forces.code == STRUCTURAL:
         return np.array(forces.thickness_measures)
-    if isinstance(forces, ElasticLine):
+    if forces.code == ELASTIC_LINE:
         return np.array(forces.thickness_measures) | np.array(forces.shear_measures)
     return np.zeros(len(forces.shear_measures), dtype=bool)
 

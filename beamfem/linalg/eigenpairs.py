@@ -6,10 +6,10 @@ from typing import Any, Protocol
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from beamfem.errors import ConvergenceError
-from beamfem.linalg.lapack import LinAlgError, cholesky, eig, eigh, solve_triangular
+from beamfem.linalg.lapack import LinAlgError, cholesky, eigh, solve_triangular
 
 _DENSE = 200  # unknowns up to which computing all eigenpairs takes no longer than computing a few
 _LARGEST_DENSE = 4000  # unknowns up to which all eigenpairs are computed if the iteration for a few fails
@@ -63,10 +63,6 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
         return values[::-1], solve_triangular(root.T, y[:, ::-1])
 
     def few(vectors: int) -> Pairs:
-        def projected(b: np.ndarray) -> np.ndarray:
-            solved = factors.solve(b - carried @ (known.T @ b))
-            return np.asarray(solved - known @ (carried.T @ solved))
-
         inverse = LinearOperator((n, n), matvec=projected, dtype=float)
         # ARPACK does not use the matrix itself if it is given the inverse
         reciprocal, x = eigsh(
@@ -80,40 +76,23 @@ def largest_pairs(mass: csr_array, factors: Solver, count: int, known: np.ndarra
             v0=first_vector(n),
         )
         order = np.argsort(reciprocal, kind="stable")
-        return 1.0 / reciprocal[order], x[:, order]
+        return 1.0 / reciprocal[order], solved_once_more(x[:, order])
+
+    def projected(b: np.ndarray) -> np.ndarray:
+        solved = factors.solve(b - carried @ (known.T @ b))
+        return np.asarray(solved - known @ (carried.T @ solved))
+
+    def solved_once_more(x: np.ndarray) -> np.ndarray:
+        # The last vectors of a multiple eigenvalue come from round-off and have parts along stiff directions, which are
+        # small in x^T M x but not in x^T K x; a solve removes them.
+        x = np.column_stack([projected(column) for column in (mass @ x).T])
+        root = cholesky(x.T @ (mass @ x), lower=True)
+        return np.asarray(solve_triangular(root, x.T, lower=True).T)
 
     mu, x = first_that_works(dense, few, n, count)
     for _ in range(2):
         x = x - known @ (carried.T @ x)
     return mu[:count], x[:, :count]
-
-
-def general_pairs(mass: csr_array, stiffness: csr_array, factors: Solver, count: int, known: Pairs) -> Pairs:
-    """Return the largest |mu| (m,) complex, descending, and x (n, m) with mass x = mu stiffness x.
-
-    mass: symmetric, positive definite; stiffness: any matrix, and its factors; known: pairs that are not to be found
-    again, with x^T mass x = 1. Raises ConvergenceError.
-    """
-    n = mass.shape[0]
-    carried = mass @ known[1]
-
-    def dense() -> Pairs:
-        inverse = np.column_stack([factors.solve(column) for column in mass.toarray().T])
-        return eig(inverse - (inverse @ known[1]) @ carried.T)
-
-    def few(vectors: int) -> Pairs:
-        inverse = LinearOperator((n, n), matvec=lambda b: factors.solve(b - carried @ (known[1].T @ b)), dtype=float)
-        # with sigma = 0, ARPACK finds the smallest 1/mu of stiffness x = (1/mu) mass x
-        options = {"ncv": lanczos_vectors(vectors, count, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
-        reciprocal, x = eigs(stiffness, count, M=mass, sigma=0.0, OPinv=inverse, **options)
-        return 1.0 / reciprocal, x
-
-    values, x = first_that_works(dense, few, n, count + 1)
-    order = np.argsort(-np.abs(values), kind="stable")[:count]
-    values, x = values[order], x[:, order]
-    # Wielandt's deflation preserves the other eigenvalues, but changes their vectors along the known ones
-    fractions = known[0][:, None] * (carried.T @ x) / (values - known[0][:, None])
-    return values, x + known[1] @ fractions
 
 
 def first_that_works(dense: Callable[[], Any], few: Callable[[int], Any], n: int, count: int) -> Pairs:

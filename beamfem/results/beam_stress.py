@@ -44,6 +44,12 @@ class Peak:
         Load factor of that row, or time of a motion [s].
     beam : Beam
         The beam.
+    part : str
+        Which stress it is.
+    static : bool, default True
+        Whether `at` is a load factor.
+    units : Units
+        Units of the model, for the text.
 
     Examples
     --------
@@ -55,9 +61,22 @@ class Peak:
     row: int
     at: float
     beam: Beam
+    part: Part = "von_mises"
+    static: bool = True
+    units: Units = field(default=Units(), repr=False)
 
     def __iter__(self) -> Iterator[float]:
         return iter((self.value, self.arc_length, self.row))
+
+    def __repr__(self) -> str:
+        return f"Peak({self.part} {self.in_words if np.isfinite(self.value) else 'is not known'}, of {self.beam!r})"
+
+    @property
+    def in_words(self) -> str:
+        """Value and place with their units."""
+        unit = "" if self.part == "utilisation" else f" {self.units.of('Pa')}"
+        when = f"load factor {self.at:.4g}" if self.static else f"t = {self.at:.4g} {self.units.of('s')}"
+        return f"{self.value:.4g}{unit} at {self.arc_length:.4g} {self.units.of('m')} in row {self.row}, {when}"
 
 
 @dataclass(frozen=True)
@@ -115,7 +134,7 @@ class BeamStress:
         rows, stations = self.von_mises.shape
         told: tuple[Part, ...] = ("tension", "compression", "von_mises", "utilisation")
         known = [part for part in told if np.isfinite(getattr(self, part)).any()]
-        peaks = "; ".join(f"{part} {self._told(part)}" for part in known) or "none is known"
+        peaks = "; ".join(f"{part} {self.peak(part).in_words}" for part in known) or "none is known"
         return f"BeamStress({rows} rows, {stations} stations of {self.beam!r}; peaks: {peaks})"
 
     def _repr_html_(self) -> str:
@@ -151,16 +170,10 @@ class BeamStress:
         require_known(f"there is no stress {shown(part)}", part, PARTS)
         values = getattr(self, part)
         if not np.isfinite(values).any():
-            return Peak(np.nan, np.nan, -1, np.nan, self.beam)
+            return Peak(np.nan, np.nan, -1, np.nan, self.beam, part, self.static, self.units)
         row, station = np.unravel_index(np.nanargmax(_measured(part, values)), values.shape)
         place = float(self.arc_length[station]), int(row), float(self.at[row])
-        return Peak(float(values[row, station]), *place, self.beam)
-
-    def _told(self, part: Part) -> str:
-        """Return the peak of a part in words."""
-        peak, unit = self.peak(part), "" if part == "utilisation" else f" {self.units.of('Pa')}"
-        when = f"load factor {peak.at:.4g}" if self.static else f"t = {peak.at:.4g} {self.units.of('s')}"
-        return f"{peak.value:.4g}{unit} at {peak.arc_length:.4g} {self.units.of('m')} in row {peak.row}, {when}"
+        return Peak(float(values[row, station]), *place, self.beam, part, self.static, self.units)
 
 
 def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:

@@ -114,7 +114,8 @@ class Solution(Quantities, Pictures, Exports):
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"
-        span = f"{what} {self.at[0]:g} to {self.at[-1]:g}" if len(self.at) else "empty"
+        unit = "" if self.static else f" {self.model.unit('s')}"
+        span = f"{what} {self.at[0]:g} to {self.at[-1]:g}{unit}" if len(self.at) else "empty"
         unstable = "" if self.stability is None or self.stability.all() else f"{(~self.stability).sum()} unstable, "
         drift = "" if self.energy_drift is None else f"; {self.energy_drift}"
         return f"{type(self).__name__}({len(self.at)} states, {unstable}{span}, of {self.model!r}{drift})"

@@ -8,10 +8,10 @@ from beamfem.errors import ConvergenceError
 from beamfem.linalg.eigenpairs import Pairs, largest_pairs, nothing_known
 from beamfem.linalg.lapack import LinAlgError, eigh
 from beamfem.linalg.tangent import Tangent
+from beamfem.solve.modes.complete import complete
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import Pencil
 
-_CLUSTER = 1e-9  # eigenvalues with a smaller relative distance cannot be counted separately
 _SPARE = 4  # eigenvalues found beyond those asked for, so that a gap can be seen
 _SPREAD = 1e6  # largest ratio of eigenvalues that are computed together from the stiffness
 _SEARCHES = 8
@@ -23,8 +23,7 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
     """Return the lowest lambda (m,) [1/s^2], ascending, and vectors (unknown, m), of a symmetric pencil, m >= count.
 
     rigid (unknown, r): M-orthonormal vectors with lambda = 0, which the result does not contain; shift: below all
-    eigenvalues, if one is known. The eigenvalues below a gap after the last are counted by the pivots there. Raises
-    ConvergenceError if some were missed.
+    eigenvalues, if one is known. Raises ConvergenceError if some were missed.
     """
     n, available = pencil.mass.shape[0], pencil.size - rigid.shape[1]
     if count == 0:
@@ -47,17 +46,12 @@ def lowest_pairs(pencil: Pencil, count: int, rigid: np.ndarray, shift: float | N
         squares, vectors = _refined(pencil, *_sharpened(pencil, *pairs, start if lost > WRONG else None), correction)
         if len(squares) == available:
             return squares, vectors
-        below = count + int(np.argmax(np.diff(squares[count - 1 :])))
-        cut = 0.5 * (squares[below - 1] + squares[below])
-        if squares[below] - squares[below - 1] <= _CLUSTER * abs(cut):
-            missing = wanted
-        else:
-            missing = pencil.below(cut) - below - (rigid.shape[1] if cut > 0.0 else 0)
-            if missing == 0:
-                return squares[:below], vectors[:, :below]
-            missing = max(missing, _SPARE)
+        checked = complete(pencil, squares, count, rigid.shape[1])
+        if checked.missing == 0:
+            return squares[: checked.found], vectors[:, : checked.found]
+        missing = max(checked.missing, _SPARE)
         known = np.column_stack([known, more[1]])
-    below_cut = f"{np.sqrt(max(cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
+    below_cut = f"{np.sqrt(max(checked.cut, 0.0)) / (2.0 * np.pi):.6g} {pencil.system.model.unit('Hz')}"
     raise ConvergenceError(f"modes below {below_cut} were missed")
 
 

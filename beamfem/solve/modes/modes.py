@@ -10,7 +10,8 @@ from beamfem.assembly.equations import MIXED
 from beamfem.assembly.round_off import LOSES
 from beamfem.errors import InputError
 from beamfem.keywords import keywords_checked
-from beamfem.linalg.eigenpairs import Pairs, digits_for, general_pairs, nothing_known
+from beamfem.linalg.eigenpairs import Pairs, digits_for, nothing_known
+from beamfem.linalg.general_pairs import general_pairs
 from beamfem.linalg.tangent import UNROTATED
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model

@@ -96,6 +96,15 @@ class Pencil:
         """Return how many eigenvalues of a symmetric pencil are below a value (Sylvester's law of inertia)."""
         return self.shifted(value).factorised(self.system.rotated).negative_pivots
 
+    def below_exactly(self, value: float) -> int:
+        """Return how many eigenvalues of a symmetric pencil are below a value, however close some are to it.
+
+        With contributions, only the plain tangent is available, as in `lost`.
+        """
+        if self.system.connectors.items:
+            return self.below(value)
+        return self.exact(value).factorised(self.system.rotated).negative_pivots
+
     def lost(self, shift: float, factors: Factorised) -> float:
         """Return the relative error of a solution with the plain K - shift M, 0 if it is negligible.
 

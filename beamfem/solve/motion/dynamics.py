@@ -26,7 +26,7 @@ from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import courses, name_unresolved
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
-from beamfem.solve.start.start_state import start_state
+from beamfem.solve.start.start_state import last_state, start_state
 from beamfem.solve.start.system_to_solve import system_to_solve
 from beamfem.solve.start.transfer import transferred_turns
 from beamfem.validation import count, positive, shown
@@ -38,7 +38,7 @@ def simulate(
     duration: float,
     step: float,
     integrator: GeneralizedAlpha | Integrator | None = None,
-    start: State | None = None,
+    start: State | Solution | None = None,
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,
 ) -> Solution:
@@ -54,9 +54,10 @@ def simulate(
         Time step.
     integrator : GeneralizedAlpha or Integrator, optional
         Time integration method, by default `GeneralizedAlpha()`; an `Integrator` is a user-defined one.
-    start : State, optional
-        State to start from, such as the last one of a static solution; by default the reference at rest. Supports have
-        to hold its points where they are; velocities that they stop are lost at once, as in a plastic impact.
+    start : State or Solution, optional
+        State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
+        the reference at rest. It may come from a model with other supports, which have to hold its points where they
+        are; velocities that they stop are lost at once, as in a plastic impact.
     velocity : RigidVelocity or callable, optional
         Initial velocity: of a rigid motion, or a function of the reference position (2,) [m] of the axis, which returns
         (vx, vy) [m/s]. With a function, sections do not rotate at first, unless their element ties them to the axis.
@@ -104,6 +105,7 @@ def simulate(
     prescribed = prescribed_motion(system, ends)
     unresolved = name_unresolved(acting, ends, SIDE * step, second)
     state = np.zeros((4, model.size))
+    start = last_state(start)
     state[0] = start_state(system, start)
     state[1] = start_velocity(system, state[0], velocity, start)
     if start is not None or system.moved:

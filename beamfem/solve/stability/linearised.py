@@ -1,7 +1,7 @@
 """Critical load factors of the loading path linearised at its start."""
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, eigs
 
 from beamfem.assembly.equations import STATICS, linearise
@@ -9,6 +9,7 @@ from beamfem.assembly.system import System
 from beamfem.errors import InputError
 from beamfem.linalg.eigenpairs import MOST_RESTARTS, Pairs, first_that_works, first_vector, lanczos_vectors
 from beamfem.linalg.lapack import eig, eigh, qr
+from beamfem.linalg.repeated import repeated
 from beamfem.linalg.tangent import UNROTATED, Factorised, Tangent
 from beamfem.solve.modes.mode_stiffness import stiffness_of_modes
 from beamfem.solve.modes.pencil import is_symmetric
@@ -39,7 +40,7 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
             "flutter before its tangent is singular. Look at the growth of solve_modes(model, about=state) instead"
         )
     factors = tangent.factorised(system.rotated)
-    shapes = _softened(csr_array(rate), factors, count)
+    shapes = _softened(csr_array(rate), factors, count, _NONE * moved)
     modes = np.zeros((shapes.shape[1], len(p)))
     modes[:, system.free_dofs] = shapes.T
     correction = np.zeros_like(p)
@@ -52,27 +53,32 @@ def linearised_loads(system: System, p: np.ndarray, load_factor: float, slope: n
     return np.asarray(load_factor + 1.0 / rates[rates > _NONE * moved][:count])
 
 
-def _softened(rate: csr_array, factors: Factorised, count: int) -> np.ndarray:
+def _softened(rate: csr_array, factors: Factorised, count: int, none: float) -> np.ndarray:
     """Return a basis (unknown, m) of the shapes that lose the largest fraction of their stiffness per unit load.
 
-    The inverse of the tangent times -K' is not symmetric, but it contains no sums of large terms that cancel.
+    none: fraction that is round-off. The inverse of the tangent times -K' is not symmetric, but it contains no sums of
+    large terms that cancel.
     """
     n = rate.shape[0]
-    wanted = count + _SPARE
 
     def lost(x: np.ndarray) -> np.ndarray:
         return -factors.solve(rate @ x)
 
-    def few(vectors: int) -> Pairs:
-        operator = LinearOperator((n, n), matvec=lost, dtype=float)
-        options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
-        return eigs(operator, wanted, which="LR", **options)
+    def search(basis: np.ndarray, wanted: int) -> Pairs:
+        def besides(x: np.ndarray) -> np.ndarray:
+            return lost(x - basis @ (basis.T @ x))
 
-    def dense() -> Pairs:
-        return eig(np.column_stack([lost(column) for column in np.eye(n)]))
+        def few(vectors: int) -> Pairs:
+            operator = LinearOperator((n, n), matvec=besides, dtype=float)
+            options = {"ncv": lanczos_vectors(vectors, wanted, n), "maxiter": MOST_RESTARTS, "v0": first_vector(n)}
+            return eigs(operator, wanted, which="LR", **options)
 
-    values, x = first_that_works(dense, few, n, wanted + 1)
-    x = x[:, np.argsort(-values.real, kind="stable")[: wanted + 1]]
+        def dense() -> Pairs:
+            return eig(np.column_stack([besides(column) for column in np.eye(n)]))
+
+        return first_that_works(dense, few, n, wanted + 1)
+
+    x = repeated(search, lost, csr_array(eye_array(n)), count + _SPARE, np.real, none)[1][:, : count + _SPARE + 1]
     # close eigenvalues may appear as a complex pair, whose real and imaginary parts span their shapes
     parts = np.column_stack([x.real, x.imag])
     basis, triangle, _ = qr(parts, mode="economic", pivoting=True)

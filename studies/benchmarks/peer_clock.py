@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_SHORTEST = 5e-3  # [s] of a turn; shorter tasks are repeated within it
+_SHORTEST = 0.05  # [s] of a turn; shorter tasks are repeated within it, so that refilling the caches does not count
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,43 @@
+"""Searches for buckling of random everyday models: how they end, and what they compute on the way."""
+
+import pytest
+from random_models import random_recipe
+
+import beamfem as bf
+from beamfem.linalg import eigenpairs
+from beamfem.solve.stability import linearised
+
+
+@pytest.mark.parametrize("seed", [107, 123, 147])
+def test_a_search_ends_where_the_beam_would_be_turned_inside_out(seed):
+    """Arches that are led far away from their supports, whose stable path was said to be lost there."""
+    found = bf.solve_buckling(random_recipe(seed).build().model, 3)
+    assert len(found) == 0
+    assert found.status is bf.Status.STOPPED
+    assert "would be turned inside out" in found.ended
+    with pytest.raises(bf.ConvergenceError, match="inside out") as caught:
+        bf.trace_equilibrium(found.model, until=50.0)
+    path = caught.value.solution
+    assert path.stable.all()
+    assert found.ended == f"beyond load factor {path.load_factor[-1]:.6g} the beam would be turned inside out"
+
+
+def test_a_search_along_a_path_computes_a_few_modes_only(monkeypatch):
+    """167 unknowns: threads of BLAS took minutes for all modes of each point on a busy computer."""
+    solved = []
+
+    def counted(solve):
+        def called(matrix, *arguments, **options):
+            solved.append(len(matrix))
+            return solve(matrix, *arguments, **options)
+
+        return called
+
+    for where, names in ((eigenpairs, ("eig", "eigh", "cholesky")), (linearised, ("eig", "eigh"))):
+        for name in names:
+            monkeypatch.setattr(where, name, counted(getattr(where, name)))
+    model = random_recipe(2).build().model
+    found = bf.solve_buckling(model)
+    path = bf.trace_equilibrium(model, until=lambda state: state.load_factor > found.load_factors[0], points=60)
+    assert found.load_factors == pytest.approx([path.limit_points[0].load_factor], rel=1e-8)
+    assert max(solved) < 20

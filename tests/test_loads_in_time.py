@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.solve.motion.time_steps import stretches
-from beamfem.solve.motion.unresolved import Course
+from beamfem.solve.start.courses import Course
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 

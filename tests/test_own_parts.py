@@ -7,7 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.motion.unresolved import courses
+from beamfem.solve.start.courses import courses
 from tests.own_parts import Bracket, Growth, Guide, HalfWave, Traction, Weld
 
 ELEMENTS = [bf.CRBF(order=2), bf.ANCFCRBF(), bf.ANCF(forces=bf.Structural()), bf.ShearRigid()]

@@ -16,10 +16,12 @@ from beamfem.once import cached_property
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
+from beamfem.solve.start.courses import Course, courses
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
 _LOAD_STEP = 2.0
+_WIDTHS = np.linspace(1.0, 0.1, 10).tolist()  # of the load factor, over which effects of loads are compared
 _STEEPER = 2.0  # ratio of the effect of loads per load factor further on to that at the start of a path
 _GROWS_WELL = 0.3  # fraction of the load factor in the unit tangent
 _INVERSE_ITERATIONS = 30
@@ -72,6 +74,11 @@ class Continuation:
     newton: Newton
     load_scale: float
     load_step: float
+
+    @cached_property
+    def courses(self) -> list[Course]:
+        """Functions of the load factor that act on the model."""
+        return courses(self.system)
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -280,12 +287,13 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     factors = tangent.factorised(system.rotated)
     mode = plain.softest(factors)
     stiffness = 1.0 / abs(plain.softness(factors, mode)) / float(np.max(np.abs(mode) / plain.scale)) ** 2
-    per_load = _reach(plain, p, load_factor, stiffness, 1e-6)
+    per_load, flat = _reach(plain, p, load_factor, stiffness, 1e-6), False
     if system.varying or any(callable(item.value) for item in system.prescribed) or per_load == 0.0:
-        # an amplitude may start with a slope near zero: then its effect up to load factor 1 counts
+        # an amplitude may start with a slope near zero: then its largest effect up to load factor 1 counts
         with suppress(InputError):  # from a function that is not defined so far
-            further = _reach(plain, p, load_factor, stiffness, 1.0)
-            per_load = further if further > _STEEPER * per_load else per_load
+            further = max(_reach(plain, p, load_factor, stiffness, width) for width in _WIDTHS)
+            flat = further > _STEEPER * per_load
+            per_load = further if flat else per_load
     soft = 1.0 / per_load if per_load > 0.0 else 1.0
     if not np.finfo(float).tiny <= soft * soft < np.inf:
         raise ConvergenceError(
@@ -297,7 +305,8 @@ def begin(system: System, p: np.ndarray, load_factor: float, newton: Newton) -> 
     y = np.append(p, load_factor)
     moving = Continuation(system, newton, soft, soft).linearised(y, growing).tangent[-1] / soft
     balanced = soft * moving / np.sqrt(max(1.0 - moving**2, _LARGEST_RATIO**-2))
-    line = Continuation(system, newton, max(balanced, soft), _LOAD_STEP * soft)
+    # the first tangent of a flat start says nothing about the movement further on
+    line = Continuation(system, newton, soft if flat else max(balanced, soft), _LOAD_STEP * soft)
     return line, line.linearised(y, growing)
 
 

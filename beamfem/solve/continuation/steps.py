@@ -1,10 +1,12 @@
 """Steps along an equilibrium path: prediction, correction, acceptance or rejection, and the length of the next one."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
+from beamfem.errors import InputError
 from beamfem.solve.continuation.bifurcations import Crossing, bifurcations
 from beamfem.solve.continuation.continuation import Continuation, Corrected, PathPoint
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
@@ -15,6 +17,7 @@ _LEAST_SHARE = 0.1  # of the whole movement: the least share that counts as defo
 _LARGEST_GROWTH = 0.5  # of a large load factor, in one step
 _WANTED_TURN = 0.2  # [rad] by which the tangent of the path should turn in a step
 _LARGEST_TURN = 0.5
+_OVER = 1.1  # of the way to the last load factor, so that a step passes it
 _LARGEST_PRESCRIBED_TURN = 1.0  # [rad] of a support in a step
 _LARGEST_CORRECTION = 0.5  # of the step
 # An arc deviates from its tangent by half the angle that the tangent turns, or by a third to two thirds of it if the
@@ -50,12 +53,13 @@ class Refused:
     iterations: int
 
 
-def longest_step(line: Continuation, point: PathPoint) -> float:
-    """Return the longest step from a point.
+def longest_step(line: Continuation, point: PathPoint, end: float | None = None) -> float:
+    """Return the longest step from a point; end: the load factor at which the path ends, if it has one.
 
     It bounds the movement, the change of the load factor and the rotation of a support, since gradients elsewhere on
-    the beam cannot distinguish a full turn from none. A structure on soft springs that drifts as a whole is bounded by
-    the load only: a translation, however long, does not lead to another path.
+    the beam cannot distinguish a full turn from none. What functions of the load factor do within a step must show at
+    its end. A structure on soft springs that drifts as a whole is bounded by the load only: a translation, however
+    long, does not lead to another path.
     """
     load_fraction = abs(float(point.tangent[-1])) / line.load_scale
     moving = np.sqrt(max(1.0 - load_fraction**2, 0.0)) * _deforming(line, point.tangent)
@@ -64,6 +68,11 @@ def longest_step(line: Continuation, point: PathPoint) -> float:
     before, slope = point.load_factor, float(point.tangent[-1])
     while line.system.largest_turn(before, before + size * slope) > _LARGEST_PRESCRIBED_TURN and size > _SMALLEST:
         size *= 0.5
+    if line.courses and end is not None and (end - before) * slope > 0.0:
+        size = min(size, _OVER * (end - before) / slope)
+    with suppress(InputError):  # from a function that is not defined so far
+        while any(course.bulges(before, before + size * slope) for course in line.courses) and size > _SMALLEST:
+            size *= 0.5
     return size
 
 

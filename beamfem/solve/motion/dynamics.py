@@ -23,7 +23,8 @@ from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_sup
 from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lack
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
-from beamfem.solve.motion.unresolved import courses, name_unresolved
+from beamfem.solve.motion.unresolved import name_unresolved
+from beamfem.solve.start.courses import courses
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import last_state, start_state

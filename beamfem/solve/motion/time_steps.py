@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.solve.motion.unresolved import Course
+from beamfem.solve.start.courses import Course
 
 _NEAR = 1e-4  # of a step: a kink this close to the end of a step is taken to be there
 SIDE = 1e-9  # of a step: distance from a kink at which a load is evaluated on either side of it

@@ -200,7 +200,7 @@ def _step(
 
     Raises ConvergenceError with the most frequent reason for rejections, since round-off decides the shortest steps.
     """
-    size = min(size, longest_step(line, point))
+    size = min(size, longest_step(line, point, end))
     reasons: list[str] = []
     while True:
         outcome = take_step(line, point, size)

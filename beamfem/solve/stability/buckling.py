@@ -18,7 +18,7 @@ from beamfem.results.status import Statistics, Status
 from beamfem.solve.modes.shapes import largest_translation, upright
 from beamfem.solve.stability.critical import LIMIT_POINT, Critical, critical_points
 from beamfem.solve.stability.linearised import linearised_loads
-from beamfem.solve.stability.loading_path import LoadingPath, PathLostError
+from beamfem.solve.stability.loading_path import InvertedError, LoadingPath, PathLostError
 from beamfem.solve.stability.movement import largest_movement
 from beamfem.solve.stability.stable_start import stable_start
 from beamfem.solve.start.mechanisms import require_support
@@ -61,7 +61,8 @@ class Buckling:
     ended : str
         Why there are no more critical points.
     status : Status
-        STOPPED if there may be more: the path was lost, or the search ended at its limits of movement, load or length.
+        STOPPED if there may be more: the path was lost, the beam would be turned inside out, or the search ended at its
+        limits of movement, load or length.
 
     Examples
     --------
@@ -302,9 +303,13 @@ def _criticals(path: LoadingPath, count: int, farthest: float) -> tuple[list[Cri
             following = path.advance(current)
             more, current = critical_points(path, current, following)
         except PathLostError as error:
-            if not path.shorten(current):
-                return criticals, str(error), Status.STOPPED
-            continue
+            if path.shorten(current):
+                continue
+            if isinstance(error, InvertedError):
+                path.lost = False
+                beyond = f"beyond load factor {current.load_factor:.6g} the beam would be turned inside out"
+                return criticals, beyond, Status.STOPPED
+            return criticals, str(error), Status.STOPPED
         except ConvergenceError as error:
             path.lost = True
             return criticals, str(error), Status.STOPPED

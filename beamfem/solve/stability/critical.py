@@ -161,7 +161,10 @@ class Search:
         raise PathLostError("a change of stability was not found again")
 
     def _read(self, window: Window, zeros: list[Zero]) -> list[Critical]:
-        """Return the critical points at the zeros."""
+        """Return the critical points at the zeros, in the order of the path.
+
+        A bifurcation at the load factor of a limit point comes before it, since there the path ends.
+        """
         turn = window.turn()
         limit = None if turn is None else min(zeros, key=lambda zero: abs(zero.at - turn))
         result = []
@@ -172,8 +175,11 @@ class Search:
             else:
                 self._require_crossing(window, zero, mode)
             y = window.weights(at) @ window.rows
-            result.append(Critical(kind, float(y[-1]), y[:-1], mode, np.inf))
-        return sorted(result, key=lambda critical: critical.load_factor)
+            result.append((at, Critical(kind, float(y[-1]), y[:-1], mode, np.inf)))
+        if turn is not None:
+            least = (1.0 - _EXACT) * max(critical.load_factor for _, critical in result)
+            result = [(turn if critical.load_factor >= least else at, critical) for at, critical in result]
+        return [critical for _, critical in sorted(result, key=lambda row: (row[0], row[1].kind == LIMIT_POINT))]
 
     def _require_crossing(self, window: Window, zero: Zero, mode: np.ndarray) -> None:
         """Raise PathLostError if the path bends aside along the mode, on a hyperbola, instead of being crossed.

@@ -13,7 +13,7 @@ from beamfem.solve.continuation.continuation import PathPoint, begin
 from beamfem.solve.continuation.steps import longest_step, too_small
 from beamfem.solve.modes.lowest import lowest_pairs
 from beamfem.solve.modes.pencil import Pencil
-from beamfem.solve.newton.iteration import Newton
+from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.stability.movement import largest_displacement, size_of
 
 _ITERATIONS = 15
@@ -26,6 +26,10 @@ _REFUSALS = 12  # of steps from one point in which critical points cannot be dis
 
 class PathLostError(BeamfemError):
     """The path cannot be followed any further; the message gives the reason."""
+
+
+class InvertedError(PathLostError):
+    """An equilibrium is turned inside out: the path ends before it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +52,20 @@ class LoadingPath:
         self._shift = 0.0
 
     def advance(self, point: PathPoint) -> PathPoint:
-        """Return the next point of the path, by a step as long as its curvature allows. Raises PathLostError."""
+        """Return the next point of the path, by a step as long as its curvature allows.
+
+        Raises InvertedError, PathLostError.
+        """
         size = min(self.size, longest_step(self.line, point))
-        reason = f"beyond load factor {point.load_factor:.6g} its steps are so short that round-off hides them"
+        lost = PathLostError(
+            f"beyond load factor {point.load_factor:.6g} its steps are so short that round-off hides them"
+        )
         while not too_small(self.line, point, size):
             change = size * point.tangent
             try:
                 following = self.corrected(point.y + change, point.y, self.line.plane(point.tangent), point.tangent)
             except PathLostError as error:
-                reason = str(error)
+                lost = error
             else:
                 aside = self.line.length(following.y - point.y - change)
                 turn = float(np.arccos(np.clip(self.line.dot(following.tangent, point.tangent), -1.0, 1.0)))
@@ -64,10 +73,10 @@ class LoadingPath:
                     self.size = size
                     self._next_size = size * min(_GROWTH, 0.5 * _LARGEST_TURN / max(turn, 1e-12))
                     return following
-                reason = "the path turns too sharply"
+                lost = PathLostError("the path turns too sharply")
             size *= 0.5
         self.size = size
-        raise PathLostError(reason)
+        raise lost
 
     def shorten(self, point: PathPoint) -> bool:
         """Shorten the next step; return whether it is still worth taking."""
@@ -110,9 +119,11 @@ class LoadingPath:
 
     def corrected(self, start: np.ndarray, base: np.ndarray, normal: np.ndarray, like: np.ndarray) -> PathPoint:
         """Return the point of the path in the plane through `start` normal to `normal` (n + 1,), with stresses
-        predicted from `base` and the tangent in the sense of `like`. Raises PathLostError.
+        predicted from `base` and the tangent in the sense of `like`. Raises InvertedError, PathLostError.
         """
         corrected = self.line.correct(start, self.line.stresses(base, start - base), normal)
+        if corrected.ended is Termination.INVERTED:
+            raise InvertedError(corrected.ended.value)
         if not corrected.ended.good:
             raise PathLostError(corrected.ended.value)
         try:

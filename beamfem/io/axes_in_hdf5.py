@@ -1,12 +1,13 @@
 """Axes of beams in a results file, with names and units as in netCDF, for programs without beamfem."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
+from beamfem.io.scaled_arrays import scale, variable, write
 from beamfem.results.along import QUANTITIES, AxisPoints, rotation, section_forces
-from beamfem.results.many_beams import VALUES, together
+from beamfem.results.many_beams import VALUES, Together, together
 from beamfem.results.solution import Solution
 
 AXES = "beams"
@@ -26,24 +27,26 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
     meshes = solution.model.meshes
     small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
     for group in together(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
-        axes = [_Axis(file, solution, *one, small) for one in zip(group.numbers, group.single, strict=True)]
-        block = max(VALUES // sum(group.counts), 1)
-        for first in range(0, len(solution), block):
-            rows = slice(first, min(first + block, len(solution)))
-            table = _table(solution, group.points, rows, small)
-            for axis, values in zip(axes, group.parted(table, 2), strict=True):
-                axis.write(rows, values)
-            require_written()
+        # several beams are together only where one table holds all rows
+        tables = _tables(solution, group, small) if len(group.numbers) == 1 else [*_tables(solution, group, small)]
+        for place, number in enumerate(group.numbers):
+            axis = _Axis(file, solution, number, group.single[place], small)
+            for rows, parts in tables:
+                axis.write(rows, parts[place])
+                require_written()
 
 
-def _table(solution: Solution, points: AxisPoints, rows: slice, forces: bool) -> np.ndarray:
-    """Return x, y and rotation, and the section forces if they are wanted (3 or 6, rows, points)."""
-    r = points.positions(solution.p[rows])[0]
-    values = [r[..., 0], r[..., 1], rotation(points, solution, rows)]
-    if forces:
-        found = section_forces(points, solution, rows)
-        values += [found[name] for name in _FORCES]
-    return np.stack(values)
+def _tables(solution: Solution, group: Together, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
+    """Yield x, y and rotation, and section forces if wanted (3 or 6, rows, points) of each beam, with their rows."""
+    points, block = group.points, max(VALUES // sum(group.counts), 1)
+    for first in range(0, len(solution), block):
+        rows = slice(first, min(first + block, len(solution)))
+        r = points.positions(solution.p[rows])[0]
+        values = [r[..., 0], r[..., 1], rotation(points, solution, rows)]
+        if forces:
+            found = section_forces(points, solution, rows)
+            values += [found[name] for name in _FORCES]
+        yield rows, group.parted(np.stack(values), 2)
 
 
 class _Axis:
@@ -58,42 +61,24 @@ class _Axis:
         group.attrs["element"] = mesh.beam.element.name
         if mesh.beam.name is not None:
             group.attrs["name"] = mesh.beam.name
-        rows, arc = len(solution), points.arc_length
-        at = _scale(group, over, solution.at, over.replace("_", " "), of_rows)
-        along = _scale(group, "arc_length", arc[self._ends], "arc length in the reference", unit("m"))
+        arc = points.arc_length
+        at = scale(group, over, solution.at, over.replace("_", " "), of_rows)
+        along = scale(group, "arc_length", arc[self._ends], "arc length in the reference", unit("m"))
         self._forces: list[Any] = []
         if forces:
-            ends = _scale(group, "element_end", arc, "arc length of the ends of each element", unit("m"))
+            ends = scale(group, "element_end", arc, "arc length of the ends of each element", unit("m"))
             about = ((name, QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in _FORCES)
-            self._forces = [_variable(group, *each, (rows, len(arc)), (at, ends)) for each in about]
+            self._forces = [variable(group, *each, (at, ends)) for each in about]
         moved = (
             ("x", "position x", unit("m")),
             ("y", "position y", unit("m")),
             ("rotation", "rotation of the section", "rad"),
         )
-        self._moved = [_variable(group, *each, (rows, len(self._ends)), (at, along)) for each in moved]
+        self._moved = [variable(group, *each, (at, along)) for each in moved]
 
     def write(self, rows: slice, table: np.ndarray) -> None:
         """Write some rows of a `_table`."""
-        for variable, values in zip(self._moved, table, strict=False):
-            variable[rows] = values[:, self._ends]
-        for variable, values in zip(self._forces, table[3:], strict=True):
-            variable[rows] = values
-
-
-def _scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
-    scale = _described(group.create_dataset(name, data=values), meaning, unit)
-    scale.make_scale(name)
-    return scale
-
-
-def _variable(group: Any, name: str, meaning: str, unit: str, shape: tuple[int, int], scales: tuple[Any, Any]) -> Any:
-    variable = _described(group.create_dataset(name, shape, np.float64), meaning, unit)
-    for dimension, scale in zip(variable.dims, scales, strict=True):
-        dimension.attach_scale(scale)
-    return variable
-
-
-def _described(dataset: Any, meaning: str, unit: str) -> Any:
-    dataset.attrs["long_name"], dataset.attrs["units"] = meaning, unit
-    return dataset
+        for moved, values in zip(self._moved, table, strict=False):
+            write(moved, values[:, self._ends], rows)
+        for force, values in zip(self._forces, table[3:], strict=True):
+            write(force, values, rows)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,16 +15,17 @@ from beamfem.once import kept_with
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
-_VALUES = 200_000  # most values that are kept
+_VALUES = 200_000  # most values that are computed at once
+_CHUNKS = 10  # most of them that are kept
 Values = Callable[["Solution", BeamMesh], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """The values of the beams computed last, by number, and how many numbers there are of an element."""
+    """The values of like beams by the first of them, the latest last, and how many values an element has."""
 
     per_element: int
-    beams: dict[int, np.ndarray]
+    chunks: dict[int, dict[int, np.ndarray]]
 
 
 _KEPT = WeakKeyDictionary[Any, dict[Values, _Kept]]()  # of each solution
@@ -35,19 +36,20 @@ def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
 
     From the second beam on, those of its neighbours are computed with it and kept, as far as they are few.
     """
-    kept = _KEPT.setdefault(solution, {})
-    mesh = solution.model.meshes[number]
-    if values not in kept:
+    by_values, mesh = _KEPT.setdefault(solution, {}), solution.model.meshes[number]
+    if values not in by_values:
         result = values(solution, mesh)
-        kept[values] = _Kept(result.size // mesh.elements, {})
+        by_values[values] = _Kept(result.size // mesh.elements, {})
         return result
-    per_element = kept[values].per_element
-    if number not in kept[values].beams:
-        chosen = _neighbours(solution.model, number, max(1, _VALUES // max(1, per_element * mesh.elements)))
-        if len(chosen) == 1:
-            return values(solution, mesh)
-        kept[values] = _Kept(per_element, _of_beams(solution, chosen, values))
-    return kept[values].beams[number].copy()  # the user may change what it gets
+    kept = by_values[values]
+    chosen = _neighbours(solution.model, number, _VALUES // max(1, kept.per_element))
+    if len(chosen) == 1:
+        return values(solution, mesh)
+    if number not in kept.chunks.get(chosen[0], {}):
+        kept.chunks[chosen[0]] = _of_beams(solution, chosen, values)
+        if len(kept.chunks) > _CHUNKS:
+            del kept.chunks[next(iter(kept.chunks))]
+    return kept.chunks[chosen[0]][number].copy()  # the user may change what it gets
 
 
 def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[int, np.ndarray]:
@@ -59,13 +61,26 @@ def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[
     return dict(zip(numbers, np.split(joined, stations * elements[:-1], axis=-1), strict=True))
 
 
-def _neighbours(model: Model, number: int, most: int) -> list[int]:
-    """Return the numbers of up to `most` beams like one, with its own."""
-    group, place = _places(model)[number]
-    return group[place - place % most :][:most]
+def _neighbours(model: Model, number: int, elements: int) -> list[int]:
+    """Return the numbers of beams like one, with its own, that have up to so many elements, or only one."""
+    place = _places(model)[number]
+    most = max(1, elements // place.largest)
+    return place.group[place.at - place.at % most :][:most]
+
+
+class _Place(NamedTuple):
+    """The numbers of beams that are like one, its place among them, and the most elements that one of them has."""
+
+    group: list[int]
+    at: int
+    largest: int
 
 
 @kept_with
-def _places(model: Model) -> dict[int, tuple[list[int], int]]:
-    """Return the numbers of the beams that are like each beam, and its place among them."""
-    return {number: (group, place) for group in alike(model) for place, number in enumerate(group)}
+def _places(model: Model) -> dict[int, _Place]:
+    """Return the place of each beam."""
+    result = {}
+    for group in alike(model):
+        largest = max(model.meshes[number].elements for number in group)
+        result |= {number: _Place(group, at, largest) for at, number in enumerate(group)}
+    return result

@@ -151,7 +151,7 @@ class Connectors:
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
-    return Connectors(model, static, _checked_connectors(model))
+    return Connectors(model, static, _checked_connectors(model) if model.connectors else ())
 
 
 @kept_with

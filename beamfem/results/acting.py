@@ -100,7 +100,7 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
     """
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
-        _along(rows, mesh, elements),
+        _along(rows, mesh, elements, e),
         _spread(rows, mesh, elements, e),
     ]
     joined = {
@@ -115,6 +115,8 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
 
     The moment of an interpolated density is a polynomial whose degree is higher by that of the field.
     """
+    if not len(acting.rule):
+        return acting
     field = mesh.beam.element.field
     extra = max(field.degree, field.director_degree)
     parts = []
@@ -149,9 +151,11 @@ def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, ac
     return Acting(element, xi, rule, position, direction, mass * free - first * turn, first * free - rotary * turn)
 
 
-def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return forces per length that keep their direction."""
     load = rows.body[:, _beams(rows, mesh, elements), 2:]
+    if not load.any():
+        return _nothing(e)
     where, xi, weight = length_points(mesh, elements)
     element = _numbers(elements, where)
     force = load[:, element] * weight[:, None]
@@ -166,6 +170,8 @@ def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> 
     points, own = actions.points, mesh.in_block(elements)
     order = np.argsort(own)
     chosen = actions.spread_on(own[order])
+    if not len(chosen):
+        return _nothing(e)
     element = order[np.searchsorted(own, points.element[chosen], sorter=order)]
     position, direction = points.position[chosen], points.direction[chosen]
     values = rows.values[mesh.block][:, chosen]

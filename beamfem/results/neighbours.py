@@ -79,7 +79,7 @@ class _Place(NamedTuple):
 @kept_with
 def _places(model: Model) -> dict[int, _Place]:
     """Return the place of each beam."""
-    result = {}
+    result = dict[int, _Place]()
     for group in alike(model):
         largest = max(model.meshes[number].elements for number in group)
         result |= {number: _Place(group, at, largest) for at, number in enumerate(group)}

@@ -153,7 +153,7 @@ def test_kept_values_are_bounded(monkeypatch):
     original = neighbours.join
     monkeypatch.setattr(neighbours, "join", lambda meshes: largest.append(len(meshes)) or original(meshes))
     monkeypatch.setattr(neighbours, "_VALUES", 5 * 3 * whole[0].size)
-    monkeypatch.setattr(neighbours, "_CHUNKS", 2)
+    monkeypatch.setattr(neighbours, "_MOST", 10 * 3 * whole[0].size)
     again = _fresh(solution)
     for beam, moment in zip(solution.model.beams[::-1], whole[::-1], strict=True):
         assert np.array_equal(again.section_forces(beam).moment, moment)

@@ -52,7 +52,8 @@ def together(model: Model, points: Sequence[AxisPoints], rows: int) -> list[Toge
         for pieces, own in by_pieces.items():
             sizes = [(pieces + 1) * points[number].mesh.elements for number in own]
             result += [
-                Together(part, [points[number] for number in part]) for part in _parts(own, sizes, VALUES // rows)
+                Together(part, [points[number] for number in part])
+                for part in _parts(own, sizes, VALUES // max(rows, 1))
             ]
     return result
 

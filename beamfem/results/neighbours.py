@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
 _VALUES = 200_000  # most values that are computed at once
-_CHUNKS = 10  # most of them that are kept
+_BEAMS = 64  # most beams; more would hardly save time, but take memory where only a few beams are asked for
+_MOST = 1_000_000  # most values that are kept
 Values = Callable[["Solution", BeamMesh], np.ndarray]
 
 
@@ -47,8 +48,10 @@ def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
         return values(solution, mesh)
     if number not in kept.chunks.get(chosen[0], {}):
         kept.chunks[chosen[0]] = _of_beams(solution, chosen, values)
-        if len(kept.chunks) > _CHUNKS:
-            del kept.chunks[next(iter(kept.chunks))]
+        chunk_sizes = {first: sum(own.size for own in chunk.values()) for first, chunk in kept.chunks.items()}
+        while sum(chunk_sizes.values()) > _MOST and len(chunk_sizes) > 1:
+            oldest = next(iter(chunk_sizes))
+            del kept.chunks[oldest], chunk_sizes[oldest]
     return kept.chunks[chosen[0]][number].copy()  # the user may change what it gets
 
 
@@ -64,7 +67,7 @@ def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[
 def _neighbours(model: Model, number: int, elements: int) -> list[int]:
     """Return the numbers of beams like one, with its own, that have up to so many elements, or only one."""
     place = _places(model)[number]
-    most = max(1, elements // place.largest)
+    most = max(1, min(_BEAMS, elements // place.largest))
     return place.group[place.at - place.at % most :][:most]
 
 

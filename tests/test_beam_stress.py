@@ -5,7 +5,7 @@ import pytest
 from section_laws import LinearLaw
 
 import beamfem as bf
-from beamfem.io.samples import body
+from beamfem.io.samples import bodies
 
 STEEL = bf.Material(2e11, 0.3, 7800.0, strength=250e6)
 FORCE = 30.0
@@ -118,7 +118,7 @@ def test_layers_have_strengths_of_their_own():
     strip = bf.Layered([bf.Layer(STEEL, 0.01), bf.Layer(weak, 0.02), bf.Layer(STEEL, 0.01)], 0.02)
     own, solution = cantilever(strip, material=None)
     found = solution.stresses(own)
-    stations = body(solution.model.meshes[0])
+    stations = bodies(solution.model)
     layers = [layer.arrays(solution, slice(-1, None)) for layer in stations]
     assert found.tension[-1].max() == pytest.approx(max(part["stress_xx"].max() for part in layers), rel=1e-9)
     used = [

@@ -10,7 +10,7 @@ from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import system_of
 from beamfem.element.coordinates import Gradients, ShearFree
 from beamfem.element.fields import Lagrange
-from beamfem.io.samples import body
+from beamfem.io.samples import bodies
 from beamfem.results.solution import Solution
 from beamfem.results.status import Statistics
 
@@ -254,7 +254,7 @@ def test_layers_of_a_bimetal_strain_each_other_in_balance():
     """Stresses on its faces: E (eps - y kappa - alpha T), whose normal force vanishes."""
     own = straight(material=None, section=bimetal(), length=0.1)
     solution = bf.solve_static(clamped(own, bf.Temperature(own, change=100.0)))
-    found = [layer.arrays(solution, slice(-1, None))["stress_xx"][0] for layer in body(solution.model.meshes[0])]
+    found = [layer.arrays(solution, slice(-1, None))["stress_xx"][0] for layer in bodies(solution.model)]
     lower, upper = (np.array([part.min(), part.max()]) for part in found)
     kappa, stretch = timoshenko(100.0), 0.0
     modulus, alpha, low = np.array([2e11, 1e11]), np.array([1.2e-5, 1.9e-5]), np.array([-0.001, 0.0])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.io.samples import centreline
+from beamfem.io.samples import centrelines
 from beamfem.io.table import arrays
 
 MOMENT = 4.0
@@ -110,7 +110,7 @@ def test_tables_and_paraview_files_have_the_turns():
     (beam,), motion = spun(bf.ANCF(), 500)
     expected = motion.rotation(beam.end)
     assert arrays(motion, beam)[0]["rotation"][1][:, -1] == pytest.approx(expected, abs=1e-9)
-    (cells,) = centreline(motion.model.meshes[0])
+    (cells,) = centrelines(motion.model)
     for rows in (slice(0, 3), slice(2, 3)):
         assert cells.arrays(motion, rows)["rotation"][:, -1] == pytest.approx(expected[rows], abs=1e-9)
 

@@ -130,7 +130,7 @@ def test_strain_belongs_to_the_height_of_its_point():
     element = bf.CRBF(3)
     beam = bf.Beam(bf.Line((0, 0), (1, 0)), 2, element, bf.Rectangle(0.02, HEIGHT), bf.Material(2e6, 0.0, 1.0))
     solution = bf.solve_static(bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointMoment(beam.end, 1e-3)]))
-    (samples,) = cells.body(solution.model.meshes[0])
+    (samples,) = cells.bodies(solution.model)
     data = samples.arrays(solution)
     strain, stress = data["green_strain_xx"][-1].reshape(2, 12), data["stress_xx"][-1].reshape(2, 12)
     assert (strain[:, SIDE < 0.0] > 0.0).all()
@@ -140,7 +140,7 @@ def test_strain_belongs_to_the_height_of_its_point():
 
 def test_velocity_is_the_rate_of_the_points():
     solution = swing(bf.ANCFCRBF(), duration=0.02, step=1e-4)
-    (samples,) = cells.body(solution.model.meshes[0])
+    (samples,) = cells.bodies(solution.model)
     data = samples.arrays(solution)
     rate = (data["points"][101] - data["points"][99]) / 2e-4
     # the integrator's velocity and the central difference both are of second order in the step

@@ -8,6 +8,7 @@ from scipy.linalg import LinAlgError
 
 from beamfem.errors import InputError
 from beamfem.model.contribution import At, Contribution, Remembering
+from beamfem.once import cached_property
 from beamfem.validation import called
 
 COMPLEX_STEP = 1e-30  # may be this small, because nothing is subtracted
@@ -29,16 +30,31 @@ class Connector:
     memory: np.ndarray
     reference: np.ndarray
 
-    @property
+    @cached_property
     def all(self) -> np.ndarray:
         """Numbers (3 m + k,) of all coordinates that the force belongs to."""
         return np.concatenate([self.dofs, self.own])
+
+    @cached_property
+    def alone(self) -> "Connector":
+        """The same contribution with coordinates, multipliers and history variables numbered from 0, in this order."""
+        dofs, own, memory = np.split(np.arange(self.variables), np.cumsum([len(self.dofs), len(self.own)]))
+        return Connector(self.item, dofs, own, memory, self.reference)
+
+    @property
+    def variables(self) -> int:
+        """Number of coordinates, multipliers and history variables."""
+        return len(self._used)
+
+    @cached_property
+    def _used(self) -> np.ndarray:
+        return np.concatenate([self.dofs, self.own, self.memory])
 
     @property
     def name(self) -> str:
         return type(self.item).__name__
 
-    @property
+    @cached_property
     def units(self) -> np.ndarray:
         """Natural unit (3 m,) of each coordinate: the length [m] of the longest connected beam, and 1 rad."""
         size = max(point.beam.curve.length for point in self.item.points)
@@ -84,6 +100,11 @@ class Connector:
         kinetic, potential = energies.tolist()
         return kinetic, potential
 
+    def own_motion(self, motion: Motion) -> Motion:
+        """Return the motion (n,) of what the contribution acts on, complex, numbered as `alone`."""
+        p, v, a = (values[self._used].astype(complex) for values in motion)
+        return p, v, a
+
     def tangent(
         self,
         motion: Motion,
@@ -95,12 +116,12 @@ class Connector:
 
         Raises LinAlgError if it is not finite.
         """
-        every, columns = self.all, []
-        for dof in every.tolist():
-            moved = p, v, a = (motion[0].astype(complex), motion[1].astype(complex), motion[2].astype(complex))
+        alone, columns = self.alone, []
+        for number in range(len(self.dofs) + len(self.own)):
+            moved = p, v, a = self.own_motion(motion)
             for values, weight in zip((p, v, a), weights, strict=True):
-                values[dof] += 1j * COMPLEX_STEP * weight
-            columns.append(self.force(self.at(moved, time, gravity)).imag / COMPLEX_STEP)
+                values[number] += 1j * COMPLEX_STEP * weight
+            columns.append(self.force(alone.at(moved, time, gravity)).imag / COMPLEX_STEP)
         result = np.array(columns).T
         if not np.isfinite(result).all():
             raise LinAlgError(f"force of {self.name} is not finite")

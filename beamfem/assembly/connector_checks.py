@@ -9,13 +9,13 @@ from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.errors import InputError
 from beamfem.model.contribution import remembered
 
-_WIDTH = 1e-7  # of the central differences to which complex steps are compared, relative to the natural units
+WIDTH = 1e-7  # of the central differences to which complex steps are compared, relative to the natural units
 _NEAR = 1e-3  # distance from the reference at which a force is checked, and rates per second, in the same units
-_AGREE = 1e-4
-_ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of the terms of a force
+AGREE = 1e-4
+ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of the terms of a force
 _GRAVITY = np.array([0.3, -0.7])  # arbitrary, of the size of the beams per s^2
 _BY_Q = (1.0, 0.0, 0.0)
-_TIMES = (0.5, 0.0, 0.813)
+TIMES = (0.5, 0.0, 0.813)
 
 
 def require_analytic(item: Connector) -> None:
@@ -24,14 +24,14 @@ def require_analytic(item: Connector) -> None:
     Coordinates are measured in the size of the beams and in rad, forces by their work, so that any units of length and
     force are judged alike, and moments beside forces.
     """
-    moving = _somewhere(item)
-    if not np.isfinite(item.force(item.at(moving, _TIMES[0], _gravity(item)))).all():
+    moving = somewhere_near(item)
+    if not np.isfinite(item.force(item.at(moving, TIMES[0], gravity_of(item)))).all():
         raise InputError(f"force of {item.name} is not finite near the reference")
     try:
         for kind in range(3):
-            exact = item.tangent(moving, _TIMES[0], _gravity(item), [float(kind == number) for number in range(3)])
+            exact = item.tangent(moving, TIMES[0], gravity_of(item), [float(kind == number) for number in range(3)])
             _require_same(item, f"force of {item.name}", "qva"[kind], exact, *_slopes(item, item.force, moving, kind))
-        item.tangent(_resting(item), _TIMES[0], _gravity(item), _BY_Q)
+        item.tangent(resting_near(item), TIMES[0], gravity_of(item), _BY_Q)
     except LinAlgError as error:
         raise InputError(f"{error} near the reference") from error
     slopes, errors = _slopes(item, lambda at: np.array([item.energy(at)[0]]), moving, 1)
@@ -43,24 +43,26 @@ def require_energies(item: Connector) -> None:
     """Raise InputError if a conservative connector has a force that is not that of its energies."""
     if not item.item.conservative:
         return
-    moving, resting, number = _somewhere(item), _resting(item), len(item.dofs)
-    scaled = item.tangent(resting, _TIMES[0], _gravity(item), _BY_Q) * np.multiply.outer(_scale(item), _scale(item))
+    moving, resting, number = somewhere_near(item), resting_near(item), len(item.dofs)
+    scaled = item.tangent(resting, TIMES[0], gravity_of(item), _BY_Q) * np.multiply.outer(
+        scales_of(item), scales_of(item)
+    )
     uneven = np.abs(scaled - scaled.T)
     for columns in (slice(number), slice(number, None)):  # multipliers have units of their own
-        if uneven[:, columns].max(initial=0.0) > _AGREE * np.abs(scaled[:, columns]).max(initial=0.0):
+        if uneven[:, columns].max(initial=0.0) > AGREE * np.abs(scaled[:, columns]).max(initial=0.0):
             raise InputError(
                 f"{item.name} says that it is conservative, but its stiffness is not symmetric: its force is not the "
                 "derivative of a potential"
             )
     resting[0][item.own] = 0.0
-    force = item.force(item.at(resting, _TIMES[0], _gravity(item))).real[:number]
+    force = item.force(item.at(resting, TIMES[0], gravity_of(item))).real[:number]
     slope = _slopes(item, lambda at: np.array([item.energy(at)[1]]), resting, 0)[0][0, :number]
     if not _same(item, force, slope):
         raise InputError(
             f"{item.name} says that it is conservative, but the potential of its energy() is not that of its force: "
             f"the force is {force}, the derivative of the potential, the second number of energy(), {slope}"
         )
-    mass = item.tangent(moving, _TIMES[0], _gravity(item), (0.0, 0.0, 1.0))[:number, :number]
+    mass = item.tangent(moving, TIMES[0], gravity_of(item), (0.0, 0.0, 1.0))[:number, :number]
     inertia, momentum = mass @ moving[1][item.dofs], _momentum(item, moving) - _momentum(item, resting)
     if not _same(item, inertia, momentum):
         raise InputError(
@@ -71,22 +73,23 @@ def require_energies(item: Connector) -> None:
 
 def resists_rates(item: Connector) -> bool:
     """Return whether the force depends on velocities."""
-    return bool(item.tangent(_somewhere(item), _TIMES[0], _gravity(item), (0.0, 1.0, 0.0)).any())
+    alone = item.alone
+    return bool(alone.tangent(somewhere_near(alone), TIMES[0], gravity_of(item), (0.0, 1.0, 0.0)).any())
 
 
 def follows_time(item: Connector) -> tuple[bool, bool]:
     """Return whether the force and whether the constraint conditions depend on time."""
-    motion = _somewhere(item)
-    first, *others = (item.force(item.at(motion, time, _gravity(item))).real for time in _TIMES)
+    item = item.alone
+    motion = somewhere_near(item)
+    first, *others = (item.force(item.at(motion, time, gravity_of(item))).real for time in TIMES)
     changed = np.any([other != first for other in others], axis=0)
     return bool(changed[: len(item.dofs)].any()), bool(changed[len(item.dofs) :].any())
 
 
-def _somewhere(item: Connector) -> Motion:
-    """Return an arbitrary motion near the reference."""
+def somewhere_near(item: Connector) -> Motion:
+    """Return an arbitrary motion near the reference; item: `Connector.alone`, as all of these."""
     rng = np.random.default_rng(3)
-    last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
-    p, v, a = (_NEAR * rng.standard_normal(last) for _ in range(3))
+    p, v, a = (_NEAR * rng.standard_normal(item.variables) for _ in range(3))
     for values in (p, v, a):
         values[item.dofs] *= item.units
     p[item.dofs] += item.reference.ravel()
@@ -94,18 +97,18 @@ def _somewhere(item: Connector) -> Motion:
     return p, v, a
 
 
-def _resting(item: Connector) -> Motion:
+def resting_near(item: Connector) -> Motion:
     """Return an arbitrary state at rest near the reference."""
-    p, v, a = _somewhere(item)
+    p, v, a = somewhere_near(item)
     return p, 0.0 * v, 0.0 * a
 
 
-def _gravity(item: Connector) -> np.ndarray:
+def gravity_of(item: Connector) -> np.ndarray:
     """Return an arbitrary acceleration (2,) of gravity."""
     return _GRAVITY * item.units[0]
 
 
-def _scale(item: Connector) -> np.ndarray:
+def scales_of(item: Connector) -> np.ndarray:
     """Return the natural unit (3 m + k,) of each coordinate and multiplier."""
     return np.concatenate([item.units, np.ones(len(item.own))])
 
@@ -113,7 +116,7 @@ def _scale(item: Connector) -> np.ndarray:
 def _same(item: Connector, one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether forces or momenta (3 m,) agree, each by its work."""
     one, other = one * item.units, other * item.units
-    return bool(np.all(np.abs(one - other) <= _AGREE * np.maximum(np.abs(one).max(), np.abs(other).max())))
+    return bool(np.all(np.abs(one - other) <= AGREE * np.maximum(np.abs(one).max(), np.abs(other).max())))
 
 
 def _require_same(
@@ -123,14 +126,14 @@ def _require_same(
 
     errors (r,): see `_slopes`.
     """
-    number, scale = len(item.dofs), _scale(item)[: exact.shape[1]]
-    rows = _scale(item) if len(exact) > 1 else np.ones(1)
+    number, scale = len(item.dofs), scales_of(item)[: exact.shape[1]]
+    rows = scales_of(item) if len(exact) > 1 else np.ones(1)
     errors = errors * rows
     exact, slopes = exact * np.multiply.outer(rows, scale), slopes * np.multiply.outer(rows, scale)
     for own in (slice(number), slice(number, None)):  # conditions and multipliers have units of their own
         for columns in (slice(number), slice(number, None)):
             apart, size = (np.abs(values[own, columns]).max(initial=0.0) for values in (exact - slopes, slopes))
-            if not apart <= _AGREE * size + errors[own].max(initial=0.0):
+            if not apart <= AGREE * size + errors[own].max(initial=0.0):
                 raise InputError(
                     f"{name} is no analytic function of {of}: its derivative by complex steps is not that of "
                     "differences. Write lengths as np.sqrt(x**2 + y**2), not abs, np.hypot or np.linalg.norm, and keep "
@@ -147,7 +150,7 @@ def _kinetic_rate(item: Connector, motion: Motion, dof: int) -> float:
     moved = motion[1].astype(complex)
     moved[dof] += 1j * COMPLEX_STEP
     try:
-        kinetic = item.energy(item.at((motion[0], moved, motion[2]), _TIMES[0], _gravity(item)))[0]
+        kinetic = item.energy(item.at((motion[0], moved, motion[2]), TIMES[0], gravity_of(item)))[0]
     except InputError:  # such as float() of a complex number
         return np.nan
     return float(np.imag(kinetic)) / COMPLEX_STEP
@@ -162,13 +165,13 @@ def _slopes(
     of a coordinate.
     """
     columns, largest = [], np.zeros(1)
-    for dof, unit in zip(item.all.tolist(), _scale(item).tolist(), strict=True):
+    for dof, unit in zip(item.all.tolist(), scales_of(item).tolist(), strict=True):
         ends = []
         for side in (1.0, -1.0):
             moved = (motion[0].copy(), motion[1].copy(), motion[2].copy())
-            moved[kind][dof] += side * _WIDTH * unit
-            ends.append(np.real(values(item.at(moved, _TIMES[0], _gravity(item)))))
+            moved[kind][dof] += side * WIDTH * unit
+            ends.append(np.real(values(item.at(moved, TIMES[0], gravity_of(item)))))
         change = ends[0] - ends[1]
-        columns.append(change / (2.0 * _WIDTH * unit))
-        largest = np.maximum(largest, np.maximum(np.abs(ends[0]), np.abs(change) / (2.0 * _WIDTH)))
-    return np.array(columns).T, _ROUND_OFF / _WIDTH * largest
+        columns.append(change / (2.0 * WIDTH * unit))
+        largest = np.maximum(largest, np.maximum(np.abs(ends[0]), np.abs(change) / (2.0 * WIDTH)))
+    return np.array(columns).T, ROUND_OFF / WIDTH * largest

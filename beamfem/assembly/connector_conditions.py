@@ -62,11 +62,10 @@ def _on_the_conditions(item: Connector) -> Iterator[Motion]:
     Those are where arms that are wrong show; near the reference nothing has slid.
     """
     rng, units = np.random.default_rng(5), item.units
-    last = int(max(item.all.max(), item.memory.max(initial=0))) + 1
     for far in (0.0, _FAR, _FAR):
         moved, multipliers = far * units * rng.standard_normal(len(item.dofs)), rng.standard_normal(len(item.own))
         for side in (1.0, -1.0):  # a contact may be open for one of them
-            p, zeros = np.zeros(last), np.zeros(last)
+            p, zeros = np.zeros(item.variables), np.zeros(item.variables)
             p[item.dofs], p[item.own] = item.reference.ravel() + moved, side * multipliers
             p[item.memory] = remembered(item.item)
             if _meets(item, (p, zeros, zeros)):

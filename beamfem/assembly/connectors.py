@@ -8,10 +8,11 @@ import numpy as np
 from beamfem.assembly.connector import COMPLEX_STEP, Connector, Motion
 from beamfem.assembly.connector_checks import follows_time, require_analytic, require_energies, resists_rates
 from beamfem.assembly.connector_conditions import require_workless
+from beamfem.assembly.connector_directions import passes
 from beamfem.model.contribution import remembered
 from beamfem.model.load import factor
 from beamfem.model.model import Model
-from beamfem.once import cached_property
+from beamfem.once import cached_property, kept_with
 
 _ROUND_OFF = 1e-13  # relative to the largest stiffness of a contribution
 _COORDINATES = ("r^x", "r^y", "theta")
@@ -87,14 +88,17 @@ class Connectors:
 
     def momenta(self, motion: Motion, time: float) -> np.ndarray:
         """Return the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] (3,)."""
-        (p, v, a), gravity, result = motion, self.gravity(time), np.zeros(3)
+        gravity, result = self.gravity(time), np.zeros(3)
         for item in self.items:
             momenta = np.empty(len(item.dofs))
-            for number, dof in enumerate(item.dofs.tolist()):
-                moved = v.astype(complex)
-                moved[dof] += 1j * COMPLEX_STEP
-                momenta[number] = np.imag(item.energy(item.at((p, moved, a), time, gravity))[0]) / COMPLEX_STEP
-            for (x, y), (px, py, turn) in zip(p[item.dofs].reshape(-1, 3)[:, :2], momenta.reshape(-1, 3), strict=True):
+            for number in range(len(item.dofs)):
+                p, v, a = item.own_motion(motion)
+                v[number] += 1j * COMPLEX_STEP
+                moved = p.real, v, a.real
+                momenta[number] = np.imag(item.energy(item.alone.at(moved, time, gravity))[0]) / COMPLEX_STEP
+            for (x, y), (px, py, turn) in zip(
+                motion[0][item.dofs].reshape(-1, 3)[:, :2], momenta.reshape(-1, 3), strict=True
+            ):
                 result += px, py, x * py - y * px + turn
         return result
 
@@ -147,6 +151,12 @@ class Connectors:
 
 def connectors_of(model: Model, static: bool) -> Connectors:
     """Return the connectors of a model with their coordinates. Raises InputError for inconsistent ones."""
+    return Connectors(model, static, _checked_connectors(model) if model.connectors else ())
+
+
+@kept_with
+def _checked_connectors(model: Model) -> tuple[Connector, ...]:
+    """Return the connectors of a model, checked once for statics and motions."""
     first, connectors = model.coordinates, []
     behind = first + sum(item.unknowns for item in model.connectors)
     for item in model.connectors:
@@ -162,7 +172,19 @@ def connectors_of(model: Model, static: bool) -> Connectors:
         memory = np.arange(behind, behind + len(remembered(item)))
         behind += len(memory)
         connectors.append(Connector(item, np.array(dofs, dtype=np.int64), multipliers, memory, np.array(positions)))
-        require_analytic(connectors[-1])
-        require_workless(connectors[-1])
-        require_energies(connectors[-1])
-    return Connectors(model, static, tuple(connectors))
+    known: set[type] = set()
+    for connector in connectors:
+        _require_right(connector.alone, known)
+    return tuple(connectors)
+
+
+def _require_right(item: Connector, known: set[type]) -> None:
+    """Raise InputError for an inconsistent connector; known: classes of which one has passed all checks."""
+    kind = type(item.item)
+    if kind in known and passes(item):
+        require_workless(item)
+        return
+    require_analytic(item)
+    require_workless(item)
+    require_energies(item)
+    known.add(kind)

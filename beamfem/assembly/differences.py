@@ -11,19 +11,25 @@ _DIFFERENCE = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))  # offset a
 
 
 def differentiated(
-    system: System,
-    values: Callable[[np.ndarray], np.ndarray],
-    p: np.ndarray,
-    step: np.ndarray,
-    some: np.ndarray | slice = slice(None),
+    system: System, values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray
 ) -> np.ndarray:
-    """Return the linear change of a function of p (..., n) for a step (..., n) that may be below the round-off of p.
+    """Return the linear change of a function of p (..., n) for a step (..., n) that may be below the round-off of p."""
+    return changed(values, p, step, widths(system, step))
 
-    It is a central difference of fourth order, wide enough to cause strains of about 1e-3. some: the coordinates that p
-    and step consist of, by default all.
+
+def widths(system: System, step: np.ndarray) -> np.ndarray:
+    """Return the multiples (...,) of steps (..., n) that cause strains of about 1e-3."""
+    size = np.max(np.abs(step) / system.strain_scale, axis=-1, initial=0.0)
+    return np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
+
+
+def changed(
+    values: Callable[[np.ndarray], np.ndarray], p: np.ndarray, step: np.ndarray, width: np.ndarray
+) -> np.ndarray:
+    """Return the change of `differentiated` for some coordinates; width (...,): see `widths`.
+
+    It is a central difference of fourth order.
     """
-    size = np.max(np.abs(step) / system.strain_scale[some], axis=-1, initial=0.0)
-    width = np.where(size > 0.0, _STRAIN / np.where(size > 0.0, size, 1.0), 1.0)
     result = np.zeros(1)
     for offset, weight in _DIFFERENCE:
         sample = values(p + offset * width[..., None] * step)

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.assembly.columns import coordinate_columns
+from beamfem.assembly.columns import Columns, columns_of, coordinate_columns
 from beamfem.assembly.system import System
 from beamfem.model.mesh import BeamMesh
+from beamfem.once import kept_with
 from beamfem.validation import convert, finite, squared, vector
 
 
@@ -41,14 +42,24 @@ class RigidVelocity:
 def rigid_rates(system: System, velocity: RigidVelocity, p: np.ndarray) -> np.ndarray:
     """Return the rates (n,) of the coordinates of a model that moves rigidly from the state p (n,)."""
     result = np.zeros(len(p))
-    for mesh in system.model.meshes:
-        set_rigid_rates(mesh, velocity, p, result)
+    for columns in _columns_of(system):
+        _set_rates(columns, velocity, p, result)
     return result
 
 
 def set_rigid_rates(mesh: BeamMesh, velocity: RigidVelocity, p: np.ndarray, rates: np.ndarray) -> None:
     """Write the rates of the coordinates of a beam that moves rigidly from the state p (n,) into `rates` (n,)."""
-    columns = coordinate_columns(mesh)
+    _set_rates(coordinate_columns(mesh), velocity, p, rates)
+
+
+@kept_with
+def _columns_of(system: System) -> list[Columns]:
+    """Return the coordinates of all beams of each block, which move rigidly by the same formulas."""
+    groups = zip(system.blocks, system.model.groups, strict=True)
+    return [columns_of(block.node_kind, block.dof, element.field.vectors) for block, element in groups]
+
+
+def _set_rates(columns: Columns, velocity: RigidVelocity, p: np.ndarray, rates: np.ndarray) -> None:
     for index, (label, _, dofs) in enumerate(columns):
         if label == "theta":
             rates[dofs] = velocity.angular

@@ -1,16 +1,18 @@
 """Axes of beams in a results file, with names and units as in netCDF, for programs without beamfem."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
+from beamfem.io.scaled_arrays import scale, variable, write
 from beamfem.results.along import QUANTITIES, AxisPoints, rotation, section_forces
+from beamfem.results.many_beams import VALUES, Together, together
 from beamfem.results.solution import Solution
 
 AXES = "beams"
-_BLOCK_BYTES = 2**20
 _MOST = 100_000  # elements times rows whose section forces are written, in a second or two
+_FORCES = ("normal", "shear", "moment")
 
 
 def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]) -> None:
@@ -22,63 +24,61 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
     would take longer than the solve. All have the attributes `units`, those of the model, and `long_name`; a group has
     the `name` of its beam, where it has one.
     """
-    unit = solution.model.unit
-    over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
-    small = len(solution) * sum(mesh.elements for mesh in solution.model.meshes) <= _MOST
-    for number, mesh in enumerate(solution.model.meshes):
-        points = AxisPoints(mesh, 1)
-        ends = np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
+    meshes = solution.model.meshes
+    small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
+    for group in together(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
+        # several beams are together only where one table holds all rows
+        tables = _tables(solution, group, small) if len(group.numbers) == 1 else [*_tables(solution, group, small)]
+        for place, number in enumerate(group.numbers):
+            axis = _Axis(file, solution, number, group.single[place], small)
+            for rows, parts in tables:
+                axis.write(rows, parts[place])
+                require_written()
+
+
+def _tables(solution: Solution, group: Together, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
+    """Yield x, y and rotation, and section forces if wanted (3 or 6, rows, points) of each beam, with their rows."""
+    points, block = group.points, max(VALUES // sum(group.counts), 1)
+    for first in range(0, len(solution), block):
+        rows = slice(first, min(first + block, len(solution)))
+        r = points.positions(solution.p[rows])[0]
+        values = [r[..., 0], r[..., 1], rotation(points, solution, rows)]
+        if forces:
+            found = section_forces(points, solution, rows)
+            values += [found[name] for name in _FORCES]
+        yield rows, group.parted(np.stack(values), 2)
+
+
+class _Axis:
+    """The group of one beam in the file."""
+
+    def __init__(self, file: Any, solution: Solution, number: int, points: AxisPoints, forces: bool) -> None:
+        unit, mesh = solution.model.unit, points.mesh
+        over, of_rows = ("load_factor", "1") if solution.static else ("time", unit("s"))
+        self._ends = np.append(np.arange(0, 2 * mesh.elements, 2), 2 * mesh.elements - 1)
         group = file.create_group(f"{AXES}/{number}", track_order=True)
         group.attrs["curve"] = type(mesh.beam.curve).__name__
         group.attrs["element"] = mesh.beam.element.name
         if mesh.beam.name is not None:
             group.attrs["name"] = mesh.beam.name
-        scales = (
-            _scale(group, over, solution.at, over.replace("_", " "), of_rows),
-            _scale(group, "arc_length", points.arc_length[ends], "arc length in the reference", unit("m")),
+        arc = points.arc_length
+        at = scale(group, over, solution.at, over.replace("_", " "), of_rows)
+        along = scale(group, "arc_length", arc[self._ends], "arc length in the reference", unit("m"))
+        self._forces: list[Any] = []
+        if forces:
+            ends = scale(group, "element_end", arc, "arc length of the ends of each element", unit("m"))
+            about = ((name, QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in _FORCES)
+            self._forces = [variable(group, *each, (at, ends)) for each in about]
+        moved = (
+            ("x", "position x", unit("m")),
+            ("y", "position y", unit("m")),
+            ("rotation", "rotation of the section", "rad"),
         )
-        forces = _forces(group, points, solution, scales[0]) if small else {}
-        shape = len(solution), len(ends)
-        x, y, turned = (
-            _variable(group, *about, shape, scales)
-            for about in (
-                ("x", "position x", unit("m")),
-                ("y", "position y", unit("m")),
-                ("rotation", "rotation of the section", "rad"),
-            )
-        )
-        block = max(_BLOCK_BYTES // (16 * len(points.xi)), 1)
-        for first in range(0, len(solution), block):
-            rows = slice(first, min(first + block, len(solution)))
-            r = points.positions(solution.p[rows])[0][:, ends]
-            x[rows], y[rows] = r[..., 0], r[..., 1]
-            turned[rows] = rotation(points, solution, rows)[:, ends]
-            for name, values in section_forces(points, solution, rows).items() if forces else ():
-                forces[name][rows] = values
-            require_written()
+        self._moved = [variable(group, *each, (at, along)) for each in moved]
 
-
-def _forces(group: Any, points: AxisPoints, solution: Solution, over: Any) -> dict[str, Any]:
-    """Return the empty variables of the section forces."""
-    unit, shape = solution.model.unit, (len(solution), len(points.xi))
-    ends = _scale(group, "element_end", points.arc_length, "arc length of the ends of each element", unit("m"))
-    about = {name: (QUANTITIES[name].label, unit(QUANTITIES[name].unit)) for name in ("normal", "shear", "moment")}
-    return {name: _variable(group, name, *texts, shape, (over, ends)) for name, texts in about.items()}
-
-
-def _scale(group: Any, name: str, values: np.ndarray, meaning: str, unit: str) -> Any:
-    scale = _described(group.create_dataset(name, data=values), meaning, unit)
-    scale.make_scale(name)
-    return scale
-
-
-def _variable(group: Any, name: str, meaning: str, unit: str, shape: tuple[int, int], scales: tuple[Any, Any]) -> Any:
-    variable = _described(group.create_dataset(name, shape, np.float64), meaning, unit)
-    for dimension, scale in zip(variable.dims, scales, strict=True):
-        dimension.attach_scale(scale)
-    return variable
-
-
-def _described(dataset: Any, meaning: str, unit: str) -> Any:
-    dataset.attrs["long_name"], dataset.attrs["units"] = meaning, unit
-    return dataset
+    def write(self, rows: slice, table: np.ndarray) -> None:
+        """Write some rows of a `_table`."""
+        for moved, values in zip(self._moved, table, strict=False):
+            write(moved, values[:, self._ends], rows)
+        for force, values in zip(self._forces, table[3:], strict=True):
+            write(force, values, rows)

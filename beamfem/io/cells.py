@@ -8,7 +8,7 @@ import numpy as np
 
 from beamfem.alike import by_value
 from beamfem.io.in_words import material_in_words, section_in_words
-from beamfem.io.samples import Samples, body, centreline
+from beamfem.io.samples import Samples, bodies, centrelines
 from beamfem.material import Material
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
@@ -104,33 +104,33 @@ class Cells:
     """
 
     def __init__(self, model: Model, whole: bool, alike: bool = False, content: Content = WHOLE) -> None:
-        self.whole, self.meshes, self.content = whole, model.meshes, content
+        self.whole, self.content = whole, content
         self.beams, self.unit = model.beams, model.unit
-        by_beam = [body(mesh, alike) if whole else centreline(mesh) for mesh in model.meshes]
-        self.samples: Sequence[Samples] = [part for parts in by_beam for part in parts]
-        numbers = [number for number, parts in enumerate(by_beam) for _ in parts]
-        pieces = [1 if whole else part.points.pieces for part in self.samples]
-        cells = [len(part.element) * per_element for part, per_element in zip(self.samples, pieces, strict=True)]
-        self.beam = np.repeat(numbers, cells)
+        self.samples: Sequence[Samples] = bodies(model, alike) if whole else centrelines(model)
         self.materials = _distinct(_materials(model))
         self.sections = _distinct([beam.section for beam in model.beams])
+        # elements by beams and their layers, of all samples
+        beam = np.concatenate([part.beam for part in self.samples])
+        sample = np.repeat(np.arange(len(self.samples)), [len(part.element) for part in self.samples])
+        layer = np.array([part.layer or 0 for part in self.samples])
+        order = np.lexsort((layer[sample], beam))
+        pieces = np.array([1 if whole else part.points.pieces for part in self.samples])
+        cells = np.repeat(sample[order], pieces[sample[order]])  # the sample of each cell
+        self.beam = np.repeat(beam[order], pieces[sample[order]])
         material = _numbers([part.material for part in self.samples], self.materials)
         section = _numbers([part.mesh.beam.section for part in self.samples], self.sections)
-        self.material, self.section = np.repeat(material, cells), np.repeat(section, cells)
-        self.layer = np.repeat([part.layer or 0 for part in self.samples], cells)
-        self.degree = np.repeat([(part.points.pieces, part.across) for part in self.samples], cells, axis=0)
+        self.material, self.section, self.layer = np.array(material)[cells], np.array(section)[cells], layer[cells]
+        self.degree = np.array([(part.points.pieces, part.across) for part in self.samples])[cells]
         self.cell_type = LAGRANGE_QUADRILATERAL if whole else LINE
         self.points = sum(part.size for part in self.samples)
+        corners = np.array([len(part.order) for part in self.samples])[sample]
+        self._order = _ordered(corners, order)
         if whole:
-            corners = np.repeat([len(part.order) for part in self.samples], cells)
-            self.connectivity, self.offsets = np.arange(self.points), np.append(0, np.cumsum(corners))
+            self.connectivity, self.offsets = np.arange(self.points), np.append(0, np.cumsum(corners[order]))
         else:
             # the last point of an element begins no line
-            count = [
-                np.tile(np.arange(part.points.pieces + 1) < part.points.pieces, len(part.element))
-                for part in self.samples
-            ]
-            first = np.flatnonzero(np.concatenate(count))
+            last = np.cumsum(corners[order]) - 1
+            first = np.setdiff1d(np.arange(self.points), last, assume_unique=True)
             self.connectivity, self.offsets = np.column_stack([first, first + 1]).ravel(), 2 * np.arange(len(first) + 1)
 
     @property
@@ -158,9 +158,8 @@ class Cells:
 
     def warn_of_unknown_stress(self) -> None:
         """Warn of beams whose stress is left out, or nan beside that of others."""
-        number = {id(mesh): i for i, mesh in enumerate(self.meshes)}
-        unknown = sorted({number[id(part.mesh)] for part in self.samples if not part.known["stress_xx"]})
-        warn_of_unknown_stress(self.beams, unknown, "left out" if len(unknown) == len(self.meshes) else "nan")
+        unknown = sorted({number for part in self.samples for number in part.unknown})
+        warn_of_unknown_stress(self.beams, unknown, "left out" if len(unknown) == len(self.beams) else "nan")
 
     def names(self, solution: "Solution") -> list[str]:
         """Return the fields that there are."""
@@ -175,11 +174,24 @@ class Cells:
         known = {name for part in self.samples for name, told in part.known.items() if told}
         names = [name for name in parts[0] if "stress" not in name or name in known]
         chosen = self.content.chosen(names)
-        result = {name: np.concatenate([part[name] for part in parts], axis=1) for name in chosen}
+        result = {name: self._joined([part[name] for part in parts]) for name in chosen}
         if self.content.geometry == "reference":
-            at_rest = np.concatenate([part.at_rest for part in self.samples], axis=1)
+            at_rest = self._joined([part.at_rest for part in self.samples])
             result["points"] = np.repeat(at_rest, len(result["points"]), axis=0)
         return by_precision(result, self.content)
+
+    def _joined(self, parts: Sequence[np.ndarray]) -> np.ndarray:
+        """Return values (steps, points, ...) of all samples in the order of the cells."""
+        values = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return values if self._order is None else values[:, self._order]
+
+
+def _ordered(counts: np.ndarray, order: np.ndarray) -> np.ndarray | None:
+    """Return the points of elements with so many points each, put in another order; None if it is the same."""
+    if np.array_equal(order, np.arange(len(order))):
+        return None
+    first, own = np.cumsum(counts) - counts, counts[order]
+    return np.repeat(first[order] - np.cumsum(own) + own, own) + np.arange(int(own.sum()))
 
 
 def by_precision(arrays: dict[str, np.ndarray], content: Content) -> dict[str, np.ndarray]:

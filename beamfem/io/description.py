@@ -125,9 +125,9 @@ class _Writer:
     """Beams and functions are written once and referred to by number."""
 
     def __init__(self, model: Model, at: list[float]) -> None:
-        self.beams = model.beams
+        self.beams = {id(beam): number for number, beam in enumerate(model.beams)}
         self.at = at
-        self.functions: list[Callable[[float], float]] = []
+        self.functions: dict[int, tuple[int, Callable[[float], float]]] = {}
         self.values: list[list[float]] = []
 
     def members(self, value: Any) -> dict[str, Any]:
@@ -167,10 +167,9 @@ class _Writer:
         if isinstance(value, Parametric):
             value = value.spline()
         if isinstance(value, Beam):
-            number = next((i for i, beam in enumerate(self.beams) if beam is value), None)
-            if number is None:
+            if id(value) not in self.beams:
                 raise InputError(f"a part of the model refers to the beam {value!r}, which is not in the model")
-            return {"beam": number}
+            return {"beam": self.beams[id(value)]}
         if self.known(value):
             return self.members(value)
         if isinstance(value, np.ndarray | np.generic):
@@ -184,12 +183,10 @@ class _Writer:
         return self.own_members(value)
 
     def number(self, function: Callable[[float], float]) -> int:
-        for i, known in enumerate(self.functions):
-            if known is function:
-                return i
-        self.functions.append(function)
-        self.values.append([function_value("saved function", function, at) for at in self.at])
-        return len(self.functions) - 1
+        if id(function) not in self.functions:
+            self.functions[id(function)] = len(self.values), function  # kept, so that no other gets its identity
+            self.values.append([function_value("saved function", function, at) for at in self.at])
+        return self.functions[id(function)][0]
 
 
 def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamfem.io.table import Variables, as_dataset, named, side_by_side, stations
+from beamfem.io.table import Variables, as_dataset, groups_of, named, side_by_side, stations
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 
@@ -49,13 +49,12 @@ def buckling_to_xarray(buckling: "Buckling", beam: Beam | None = None) -> Any:
 
 def _with_shapes(model: Model, p: np.ndarray, shapes: np.ndarray, beam: Beam | None, data: Variables) -> Any:
     """Return the data with ux, uy of shapes (modes, n) about states p (modes, n) along one beam or all."""
-    moved, places = [], []
-    for one_beam in model.beams if beam is None else (beam,):
-        points, along_beam = stations(model, one_beam)
-        rates = points.velocities(p, shapes)
+    parts = []
+    for group in groups_of(model, beam, len(shapes)):
+        rates = group.points.velocities(p, shapes)
         about = [{"long_name": f"shape {axis}"} for axis in "xy"]
         both: Variables = {f"u{name}": ((*_OVER, "station"), rates[..., i], about[i]) for i, name in enumerate("xy")}
-        moved.append(both)
-        places.append(along_beam)
+        parts.append((both, stations(model, group)))
+    moved, places = side_by_side(parts)
     number: Variables = {"mode": (_OVER, np.arange(len(shapes)), {"long_name": "number of the mode"})}
-    return as_dataset(data | side_by_side(moved), number | side_by_side(places), {}, single=beam is not None)
+    return as_dataset(data | moved, number | places, {}, single=beam is not None)

@@ -6,10 +6,12 @@ import numpy as np
 
 from beamfem.material import Material
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
 from beamfem.model.reference import reference_axis
 from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
+from beamfem.results.many_beams import Together, together
 from beamfem.results.self_stress import self_stress
 from beamfem.results.stresses import in_the_plane, second_piola_kirchhoff, von_mises
 from beamfem.section import Layered
@@ -23,13 +25,14 @@ _FORCES = {"normal": "normal_force", "shear": "shear_force", "moment": "bending_
 
 
 class Samples:
-    """Points (xi, y) of elements of a beam, in the order that VTK wants them in a cell.
+    """Points (xi, y) of elements of like beams, in the order that VTK wants them in a cell.
 
     layer: the layer of the body from whose lower face to the upper one there are `across` intervals, or None for the
     axis; order: places in the table (degree + 1, heights), flattened. element: elements that have this layer (ne,).
     """
 
-    def __init__(self, points: AxisPoints, layer: int | None, order: np.ndarray, across: int = 0) -> None:
+    def __init__(self, group: Together, layer: int | None, order: np.ndarray, across: int = 0) -> None:
+        self.group, points = group, group.points
         self.points, self.layer, self.order, self.mesh = points, layer, order, points.mesh
         self.across = across
         self.distributions = points.distributions
@@ -93,12 +96,28 @@ class Samples:
         return {name: self._by_cell(values) for name, values in result.items()}
 
     @cached_property
+    def beam(self) -> np.ndarray:
+        """Number of the beam of each of the elements (ne,)."""
+        return np.repeat(self.group.numbers, [points.mesh.elements for points in self.group.single])[self.element]
+
+    @cached_property
     def known(self) -> dict[str, bool]:
-        """Whether there is a place along the beam where a component of stress is known at all heights of a cell."""
+        """Whether there is a place along the beams where a component of stress is known at all heights of a cell."""
+        finite = {name: bool(values.any()) for name, values in self._finite.items()}
+        return finite | dict.fromkeys(("cauchy_stress", "second_piola_kirchhoff_stress"), finite["von_mises_stress"])
+
+    @property
+    def unknown(self) -> list[int]:
+        """Numbers of the beams with no place where the normal stress is known at all heights of a cell."""
+        parts = self.group.parted(self._finite["stress_xx"], 0)
+        return [number for number, known in zip(self.group.numbers, parts, strict=True) if not known.any()]
+
+    @cached_property
+    def _finite(self) -> dict[str, np.ndarray]:
+        """Whether a component of stress is known at all heights, at each point of the axis (points,)."""
         ones = np.ones((1, len(self.points.xi)))
         unit = self._stress({"normal": ones, "shear": ones, "moment": ones})
-        finite = {name: bool(np.isfinite(values).all(axis=-1).any()) for name, values in unit.items()}
-        return finite | dict.fromkeys(("cauchy_stress", "second_piola_kirchhoff_stress"), finite["von_mises_stress"])
+        return {name: np.isfinite(values).all(axis=-1)[0] for name, values in unit.items()}
 
     def _stress(self, forces: dict[str, np.ndarray], self_stress: np.ndarray | float = 0.0) -> dict[str, np.ndarray]:
         """Return the stress (steps, points of the axis, heights) [Pa] of section forces (steps, points of the axis).
@@ -121,22 +140,31 @@ class Samples:
         return np.pad(cells, ((0, 0), (0, 0), (0, 1))) if tail == (2,) else cells
 
 
-def body(mesh: BeamMesh, alike: bool = False) -> list[Samples]:
+def bodies(model: Model, alike: bool = False) -> list[Samples]:
     """Return the points of each layer as Lagrange quadrilaterals of degree (n, 2), or (n, n) where `alike`.
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
-    n = max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
+    groups = together(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
+    return [sample for group in groups for sample in _body(group, alike)]
+
+
+def centrelines(model: Model) -> list[Samples]:
+    """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
+    groups = together(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
+    return [Samples(group, None, np.arange(_LINES_PER_ELEMENT + 1)) for group in groups]
+
+
+def _degree(mesh: BeamMesh) -> int:
+    return max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
+
+
+def _body(group: Together, alike: bool) -> list[Samples]:
+    n = group.points.pieces
     m = n if alike else _ACROSS
     number = np.arange((n + 1) * (m + 1)).reshape(n + 1, m + 1)
     # VTK: corners counter-clockwise, then inner points of the edges: bottom, right, top, left; then those of the cell
     corners = number[[0, n, n, 0], [0, 0, m, m]]
     edges = [number[1:n, 0], number[n, 1:m], number[1:n, m], number[0, 1:m]]
     order = np.concatenate([corners, *edges, number[1:n, 1:m].T.ravel()])
-    points = AxisPoints(mesh, n)
-    return [Samples(points, layer, order, m) for layer in range(points.distributions.layers.shape[1])]
-
-
-def centreline(mesh: BeamMesh) -> list[Samples]:
-    """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
-    return [Samples(AxisPoints(mesh, _LINES_PER_ELEMENT), None, np.arange(_LINES_PER_ELEMENT + 1))]
+    return [Samples(group, layer, order, m) for layer in range(group.points.distributions.layers.shape[1])]

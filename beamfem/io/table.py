@@ -12,6 +12,7 @@ from beamfem.model.model import Model
 from beamfem.model.named import names
 from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
+from beamfem.results.many_beams import Together, together
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -28,19 +29,26 @@ Variable = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 Variables = dict[str, Variable]
 
 
-def arrays(solution: "Solution", beam: Beam, energy: "Energy | None" = None) -> tuple[Variables, Variables]:
+def arrays(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
     """Return data and coordinates by name: dimensions, values, and attributes with `units` and `long_name`.
 
-    The first dimension is `time` or `load_factor`. Data along the beam (time, station): x, y, ux, uy [m], vx, vy [m/s]
-    of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-] (Green strain xx of the axis),
-    shear_angle [rad]; stress_lower, stress_upper, stress_shear, stress_von_mises [Pa] where sections have them, see
-    `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time [s] or load_factor,
-    number of the beam (with the `names` of all as an attribute, where there are any), arc_length [m], x0, y0 [m] of the
-    reference (station,). Adjacent elements each have a station at their common end, where section forces may jump.
-    energy: that of the solution, if it is known already.
+    The first dimension is `time` or `load_factor`. Data along the beam, or all beams in succession (time, station): x,
+    y, ux, uy [m], vx, vy [m/s] of a motion, rotation [rad], normal, shear [N], moment [N m], axial_strain [-] (Green
+    strain xx of the axis), shear_angle [rad]; stress_lower, stress_upper, stress_shear, stress_von_mises [Pa] where
+    sections have them, see `BeamStress`; of the model (time,): kinetic, strain, potential energy [J]. Coordinates: time
+    [s] or load_factor, number of the beam (with the `names` of all as an attribute, where there are any), arc_length
+    [m], x0, y0 [m] of the reference (station,). Adjacent elements each have a station at their common end, where
+    section forces may jump.
     """
-    mesh, about = solution.model.meshes[solution.model.number_of(beam)], partial(named, solution.model)
-    points, along_beam = stations(solution.model, beam)
+    energy = solution.energy()
+    groups = groups_of(solution.model, beam, len(solution))
+    return side_by_side([_of_group(solution, group, energy) for group in groups])
+
+
+def _of_group(solution: "Solution", group: Together, energy: "Energy") -> tuple[Variables, Variables]:
+    """Return the `arrays` of like beams."""
+    points, about = group.points, partial(named, solution.model)
+    along_beam = stations(solution.model, group)
     rows = slice(None)
     at = ("load_factor", "load factor", "1") if solution.static else ("time", "time", "s")
     over = (at[0],)
@@ -59,32 +67,37 @@ def arrays(solution: "Solution", beam: Beam, energy: "Energy | None" = None) -> 
         quantity = QUANTITIES[name]
         values = forces[name] if name in forces else quantity.values(points, solution, rows)
         data[name] = along, values, about(quantity.label, quantity.unit)
-    stresses = stress_at(solution, mesh, points.element, points.xi, rows)
+    stresses = stress_at(solution, points.mesh, points.element, points.xi, rows)
     for name, label in _STRESSES.items():
         if np.isfinite(stresses[name]).any():
             data[f"stress_{name}"] = along, stresses[name], about(label, "Pa")
-    energy = solution.energy() if energy is None else energy
     for name in ("kinetic", "strain", "potential"):
         data[f"{name}_energy"] = over, getattr(energy, name), about(f"{name} energy of the model", "J")
     return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
 
 
-def stations(model: Model, beam: Beam) -> tuple[AxisPoints, Variables]:
-    """Return the stations of a beam, and their coordinates by name, see `arrays`."""
-    number, about = model.number_of(beam), partial(named, model)
-    mesh = model.meshes[number]
-    points = AxisPoints(mesh, _PIECES)
+def groups_of(model: Model, beam: Beam | None, rows: int) -> list[Together]:
+    """Return the stations of one beam, or of all in groups of like beams."""
+    if beam is None:
+        return together(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
+    number = model.number_of(beam)
+    return [Together([number], [AxisPoints(model.meshes[number], _PIECES)])]
+
+
+def stations(model: Model, group: Together) -> Variables:
+    """Return the coordinates of the stations of like beams by name, see `arrays`."""
+    points, about = group.points, partial(named, model)
     # elements agree on the arc length of their common end, to the last digit
-    arc = np.where(points.xi == 0.0, mesh.vertices[points.element], points.arc_length)
-    arc = np.where(points.xi == 1.0, mesh.vertices[points.element + 1], arc)
+    start, end = points.mesh.ends(points.element)
+    arc = np.where(points.xi == 0.0, start, np.where(points.xi == 1.0, end, points.arc_length))
     attributes = _called(model)
     coordinates = {
-        "beam": (np.full(len(points.element), number), about("number of the beam", "1") | attributes),
+        "beam": (np.repeat(group.numbers, group.counts), about("number of the beam", "1") | attributes),
         "arc_length": (arc, about("arc length in the reference", "m")),
         "x0": (points.reference[:, 0], about("reference x", "m")),
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }
-    return points, {name: (("station",), *variable) for name, variable in coordinates.items()}
+    return {name: (("station",), *variable) for name, variable in coordinates.items()}
 
 
 def _called(model: Model) -> dict[str, str]:
@@ -104,7 +117,7 @@ def to_xarray(solution: "Solution", beam: Beam | None = None) -> Any:
     all beams the dimension is station, since their arc lengths overlap. Raises InputError for a beam of another model;
     MissingPackageError without xarray.
     """
-    data, coordinates = _of_beams(solution, beam)
+    data, coordinates = arrays(solution, beam)
     # files hold texts and numbers
     words = {"status": solution.status.name, "warnings": "\n".join(solution.statistics.warnings)}
     return as_dataset(data, coordinates, asdict(solution.statistics) | words, single=beam is not None)
@@ -132,7 +145,7 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
     """
     with needed_for("to_pandas"):
         import pandas
-    data, coordinates = _of_beams(solution, beam)
+    data, coordinates = arrays(solution, beam)
     over, stations = ("load_factor" if solution.static else "time"), len(coordinates["beam"][1])
     columns = {over: np.repeat(solution.at, stations)}
     columns |= {name: np.tile(coordinates[name][1], len(solution)) for name in ("beam", "arc_length", "x0", "y0")}
@@ -140,15 +153,21 @@ def to_pandas(solution: "Solution", beam: Beam | None = None) -> Any:
     return pandas.DataFrame(columns).set_index([over, "beam", "arc_length"])
 
 
-def _of_beams(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variables]:
-    """Return the `arrays` of a beam, or of all beams joined along their stations."""
-    energy = solution.energy()
-    parts = [arrays(solution, one_beam, energy) for one_beam in (solution.model.beams if beam is None else (beam,))]
-    return side_by_side([data for data, _ in parts]), side_by_side([coordinates for _, coordinates in parts])
+def side_by_side(parts: list[tuple[Variables, Variables]]) -> tuple[Variables, Variables]:
+    """Return data and coordinates of groups of beams joined along their stations, in the order of the beams."""
+    data, coordinates = (_joined([part[of] for part in parts]) for of in range(2))
+    if len(parts) == 1:
+        return data, coordinates
+    order = np.argsort(coordinates["beam"][1], kind="stable")
+    for variables in (data, coordinates):
+        for name, (over, values, about) in variables.items():
+            if "station" in over:
+                variables[name] = over, values[..., order], about
+    return data, coordinates
 
 
-def side_by_side(parts: list[Variables]) -> Variables:
-    """Return the variables of beams joined along their stations; nan where a beam has none of a name."""
+def _joined(parts: list[Variables]) -> Variables:
+    """Return the variables of groups of beams joined along their stations; nan where a group has none of a name."""
     joined = {name: variable for part in parts for name, variable in part.items()}
     counts = [next(values.shape[-1] for over, values, _ in part.values() if "station" in over) for part in parts]
     for name, (over, values, about) in joined.items():

@@ -89,6 +89,14 @@ class Grid:
             return 0 if fraction == 0.0 else self.nodes - 1
         return int(nearest(self.arc, fraction * self.vertices[-1]))
 
+    def ends(self, element: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the arc lengths (n,) [m] of both ends of elements (n,)."""
+        return self.vertices[element], self.vertices[element + 1]
+
+    def tangents(self, element: np.ndarray, arc_length: np.ndarray) -> np.ndarray:
+        """Return the unit tangents (n, 2) of the curve at arc lengths (n,) [m] in elements (n,)."""
+        return np.asarray(self.beam.curve.tangent(arc_length.copy()))
+
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc lengths (n,) [m] of points, given by element and xi, both (n,)."""
         along = self.parameter[element] + xi * np.diff(self.parameter)[element]

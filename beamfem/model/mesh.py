@@ -31,6 +31,15 @@ class BeamMesh(Grid):
         return element_classes(self)
 
     @property
+    def parts(self) -> tuple["BeamMesh", ...]:
+        """The meshes of single beams that it consists of."""
+        return (self,)
+
+    def in_block(self, element: np.ndarray) -> np.ndarray:
+        """Return the numbers of elements in their block."""
+        return self.first_element + element
+
+    @property
     def vectors(self) -> tuple[str, ...]:
         """Names of the nodal vectors of a node: "r", "r_x", "r_y"."""
         return self.beam.element.field.vectors

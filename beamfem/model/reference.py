@@ -170,11 +170,11 @@ def curvature(grid: Grid, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
     """
     if grid.straight:
         return np.zeros(len(element))
-    start, end = grid.vertices[element], grid.vertices[element + 1]
+    start, end = grid.ends(element)
     near, inside = _SHORT * (end - start), _INSIDE * (end - start)
     arc = grid.arc_length(element, xi)
     before, after = np.maximum(arc - near, start + inside), np.minimum(arc + near, end - inside)
-    tangent_before, tangent_after = grid.beam.curve.tangent(before.copy()), grid.beam.curve.tangent(after.copy())
+    tangent_before, tangent_after = grid.tangents(element, before), grid.tangents(element, after)
     return np.arctan2(cross(tangent_before, tangent_after), dot(tangent_before, tangent_after)) / (after - before)
 
 

@@ -100,7 +100,7 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
     """
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
-        _along(rows, mesh, elements),
+        _along(rows, mesh, elements, e),
         _spread(rows, mesh, elements, e),
     ]
     joined = {
@@ -115,6 +115,8 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
 
     The moment of an interpolated density is a polynomial whose degree is higher by that of the field.
     """
+    if not len(acting.rule):
+        return acting
     field = mesh.beam.element.field
     extra = max(field.degree, field.director_degree)
     parts = []
@@ -137,34 +139,41 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
 
 def _of_mass(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, acceleration: np.ndarray) -> Acting:
     """Return weight less mass times acceleration of the body r0 + y d."""
-    pull = rows.body[:, rows.system.model.number_of(mesh.beam), :2]
+    pull = rows.body[:, _beams(rows, mesh, elements), :2]
     if not pull.any() and not acceleration.any():
         return _nothing(e)
     where, xi, inertia = inertia_points(mesh, elements)
     element, (position, direction) = _numbers(elements, where), _tables(mesh, where, xi)
     mass, first, rotary = inertia.T[:, None, :, None]
-    free = pull[:, None] - _at(position, acceleration, element)
+    free = pull[:, element] - _at(position, acceleration, element)
     turn = _at(direction, acceleration, element)
     rule = np.full(len(xi), len(xi) // len(elements))
     return Acting(element, xi, rule, position, direction, mass * free - first * turn, first * free - rotary * turn)
 
 
-def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> Acting:
+def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return forces per length that keep their direction."""
-    load = rows.body[:, rows.system.model.number_of(mesh.beam), 2:]
+    load = rows.body[:, _beams(rows, mesh, elements), 2:]
+    if not load.any():
+        return _nothing(e)
     where, xi, weight = length_points(mesh, elements)
-    force = load[:, None] * weight[:, None]
+    element = _numbers(elements, where)
+    force = load[:, element] * weight[:, None]
     rule = np.full(len(xi), len(xi) // len(elements))
     position, direction = _tables(mesh, where, xi)
-    return Acting(_numbers(elements, where), xi, rule, position, direction, force, np.zeros_like(force))
+    return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
 
 
 def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
-    points, number = actions.points, actions.points.element - mesh.first_element
-    chosen = actions.spread_on(mesh.first_element + elements)
-    element, position, direction = _numbers(elements, number[chosen]), points.position[chosen], points.direction[chosen]
+    points, own = actions.points, mesh.in_block(elements)
+    order = np.argsort(own)
+    chosen = actions.spread_on(own[order])
+    if not len(chosen):
+        return _nothing(e)
+    element = order[np.searchsorted(own, points.element[chosen], sorter=order)]
+    position, direction = points.position[chosen], points.direction[chosen]
     values = rows.values[mesh.block][:, chosen]
     r, g, at_rest = _at(position, e, element), _at(direction, e, element), points.follows[chosen]
     square = dot(g, g)[..., None]
@@ -180,6 +189,11 @@ def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> 
 def _nothing(e: np.ndarray) -> Acting:
     none, table = np.zeros(0, dtype=np.int64), np.zeros((0, e.shape[2]))
     return Acting(none, np.zeros(0), none, table, table, *np.zeros((2, len(e), 0, 2)))
+
+
+def _beams(rows: Rows, mesh: BeamMesh, elements: np.ndarray) -> np.ndarray:
+    """Return the number in the model of the beam of each element (ne,)."""
+    return np.asarray(rows.system.blocks[mesh.block].beam[mesh.in_block(elements)])
 
 
 def _numbers(elements: np.ndarray, where: np.ndarray) -> np.ndarray:

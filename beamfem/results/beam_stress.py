@@ -11,6 +11,7 @@ from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
 from beamfem.registry import offered
 from beamfem.results.free_bodies import Cuts
+from beamfem.results.neighbours import of_beam
 from beamfem.results.section_forces import at_points, in_parts, stations
 from beamfem.results.self_stress import self_stress
 from beamfem.results.strength import strengths
@@ -178,12 +179,20 @@ class BeamStress:
 
 def beam_stress(solution: "Solution", beam: Beam) -> BeamStress:
     """Return the stress of a beam at the stations of its section forces."""
-    mesh = solution.model.mesh_of(beam.start)
+    number = solution.model.number_of(beam)
+    mesh = solution.model.meshes[number]
     cuts = stations(mesh)
-    stress = stress_at(solution, mesh, cuts.element, cuts.xi)
+    stress = dict(zip(PARTS, of_beam(solution, number, _at_stations), strict=True))
     arc = mesh.arc_length(cuts.element, cuts.xi)
     units = units_of(solution.model.units)
     return BeamStress(arc, at=solution.at, beam=beam, static=solution.static, units=units, **stress)
+
+
+def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
+    """Return all parts of the stress (parts, steps, stations)."""
+    cuts = stations(mesh)
+    stress = stress_at(solution, mesh, cuts.element, cuts.xi)
+    return np.stack([stress[part] for part in PARTS])
 
 
 def peak_stress(solution: "Solution", part: Part = "von_mises") -> Peak:

@@ -52,10 +52,13 @@ class FreeBodies:
         """
         element = np.searchsorted(self.elements, cuts.element)
         now = interpolate(self.mesh, self.vectors[:, element], cuts.element, cuts.xi)
-        fraction = self._before(cuts, element)
-        turn = self.acting.moments(self.vectors, self._origin)
-        force = self._carried(self.force, self.acting.force, fraction, cuts.xi, element)
-        moment = self._carried(self.moment, turn, fraction, cuts.xi, element)
+        if not len(self.acting.rule):
+            force, moment = (_between(ends, cuts.xi, element) for ends in (self.force, self.moment))
+        else:
+            fraction = self._before(cuts, element)
+            turn = self.acting.moments(self.vectors, self._origin)
+            force = self._carried(self.force, self.acting.force, fraction, cuts.xi, element)
+            moment = self._carried(self.moment, turn, fraction, cuts.xi, element)
         moment = moment - cross(now.r - self._origin[:, element], force)
         along = direction(self.mesh, now)
         return np.stack([dot(along, force), cross(along, force), moment], axis=1)
@@ -66,9 +69,8 @@ class FreeBodies:
         """Return resultants at cuts (steps, points, ...) from those of both ends (2, steps, ne, ...) and the loads."""
         total = np.zeros((len(self.elements), len(acts), *acts.shape[2:]))
         np.add.at(total, self.acting.element, np.moveaxis(acts, 1, 0))
-        weight = xi.reshape(-1, *(1,) * (acts.ndim - 2))
-        by_start, by_end = ends[0][:, element], (ends[1] + np.moveaxis(total, 0, 1))[:, element]
-        return np.asarray((1.0 - weight) * by_start + weight * by_end - _shared(fraction, acts))
+        balanced = np.stack([ends[0], ends[1] + np.moveaxis(total, 0, 1)])
+        return np.asarray(_between(balanced, xi, element) - _shared(fraction, acts))
 
     @property
     def _origin(self) -> np.ndarray:
@@ -135,6 +137,12 @@ def parted(block: Block, elements: np.ndarray) -> Parted:
         **{name: getattr(block, name)[flat] for name in ("node_kind", "frame")},
     )
     return Parted(part, used)
+
+
+def _between(ends: np.ndarray, xi: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Return values (steps, points, ...) at points (element, xi) between those at both ends (2, steps, ne, ...)."""
+    weight = xi.reshape(-1, *(1,) * (ends.ndim - 3))
+    return np.asarray((1.0 - weight) * ends[0][:, element] + weight * ends[1][:, element])
 
 
 def _shared(fraction: csr_array, values: np.ndarray) -> np.ndarray:

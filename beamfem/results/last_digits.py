@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.assembly.differences import differentiated
+from beamfem.assembly.differences import changed, widths
 from beamfem.assembly.round_off import digits_of, remainder
 from beamfem.assembly.system import system_of
 from beamfem.once import kept_with
@@ -38,6 +38,14 @@ def _corrected(solution: "Solution") -> np.ndarray:
     return np.asarray(solution.remainders.any(axis=1))
 
 
+@kept_with
+def _widths(solution: "Solution") -> np.ndarray:
+    """Return the widths of the differences (steps,), those of the whole model: values of a beam do not depend on which
+    others are evaluated with it.
+    """
+    return widths(system_of(solution.model, solution.static), solution.remainders)
+
+
 def exactly(
     solution: "Solution",
     values: Callable[[np.ndarray], np.ndarray],
@@ -49,5 +57,4 @@ def exactly(
     result = values(p)
     if not _corrected(solution)[rows].any():
         return result
-    system = system_of(solution.model, solution.static)
-    return result + differentiated(system, values, p, solution.remainders[rows][:, some], some)
+    return result + changed(values, p, solution.remainders[rows][:, some], _widths(solution)[rows])

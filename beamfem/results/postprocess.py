@@ -151,14 +151,25 @@ def direction(mesh: BeamMesh, now: Axis) -> np.ndarray:
 def turning(
     mesh: BeamMesh, p: np.ndarray, now: Axis, element: np.ndarray, xi: np.ndarray, turned: np.ndarray | None = None
 ) -> np.ndarray:
-    """Return the rotation of the section (steps, points) [rad], full turns included; turned: see `nodal_rotations`."""
+    """Return the rotation of the section (steps, points) [rad], full turns included.
+
+    turned (steps, beams) [rad]: see `nodal_rotations`.
+    """
     start = direction(mesh, reference_axis(mesh, element, xi))
     normal = direction(mesh, now)
     angle = np.arctan2(cross(start, normal), dot(start, normal))
     inner = mesh.node.shape[1] - 1
     node = mesh.node[element, np.round(xi * inner).astype(int)]
-    near = nodal_angles(mesh, p, node) if has_angles(mesh) else nodal_rotations(mesh, p, turned)[:, node]
+    near = nodal_angles(mesh, p, node) if has_angles(mesh) else _rotations_by_beam(mesh, p, turned)[:, node]
     return np.asarray(angle + 2.0 * np.pi * np.round((near - angle) / (2.0 * np.pi)))
+
+
+def _rotations_by_beam(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None) -> np.ndarray:
+    """Return the rotations of `nodal_rotations`, which are unwrapped along each beam of a mesh."""
+    counted = [None] * len(mesh.parts) if turned is None else turned.T
+    return np.concatenate(
+        [nodal_rotations(part, p, start) for part, start in zip(mesh.parts, counted, strict=True)], axis=1
+    )
 
 
 def nodal_rotations(mesh: BeamMesh, p: np.ndarray, turned: np.ndarray | None = None) -> np.ndarray:

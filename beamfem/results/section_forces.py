@@ -12,6 +12,7 @@ from beamfem.results.acting import Rows, rows_of
 from beamfem.results.free_bodies import Cuts, Parted, cut_free, parted
 from beamfem.results.last_digits import exactly
 from beamfem.results.loading import loading
+from beamfem.results.neighbours import of_beam
 from beamfem.results.postprocess import SectionForces
 from beamfem.units import units_of
 
@@ -23,20 +24,26 @@ _VALUES = 2_000_000  # most values in one array
 
 def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     """Return the section forces of a beam at the stations listed in `SectionForces`."""
-    mesh = solution.model.mesh_of(beam.start)
+    number = solution.model.number_of(beam)
+    mesh = solution.model.meshes[number]
     cuts = stations(mesh)
-    forces = at_points(solution, mesh, cuts)
-    arc = mesh.arc_length(cuts.element, cuts.xi)
-    arc = np.where(cuts.xi == 0.0, mesh.vertices[cuts.element], arc)
-    arc = np.where(cuts.xi == 1.0, mesh.vertices[cuts.element + 1], arc)
-    return SectionForces(arc, forces[:, 0], forces[:, 1], forces[:, 2], units_of(solution.model.units))
+    (start, end), arc = mesh.ends(cuts.element), mesh.arc_length(cuts.element, cuts.xi)
+    arc = np.where(cuts.xi == 0.0, start, np.where(cuts.xi == 1.0, end, arc))
+    normal, shear, moment = of_beam(solution, number, _at_stations)
+    return SectionForces(arc, normal, shear, moment, units_of(solution.model.units))
+
+
+def _at_stations(solution: "Solution", mesh: BeamMesh) -> np.ndarray:
+    """Return normal and shear force and moment (3, steps, stations)."""
+    return at_points(solution, mesh, stations(mesh)).swapaxes(0, 1)
 
 
 def at_points(solution: "Solution", mesh: BeamMesh, cuts: Cuts, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Return normal and shear force [N] and moment [N m] (steps, 3, points) of some rows at points of a beam."""
     elements = np.unique(cuts.element)
-    own = parted(loading(solution)[0].blocks[mesh.block], mesh.first_element + elements)
-    size = mesh.classes.scale.shape[1] * (len(cuts.xi) + len(elements) * len(mesh.beam.element.field.nodes))
+    own = parted(loading(solution)[0].blocks[mesh.block], mesh.in_block(elements))
+    field = mesh.beam.element.field
+    size = len(field.nodes) * len(field.vectors) * (len(cuts.xi) + len(elements) * len(field.nodes))
     chunk = max(1, _VALUES // size)
     parts = [np.empty((0, 3, len(cuts.xi)))]
     for numbers in in_parts(len(solution), rows, chunk):

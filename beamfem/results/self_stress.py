@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.along_beam import jumps_along
+from beamfem.model.joined_mesh import JoinedMesh
 from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
@@ -33,10 +34,15 @@ def self_stress(
     eps, kappa: free strains of the section; y (n, heights) [m]; layer: the one, of several, to which y belongs; None:
     the one at the axis. It does not contribute to section forces.
     """
-    beam = mesh.beam
-    imposed = _imposed_on(solution.model).get(id(beam), [])
-    if not imposed:
+    if not any(id(part.beam) in _imposed_on(solution.model) for part in mesh.parts):
         return 0.0
+    if isinstance(mesh, JoinedMesh):
+        result = np.zeros((len(imposing(solution)[rows]), *y.shape))
+        for part, points, own in mesh.by_beam(element):
+            result[:, points] = self_stress(solution, part, own, xi[points], layer, y[points], rows)
+        return result
+    beam = mesh.beam
+    imposed = _imposed_on(solution.model)[id(beam)]
     arc = mesh.section_arc_length(element, xi)
     sections = [beam.section_at(s) for s in (arc[:1] if beam.prismatic else arc).tolist()]
     if all(expands_evenly(section, beam.material) for section in sections):

@@ -40,9 +40,10 @@ def _continued(solution: "Solution") -> np.ndarray:
 
 
 def turned_of(solution: "Solution", mesh: BeamMesh) -> np.ndarray | None:
-    """Return the start rotation of one beam (steps,) [rad]; None if its coordinates hold full turns."""
-    indices = number_uncounted(solution.model, mesh)
-    return None if indices is None else start_rotations(solution)[:, indices]
+    """Return the start rotation (steps, beams) [rad] of each beam of a mesh; None if coordinates hold full turns."""
+    indices = [number_uncounted(solution.model, part) for part in mesh.parts]
+    counted = [index for index in indices if index is not None]
+    return start_rotations(solution)[:, counted] if counted else None
 
 
 def rotations(solution: "Solution", points: Sequence[Point]) -> np.ndarray:

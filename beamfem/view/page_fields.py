@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.results.along import QUANTITIES, section_forces
+from beamfem.model.joined_mesh import alike, join
+from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
+from beamfem.results.many_beams import of_each
 from beamfem.results.solution import Solution
 from beamfem.view.shapes import Shapes, limits
 
@@ -21,7 +23,9 @@ _LEVELS = 254.0  # steps between the limits; level 0 is what is not known
 def names_of(solution: Solution) -> tuple[str, ...]:
     """Return the names of the fields of a page: stresses where a section has some."""
     known = set()
-    for mesh in solution.model.meshes:
+    model = solution.model
+    for numbers in alike(model):
+        mesh = join([model.meshes[number] for number in numbers])
         starts = np.arange(mesh.elements)
         stress = stress_at(solution, mesh, starts, np.zeros(mesh.elements), slice(len(solution) - 1, len(solution)))
         known |= {name for name, part in _STRESSES.items() if np.isfinite(stress[part]).any()}
@@ -33,19 +37,10 @@ def names_of(solution: Solution) -> tuple[str, ...]:
 def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
     """Return fields by name in levels from 1 to 255 between their limits, 0 where they are not known."""
     solution, rows = shapes.solution, shapes.rows
-    forces = [section_forces(points, solution, rows) for points in shapes.points]
-    stresses: list[dict[str, np.ndarray]] = []
-    if any(name in _STRESSES for name in names):
-        stresses = [stress_at(solution, of_beam.mesh, of_beam.element, of_beam.xi, rows) for of_beam in shapes.points]
+    by_beam = of_each(shapes.groups, lambda points: _along(points, solution, rows, names), 2)
     result = []
-    for name in names:
-        quantity = QUANTITIES[name]
-        if name in _FORCES:
-            parts = [of_beam[name] for of_beam in forces]
-        elif name in _STRESSES:
-            parts = [of_beam[_STRESSES[name]] for of_beam in stresses]
-        else:
-            parts = [quantity.values(points, solution, rows) for points in shapes.points]
+    for number, name in enumerate(names):
+        quantity, parts = QUANTITIES[name], [values[number] for values in by_beam]
         low, high = limits(parts)
         values = np.concatenate(parts, axis=1)
         known = np.isfinite(values)
@@ -53,6 +48,16 @@ def fields_of(shapes: Shapes, names: Sequence[str]) -> list[dict[str, Any]]:
         label = f"{quantity.label} [{solution.model.unit(quantity.unit)}]"
         result.append({"name": name, "label": label, "low": low, "high": high, "values": as_text(levels.astype("u1"))})
     return result
+
+
+def _along(points: AxisPoints, solution: Solution, rows: np.ndarray, names: Sequence[str]) -> np.ndarray:
+    """Return fields (names, rows, points)."""
+    result = section_forces(points, solution, rows)
+    if any(name in _STRESSES for name in names):
+        stress = stress_at(solution, points.mesh, points.element, points.xi, rows)
+        result |= {name: stress[part] for name, part in _STRESSES.items()}
+    result |= {name: QUANTITIES[name].values(points, solution, rows) for name in names if name not in result}
+    return np.stack([result[name] for name in names])
 
 
 def as_text(numbers: np.ndarray) -> str:

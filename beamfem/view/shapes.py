@@ -9,6 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints, Quantity, quantity
+from beamfem.results.many_beams import Together, of_each, together
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
@@ -43,9 +44,15 @@ class Shapes:
         return axis_points(self.solution) if self.total is None else axis_points(self.solution, self.total)
 
     @cached_property
+    def groups(self) -> list[Together]:
+        """The points of like beams, which are evaluated together."""
+        return together(self.solution.model, self.points, len(self.rows))
+
+    @cached_property
     def _moved(self) -> list[tuple[np.ndarray, np.ndarray]]:
         p = self.solution.p[self.rows]
-        return [points.positions(p) for points in self.points]
+        both = of_each(self.groups, lambda points: np.stack(points.positions(p)), 2)
+        return [(r, d) for r, d in both]
 
     @cached_property
     def body(self) -> list[np.ndarray]:
@@ -82,7 +89,8 @@ class Shapes:
     def values(self) -> list[np.ndarray]:
         """The field along each beam (rows, points)."""
         assert self.quantity is not None
-        result = [self.quantity.values(points, self.solution, self.rows) for points in self.points]
+        along = self.quantity.values
+        result = of_each(self.groups, lambda points: along(points, self.solution, self.rows))
         if not any(np.isfinite(values).any() for values in result):
             why = self.quantity.unknown_of(points.mesh.beam for points in self.points)
             raise InputError(f"no beam has a {self.quantity.label} to draw: {why}")

@@ -1,0 +1,89 @@
+"""Values at the stations of beams that are asked for one after another: those of like beams are computed together."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from beamfem.model.joined_mesh import alike, join
+from beamfem.model.mesh import BeamMesh
+from beamfem.model.model import Model
+from beamfem.once import kept_with
+
+if TYPE_CHECKING:
+    from beamfem.results.solution import Solution
+
+_VALUES = 200_000  # most values that are computed at once
+_BEAMS = 64  # most beams; more would hardly save time, but take memory where only a few beams are asked for
+_MOST = 1_000_000  # most values that are kept
+Values = Callable[["Solution", BeamMesh], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class _Kept:
+    """The values of like beams by the first of them, the latest last, and how many values an element has."""
+
+    per_element: int
+    chunks: dict[int, dict[int, np.ndarray]]
+
+
+_KEPT = WeakKeyDictionary[Any, dict[Values, _Kept]]()  # of each solution
+
+
+def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
+    """Return values (k, steps, stations) of a beam, as many at each element of a kind.
+
+    From the second beam on, those of its neighbours are computed with it and kept, as far as they are few.
+    """
+    by_values, mesh = _KEPT.setdefault(solution, {}), solution.model.meshes[number]
+    if values not in by_values:
+        result = values(solution, mesh)
+        by_values[values] = _Kept(result.size // mesh.elements, {})
+        return result
+    kept = by_values[values]
+    chosen = _neighbours(solution.model, number, _VALUES // max(1, kept.per_element))
+    if len(chosen) == 1:
+        return values(solution, mesh)
+    if number not in kept.chunks.get(chosen[0], {}):
+        kept.chunks[chosen[0]] = _of_beams(solution, chosen, values)
+        chunk_sizes = {first: sum(own.size for own in chunk.values()) for first, chunk in kept.chunks.items()}
+        while sum(chunk_sizes.values()) > _MOST and len(chunk_sizes) > 1:
+            oldest = next(iter(chunk_sizes))
+            del kept.chunks[oldest], chunk_sizes[oldest]
+    return kept.chunks[chosen[0]][number].copy()  # the user may change what it gets
+
+
+def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[int, np.ndarray]:
+    """Return the values of like beams by their numbers."""
+    meshes = [solution.model.meshes[number] for number in numbers]
+    joined = values(solution, join(meshes))
+    elements = np.cumsum([mesh.elements for mesh in meshes])
+    stations = joined.shape[-1] // int(elements[-1])
+    return dict(zip(numbers, np.split(joined, stations * elements[:-1], axis=-1), strict=True))
+
+
+def _neighbours(model: Model, number: int, elements: int) -> list[int]:
+    """Return the numbers of beams like one, with its own, that have up to so many elements, or only one."""
+    place = _places(model)[number]
+    most = max(1, min(_BEAMS, elements // place.largest))
+    return place.group[place.at - place.at % most :][:most]
+
+
+class _Place(NamedTuple):
+    """The numbers of beams that are like one, its place among them, and the most elements that one of them has."""
+
+    group: list[int]
+    at: int
+    largest: int
+
+
+@kept_with
+def _places(model: Model) -> dict[int, _Place]:
+    """Return the place of each beam."""
+    result = dict[int, _Place]()
+    for group in alike(model):
+        largest = max(model.meshes[number].elements for number in group)
+        result |= {number: _Place(group, at, largest) for at, number in enumerate(group)}
+    return result

@@ -4,7 +4,7 @@ import pytest
 from random_models import random_recipe
 
 import beamfem as bf
-from beamfem.linalg import eigenpairs
+from beamfem.linalg import eigenpairs, general_pairs, repeated
 from beamfem.solve.stability import linearised
 
 
@@ -33,7 +33,13 @@ def test_a_search_along_a_path_computes_a_few_modes_only(monkeypatch):
 
         return called
 
-    for where, names in ((eigenpairs, ("eig", "eigh", "cholesky")), (linearised, ("eig", "eigh"))):
+    solvers = {
+        eigenpairs: ("eigh", "cholesky"),
+        general_pairs: ("eig",),
+        repeated: ("eig", "eigh"),
+        linearised: ("eig", "eigh"),
+    }
+    for where, names in solvers.items():
         for name in names:
             monkeypatch.setattr(where, name, counted(getattr(where, name)))
     model = random_recipe(2).build().model

@@ -232,7 +232,7 @@ class Assembler:
         for field, address in zip(fields, states, strict=True):
             self.table[field] = address
         for work in self.works:
-            model_passes.predict_resultants(work.address, self.address)
+            model_passes.predict_resultants(work.address, self.address, 0)
         self.raise_errors()
 
     def raise_errors(self) -> None:

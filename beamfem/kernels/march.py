@@ -9,7 +9,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
-_hold, _two, _jacobian, _count = caller("iiirnr"), caller("ii"), caller("i", "d"), caller("inrrr")
+_hold, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
 _stage, _in_two, _place = caller("iiii", "d"), caller("iiii", "d"), caller("iii")
 _judge = inlined(motion_steps.judge)
 
@@ -32,7 +32,7 @@ def _predict_resultants(s, b, call, system):
     s[r.COORDINATES_V] = b[r.CHANGE]
     s[r.COORDINATES_A] = velocity
     for group in range(s[r.GROUPS]):
-        _two(call[r.PREDICT_RESULTANTS], groups[group], system)
+        _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
     s[r.COORDINATES_V] = velocity
     s[r.COORDINATES_A] = acceleration
 

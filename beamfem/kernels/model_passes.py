@@ -108,13 +108,14 @@ def rate_nodes(group, system, row):
         first += count
 
 
-@routine("ii")
-def predict_resultants(group, system):
+@routine("iii")
+def predict_resultants(group, system, placed):
     """Fill `STRESS` with the resultants at the strains eps + (d eps / de) B dp, minus imposed strains, after a step dp.
 
     eps and B are those at p, and `COORDINATES_V` holds dp instead of p'. They are the independent stresses of Magisano,
     Leonetti and Garcea 2017 for the geometric part of the tangent. If strain rates matter, `COORDINATES_A` holds p'
-    instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t.
+    instead of p'', and t C (d eps / de) B (p' + cv dp) is added, with the retardation time t. placed: whether the nodes
+    were placed at p by the residual or tangent before.
     """
     b = wholes(group)
     call, x, director = wholes(b[r.ROUTINES]), reals(b[r.SPACE]), reals(b[r.DIRECTOR])
@@ -129,7 +130,8 @@ def predict_resultants(group, system):
     damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
     cv = reals(s[r.FACTORS])[1] if damped else 0.0
     rows = b[r.CURVATURE] if damped else 2 * size
-    _three(call[r.PLACE_NODES], group, system, 0)
+    if placed == 0 or b[r.SHARED] != 0:
+        _three(call[r.PLACE_NODES], group, system, 0)
     _three(call[r.RATE_NODES], group, system, b[r.ACCELERATION])
     if damped:
         step = s[r.COORDINATES_V]

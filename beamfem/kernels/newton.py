@@ -5,7 +5,7 @@ from beamfem.kernels.compiling import routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 
-_balance, _two, _jacobian = caller("i"), caller("ii"), caller("i", "d")
+_balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
 _factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
 _hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
@@ -109,7 +109,7 @@ def iterate(system, solver, calls):
         first = False
         if limits[5] > 0.0:
             for group in range(s[r.GROUPS]):
-                _two(call[r.PREDICT_RESULTANTS], groups[group], system)
+                _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
         found[0] += 1.0
         found[2], found[1] = found[1], _take(call[r.TAKE_STEP], n, step, p, scale)
         if found[0] == 1.0:
@@ -144,7 +144,7 @@ def count_after_step(system, solver, calls):
     rows, right, limits, reach = reals(b[r.ROWS]), reals(b[r.RIGHT]), reals(b[r.LIMITS]), slots(b[r.REACH])
     groups = wholes(s[r.GROUP_RECORDS])
     for group in range(s[r.GROUPS]):
-        _two(call[r.PREDICT_RESULTANTS], groups[group], system)
+        _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 0)
     s[r.TANGENT] = s[r.PREDICTED] = 1
     _balance(call[r.BALANCE], system)
     if rollers > 0:

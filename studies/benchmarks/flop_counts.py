@@ -98,11 +98,12 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tally = Tally()
     _, one = case(form, elements)
     half, n = one.half_width, len(one.right)
-    own = two_sided(half, n < SHORT)
+    # of a known half width, rows are changed in whole lanes, also beside the band
+    own, needed = two_sided(half, n < SHORT), two_sided(0, True)
     equations, space = one.equations, np.empty(n)
     arrays = [*equations.memory, one.state, one.residual, one.band, one.right, one.reach, space]
     addresses = [each.ctypes.data for each in (one.band, one.right, one.reach, space)]
-    routines = balance, own.factor, own.solve
+    routines = balance, needed.factor, own.solve
     for routine in routines:
         assert routine.address
     memory = Memory(arrays, lambda value: Counted(value, tally))
@@ -119,7 +120,7 @@ def _count_chain(form: str, elements: int) -> dict[str, tuple[int, int]]:
     tasks = {
         RESIDUAL: lambda: balanced(False),
         TANGENT: lambda: balanced(True),
-        FACTOR: lambda: own.factor.function(n, half, reach, rows, pivots),
+        FACTOR: lambda: needed.factor.function(n, half, reach, rows, pivots),
         SOLVE: solved,
     }
     found = {}

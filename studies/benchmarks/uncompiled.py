@@ -79,13 +79,14 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         "room": lambda count: Pointer([0.0] * count, 0),
         "push": push,
     }
+    constants = {"WIDTH": 1, "WRITES_PARTS": False}
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
     try:
         for module in _modules():
             for name, value in list(vars(module).items()):
-                if name == "WIDTH":
+                if name in constants:
                     replaced.append((module, name, value))
-                    setattr(module, name, 1)
+                    setattr(module, name, constants[name])
                 elif isinstance(value, Operation) and module not in (lanes, pointers):
                     replaced.append((module, name, value))
                     setattr(module, name, plain.get(name, call))

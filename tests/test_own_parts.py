@@ -7,7 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.start.courses import courses
+from beamfem.solve.start.functions_of_time import functions_of_time
 from tests.own_parts import Bracket, Growth, Guide, HalfWave, Traction, Weld
 
 ELEMENTS = [bf.CRBF(order=2), bf.ANCFCRBF(), bf.ANCF(forces=bf.Structural()), bf.ShearRigid()]
@@ -317,4 +317,4 @@ def test_amplitudes_that_are_methods_are_each_their_own():
     loads = [Blow(one, 1.0), Blow(two, 2.0)]
     model = bf.Model([one, two], [bf.Clamp(one.start), bf.Clamp(two.end)], loads, [bf.Rigid(one.end, two.start)])
     assert not system_of(model, static=True).symmetric
-    assert len(courses(system_of(model, static=False))) == 2
+    assert len(functions_of_time(system_of(model, static=False))) == 2

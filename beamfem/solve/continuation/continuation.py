@@ -16,7 +16,7 @@ from beamfem.once import cached_property
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.loop import iterate
-from beamfem.solve.start.courses import Course, courses
+from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
 _LARGEST_RATIO = 30.0  # of the load scale to the soft load
@@ -76,9 +76,9 @@ class Continuation:
     load_step: float
 
     @cached_property
-    def courses(self) -> list[Course]:
+    def functions_of_time(self) -> list[FunctionOfTime]:
         """Functions of the load factor that act on the model."""
-        return courses(self.system)
+        return functions_of_time(self.system)
 
     @cached_property
     def scale(self) -> np.ndarray:

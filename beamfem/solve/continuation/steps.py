@@ -68,10 +68,13 @@ def longest_step(line: Continuation, point: PathPoint, end: float | None = None)
     before, slope = point.load_factor, float(point.tangent[-1])
     while line.system.largest_turn(before, before + size * slope) > _LARGEST_PRESCRIBED_TURN and size > _SMALLEST:
         size *= 0.5
-    if line.courses and end is not None and (end - before) * slope > 0.0:
+    if line.functions_of_time and end is not None and (end - before) * slope > 0.0:
         size = min(size, _OVER * (end - before) / slope)
     with suppress(InputError):  # from a function that is not defined so far
-        while any(course.bulges(before, before + size * slope) for course in line.courses) and size > _SMALLEST:
+        while (
+            any(function.bulges(before, before + size * slope) for function in line.functions_of_time)
+            and size > _SMALLEST
+        ):
             size *= 0.5
     return size
 

@@ -24,7 +24,7 @@ from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lac
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import name_unresolved
-from beamfem.solve.start.courses import courses
+from beamfem.solve.start.functions_of_time import functions_of_time
 from beamfem.solve.start.interrupted import kept
 from beamfem.solve.start.memory import require_memory
 from beamfem.solve.start.start_state import last_state, start_state
@@ -100,8 +100,8 @@ def simulate(
     require_memory(model.size, duration, step, save_every)
     integrator = integrator or GeneralizedAlpha()
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
-    acting, second = courses(system), system.model.unit("s")
-    parts = stretches(times, [course for course in acting if course.amplitude])
+    acting, second = functions_of_time(system), system.model.unit("s")
+    parts = stretches(times, [function for function in acting if function.amplitude])
     ends = np.concatenate([times[:1], *(part.times[1:] for part in parts)])
     prescribed = prescribed_motion(system, ends)
     unresolved = name_unresolved(acting, ends, SIDE * step, second)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamfem.solve.start.courses import Course
+from beamfem.solve.start.functions_of_time import FunctionOfTime
 
 _NEAR = 1e-4  # of a step: a kink this close to the end of a step is taken to be there
 SIDE = 1e-9  # of a step: distance from a kink at which a load is evaluated on either side of it
@@ -31,27 +31,27 @@ class Stretch:
     loads_to: float
 
 
-def stretches(grid: np.ndarray, amplitudes: list[Course]) -> tuple[Stretch, ...]:
+def stretches(grid: np.ndarray, amplitudes: list[FunctionOfTime]) -> tuple[Stretch, ...]:
     """Return the steps between the times of a grid (steps + 1,) [s], divided at the kinks of amplitudes.
 
     A part in which such an amplitude is not linear is divided further.
     """
     step, end_time = float(grid[1]), float(grid[-1])
-    declaring = [course for course in amplitudes if course.kinks]
+    declaring = [function for function in amplitudes if function.kinks]
     if not declaring:
         return (Stretch(grid, step, True, True, True, 0.0, end_time),)
-    kinks = _apart(np.concatenate([course.kinks for course in declaring]), _NEAR * step, end_time)
+    kinks = _apart(np.concatenate([function.kinks for function in declaring]), _NEAR * step, end_time)
     nearest = np.minimum(np.round(kinks / step).astype(int), len(grid) - 1)
     inside = np.abs(kinks - grid[nearest]) > _NEAR * step
     places = np.where(inside, kinks, grid[nearest])
-    looks = [course.look(grid, SIDE * step) for course in declaring]
+    looks = [function.look(grid, SIDE * step) for function in declaring]
     sizes = [size for _, size in looks]
     jumps = {
         at: kink
         for at, kink in zip(places.tolist(), kinks.tolist(), strict=True)
         if any(
-            _jump(course, kink, SIDE * step, end_time) > _JUMP * size
-            for course, size in zip(declaring, sizes, strict=True)
+            _jump(function, kink, SIDE * step, end_time) > _JUMP * size
+            for function, size in zip(declaring, sizes, strict=True)
         )
     }
     bulging = np.flatnonzero(np.any([steps for steps, _ in looks], axis=0))
@@ -80,16 +80,16 @@ def _apart(kinks: np.ndarray, near: float, end_time: float) -> np.ndarray:
     return np.array(kept)
 
 
-def _jump(course: Course, kink: float, side: float, end_time: float) -> float:
+def _jump(function: FunctionOfTime, kink: float, side: float, end_time: float) -> float:
     """Return the jump of a load across a kink; it is not evaluated before or after the motion."""
-    return abs(course.at(min(kink + side, end_time)) - course.at(max(kink - side, 0.0)))
+    return abs(function.at(min(kink + side, end_time)) - function.at(max(kink - side, 0.0)))
 
 
-def _parts(declaring: list[Course], sizes: list[float], begin: float, end: float) -> int:
+def _parts(declaring: list[FunctionOfTime], sizes: list[float], begin: float, end: float) -> int:
     """Return the number of equal steps into which the time between two kinks is divided."""
     inset, parts = SIDE * (end - begin), 1
-    for course, size in zip(declaring, sizes, strict=True):
+    for function, size in zip(declaring, sizes, strict=True):
         if size > 0.0:
-            bend = course.bend(begin + inset, end - inset)
+            bend = function.bend(begin + inset, end - inset)
             parts = max(parts, int(np.ceil(np.sqrt(bend / (_STRAIGHT * size)))))
     return min(parts, _MOST_PARTS)

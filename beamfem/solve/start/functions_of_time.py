@@ -13,15 +13,15 @@ from beamfem.model.named import beam_in_words
 from beamfem.model.time_functions import kinks_of
 from beamfem.validation import function_value
 
-# of a step, at which a course is evaluated; unequal, so that few oscillations are missed
+# of a step, at which a function is evaluated; unequal, so that few oscillations are missed
 _SHARES = np.array([0.21, 0.48, 0.77])
 # of a step in statics, which may be far too long at first
 _MANY_SHARES = np.append(0.5 * (np.sqrt(5.0) - 1.0) * np.arange(1, 16) % 1.0, 0.5 ** np.arange(2, 24))
-_BULGE = 0.1  # of the scale of a course; an oscillation with seven steps per period stays below
+_BULGE = 0.1  # of the scale of a function; an oscillation with seven steps per period stays below
 
 
 @dataclass(frozen=True)
-class Course:
+class FunctionOfTime:
     """A function of time that acts on a model, its description, and whether it is an amplitude or a motion."""
 
     name: str
@@ -83,17 +83,17 @@ class Course:
         return max(abs(self.at(begin + s * (end - begin)) - (1.0 - s) * low - s * high) for s in _SHARES.tolist())
 
 
-def courses(system: System) -> list[Course]:
+def functions_of_time(system: System) -> list[FunctionOfTime]:
     """Return every function of time that acts on the model of a system, each once."""
     model = system.model
-    by_id: dict[int, Course] = {}
+    by_id: dict[int, FunctionOfTime] = {}
     for load in model.loads:
         amplitude = load.amplitude  # a method is a new object at each access
         if amplitude is not None:
-            by_id.setdefault(id(amplitude), Course(f"amplitude of {_name(load, model)}", amplitude, True))
+            by_id.setdefault(id(amplitude), FunctionOfTime(f"amplitude of {_name(load, model)}", amplitude, True))
     for item in system.prescribed:
         if callable(item.value):
-            by_id.setdefault(id(item.value), Course(f"motion prescribed at {item.point}", item.value, False))
+            by_id.setdefault(id(item.value), FunctionOfTime(f"motion prescribed at {item.point}", item.value, False))
     return list(by_id.values())
 
 

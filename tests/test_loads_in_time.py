@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.solve.motion.time_steps import stretches
-from beamfem.solve.start.courses import Course
+from beamfem.solve.start.functions_of_time import FunctionOfTime
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 
@@ -165,7 +165,7 @@ def test_steps_are_divided_at_the_same_kinks_in_any_unit_of_time(unit):
     found = []
     for own in (1.0, unit):
         function = bf.Piecewise(lambda t, own=own: amplitude(t * unit / own), tuple(own * np.array([3.0, 5.5])))
-        found.append(stretches(own * np.arange(11.0), [Course("amplitude", function, True)]))
+        found.append(stretches(own * np.arange(11.0), [FunctionOfTime("amplitude", function, True)]))
     plain, scaled = found
     assert [len(one.times) for one in scaled] == [len(one.times) for one in plain]
     for one, other in zip(plain, scaled, strict=True):

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 import beamfem as bf
-from beamfem.solve.start.courses import Course
+from beamfem.solve.start.functions_of_time import FunctionOfTime
 
 STEEL = bf.Material(2e11, 0.3, 7800.0)
 SECTION = bf.Rectangle(0.1, 1e-3)
@@ -58,9 +58,9 @@ def test_a_column_under_a_pulse_loses_its_stability_and_regains_it(width, peak):
 
 def test_a_step_over_a_declared_kink_is_seen():
     spike = bf.Piecewise(lambda at: float(np.interp(at, *SPIKE)), kinks=SPIKE[0][1:4])
-    assert Course("a spike", spike, True).bulges(0.0, 1.0)
-    assert not Course("a spike", spike, True).bulges(0.302, 1.0)
-    assert not Course("its rise", spike, True).bulges(0.0, 0.301)
+    assert FunctionOfTime("a spike", spike, True).bulges(0.0, 1.0)
+    assert not FunctionOfTime("a spike", spike, True).bulges(0.302, 1.0)
+    assert not FunctionOfTime("its rise", spike, True).bulges(0.0, 0.301)
 
 
 def test_a_pulse_of_a_motion_is_followed():

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from beamfem.kernels.compiler.build import Build
 from beamfem.kernels.compiler.callables import operation
-from beamfem.kernels.compiler.kinds import WHOLE, Value
+from beamfem.kernels.compiler.kinds import PAIRS, WHOLE, Value
 from beamfem.kernels.compiling import Routine, inlined, routine
 from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, room
@@ -38,11 +38,12 @@ def band(half_width: int) -> Band:
 
 @operation
 def push(build: Build, window: Value, count: Value, value: Value) -> None:
-    """Move the numbers of a window one place down, and put a value at its end."""
-    addresses = [build.place(window, Value(WHOLE, WHOLE.llvm(index))) for index in range(count.llvm.constant)]
-    for to, source in pairwise(addresses):
-        build.builder.store(build.builder.load(source), to)
-    build.builder.store(value.llvm, addresses[-1])
+    """Move the numbers, or pairs, of a window one place down, and put a value at its end."""
+    step = 2 if window.kind is PAIRS else 1
+    places = [Value(WHOLE, WHOLE.llvm(step * index)) for index in range(count.llvm.constant)]
+    for to, source in pairwise(places):
+        build.write(window, to, build.read(window, source))
+    build.write(window, places[-1], value)
 
 
 @cache

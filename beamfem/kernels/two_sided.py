@@ -1,7 +1,8 @@
 """LU factorisation of a band matrix from both ends to the middle, for solutions with the same factors time and again.
 
-Each unknown of a solution waits for the one before: from both ends at once, half as long. Rows 0 to m - 1 are
-eliminated downwards, as many at the end upwards, and what is left between them is a block of w or w + 1 rows.
+Each unknown of a solution waits for the one before: from both ends at once, half as long, and the unknowns of both
+ends are a pair of numbers. Rows 0 to m - 1 are eliminated downwards, as many at the end upwards; between them a block
+of w or w + 1 rows is left.
 """
 
 from functools import cache
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 from beamfem.kernels.band import FAST, KNOWN, band, elimination, push
 from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.pairs import as_pairs, first_of, paired, second_of
 from beamfem.kernels.pointers import at, room
 
 
@@ -35,13 +37,30 @@ def two_sided(half_width: int, short: bool) -> TwoSided:
 
 
 def _two_sided(w: int) -> TwoSided:
-    case, width = f"half_width_{w}", 2 * w + 1
+    case, width, both = f"half_width_{w}", 2 * w + 1, 2 * w
     _down = inlined(elimination(w, f"{case}_down", backwards=False))
     _up = inlined(elimination(w, f"{case}_up", backwards=True))
 
+    @inlined
+    def _pair_rows(m, n, ab):
+        """Put the factors of a row from the top and of one from the bottom side by side, as a solution reads them.
+
+        The upper row has the pairs of the lower factor and its own inverse pivot, the lower row those of the upper one.
+        """
+        down, up = room(width), room(width)
+        for i in range(m):
+            upper, lower = at(ab, i * width), at(ab, (n - 1 - i) * width)
+            for j in range(width):
+                down[j] = upper[j]
+                up[j] = lower[2 * w - j]
+            for j in range(w):
+                upper[2 * j], upper[2 * j + 1] = down[j], up[j]
+                lower[2 * j], lower[2 * j + 1] = down[2 * w - j], up[2 * w - j]
+            upper[2 * w], lower[2 * w] = down[w], up[w]
+
     @routine("iisrr", "d", case, fastmath=FAST)
     def factor(n, half, reach, ab, original):
-        """Factor ab (n, 2 w + 1) in place; original (n,): space. See `band.Band` for what is left in it."""
+        """Factor ab (n, 2 w + 1) in place, see `_pair_rows`; original (n,): space."""
         m = max(0, (n - w) // 2)
         end = n - m
         for i in range(m, end):
@@ -63,52 +82,46 @@ def _two_sided(w: int) -> TwoSided:
                     row[j] -= multiplier * pivot[j]
             for j in range(k + 1, end):
                 pivot[j] *= inverse
+        _pair_rows(m, n, ab)
         return worst
 
     @routine("iirr", case=case, fastmath={"contract"})
     def solve(n, half, lu, x):
         """Replace the right-hand side x (n,) by the solution."""
         m = max(0, (n - w) // 2)
-        end, above, below = n - m, room(w), room(w)
+        end, window = n - m, as_pairs(room(both))
         for j in range(w):
-            above[j] = 0.0
-            below[j] = 0.0
+            window[2 * j] = paired(0.0, 0.0)
         for i in range(m):
-            row, other = at(lu, i * width), at(lu, (n - i) * width - 1)
-            total, sum_below = x[i], x[n - 1 - i]
+            factors, total = as_pairs(at(lu, i * width)), paired(x[i], x[n - 1 - i])
             for j in range(w):
-                total -= row[j] * above[j]
-                sum_below -= other[-j] * below[j]
-            push(above, w, total)
-            push(below, w, sum_below)
-            x[i], x[n - 1 - i] = total, sum_below
+                total -= factors[2 * j] * window[2 * j]
+            push(window, w, total)
+            x[i], x[n - 1 - i] = first_of(total), second_of(total)
         for i in range(m, end):
-            row, total = at(lu, i * width + w - i), x[i]
+            row, value = at(lu, i * width + w - i), x[i]
             for j in range(max(0, i - w), i):
-                total -= row[j] * x[j]
+                value -= row[j] * x[j]
             for j in range(end, min(n, i + w + 1)):
-                total -= row[j] * x[j]
-            x[i] = total
+                value -= row[j] * x[j]
+            x[i] = value
         for i in range(end - 1, m - 1, -1):
             row = at(lu, i * width + w - i)
-            total = x[i] * row[i]
+            value = x[i] * row[i]
             for j in range(i + 1, end):
-                total -= row[j] * x[j]
-            x[i] = total
+                value -= row[j] * x[j]
+            x[i] = value
         if m == 0:
             return
         for j in range(w):
-            push(above, w, x[m + w - 1 - j])
-            push(below, w, x[end - w + j])
+            push(window, w, paired(x[m + w - 1 - j], x[end - w + j]))
         for i in range(m - 1, -1, -1):
-            row, other = at(lu, i * width), at(lu, (n - i) * width - 1)
-            total, sum_below = x[i] * row[w], x[n - 1 - i] * other[-w]
+            other = at(lu, (n - 1 - i) * width)
+            factors, total = as_pairs(other), paired(x[i] * lu[i * width + 2 * w], x[n - 1 - i] * other[2 * w])
             for j in range(w):
-                total -= row[2 * w - j] * above[j]
-                sum_below -= other[j - 2 * w] * below[j]
-            push(above, w, total)
-            push(below, w, sum_below)
-            x[i], x[n - 1 - i] = total, sum_below
+                total -= factors[2 * j] * window[2 * j]
+            push(window, w, total)
+            x[i], x[n - 1 - i] = first_of(total), second_of(total)
 
     return TwoSided(factor, solve)
 

@@ -10,12 +10,12 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import ModuleType, SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import beamfem.kernels
-from beamfem.kernels import lanes, nodes, pointers
+from beamfem.kernels import lanes, nodes, pairs, pointers
 from beamfem.kernels.compiler.callables import Inlined, Operation
 from beamfem.kernels.compiling import Routine
 
@@ -33,6 +33,29 @@ class Pointer:
 
     def __setitem__(self, index: int, value: Any) -> None:
         self.values[self.first + index] = value
+
+
+class Pair(NamedTuple):
+    """Two numbers that are subtracted from and multiplied by those of another pair."""
+
+    first: Any
+    second: Any
+
+    def __sub__(self, other: "Pair") -> "Pair":
+        return Pair(self.first - other.first, self.second - other.second)
+
+    def __mul__(self, other: "Pair") -> "Pair":  # type: ignore[override]
+        return Pair(self.first * other.first, self.second * other.second)
+
+
+class Pairs(Pointer):
+    """A place in an array whose entries are read as pairs; an entry that was set to a pair is one."""
+
+    __slots__ = ()
+
+    def __getitem__(self, index: int) -> Pair:
+        value = super().__getitem__(index)
+        return value if isinstance(value, Pair) else Pair(value, super().__getitem__(index + 1))
 
 
 class Memory:
@@ -64,7 +87,8 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         return Pointer(pointer.values, pointer.first + int(count))
 
     def push(window: Pointer, count: int, value: Any) -> None:
-        window.values[:] = [*window.values[1:], value]
+        step = 2 if isinstance(window, Pairs) else 1
+        window.values[:] = [*window.values[step:], *step * [value]]
 
     plain = {
         "at": at,
@@ -78,6 +102,10 @@ def uncompiled(memory: Memory) -> Iterator[None]:
         "merged": lambda value, other, count: value,
         "room": lambda count: Pointer([0.0] * count, 0),
         "push": push,
+        "as_pairs": lambda pointer: Pairs(pointer.values, pointer.first),
+        "paired": Pair,
+        "first_of": lambda pair: pair.first,
+        "second_of": lambda pair: pair.second,
     }
     constants = {"WIDTH": 1, "WRITES_PARTS": False}
     numbers = SimpleNamespace(floor=lambda x: math.floor(float(x)))
@@ -87,7 +115,7 @@ def uncompiled(memory: Memory) -> Iterator[None]:
                 if name in constants:
                     replaced.append((module, name, value))
                     setattr(module, name, constants[name])
-                elif isinstance(value, Operation) and module not in (lanes, pointers):
+                elif isinstance(value, Operation) and module not in (lanes, pairs, pointers):
                     replaced.append((module, name, value))
                     setattr(module, name, plain.get(name, call))
                 elif isinstance(value, Inlined):

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 from llvmlite import ir
 
-from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, REALS, ROWS, WHOLE, WIDTH, Kind, Value
+from beamfem.kernels.compiler.kinds import FLAG, LANES, NUMBER, PAIR, PAIRS, REALS, ROWS, WHOLE, WIDTH, Kind, Value
+
+_TO_NUMBERS = (REALS, ROWS, PAIRS)
 
 
 @dataclass
@@ -40,15 +42,15 @@ class Build:
 
     def converted(self, value: Value, kind: Kind) -> ir.Value:
         """Convert a value to another kind; raise TypeError if that would lose information."""
-        if value.kind is kind or {value.kind, kind} == {REALS, ROWS}:
+        if value.kind is kind or (value.kind in _TO_NUMBERS and kind in _TO_NUMBERS):
             return value.llvm
         if value.kind is FLAG and kind is WHOLE:
             return self.builder.zext(value.llvm, WHOLE.llvm)
         if value.kind in (FLAG, WHOLE) and kind in (NUMBER, LANES):
             number = self.builder.sitofp(self.converted(value, WHOLE), NUMBER.llvm)
             return number if kind is NUMBER else self.same(number)
-        if value.kind is NUMBER and kind is LANES:
-            return self.same(value.llvm)
+        if value.kind is NUMBER and kind in (LANES, PAIR):
+            return self.same(value.llvm, kind.llvm.count)
         raise TypeError(f"a {value.kind.name} is no {kind.name}")
 
     def truth(self, value: Value) -> ir.Value:
@@ -64,12 +66,13 @@ class Build:
         if index.kind is not WHOLE:
             raise TypeError(f"a {index.kind.name} is no place in memory")
         address = self.builder.gep(pointer.llvm, [index.llvm], inbounds=True)
-        return self.builder.bitcast(address, LANES.llvm.as_pointer()) if pointer.kind is ROWS else address
+        several = pointer.kind.entry if pointer.kind.entry in (LANES, PAIR) else None
+        return address if several is None else self.builder.bitcast(address, several.llvm.as_pointer())
 
     def read(self, pointer: Value, index: Value) -> Value:
         """Return an entry of a pointer."""
         kind = _entry(pointer)
-        align = 8 if kind is LANES else None
+        align = 8 if kind in (LANES, PAIR) else None
         entry = self.builder.load(self.place(pointer, index), align=align)
         return Value(kind, self.builder.sext(entry, WHOLE.llvm) if pointer.kind.stored != kind.llvm else entry)
 
@@ -78,7 +81,7 @@ class Build:
         kind = _entry(pointer)
         if pointer.kind.stored != kind.llvm:
             raise TypeError(f"a {pointer.kind.name} is only read")
-        align = 8 if kind is LANES else None
+        align = 8 if kind in (LANES, PAIR) else None
         self.builder.store(self.converted(value, kind), self.place(pointer, index), align=align)
 
 

@@ -161,6 +161,26 @@ def from_both_ends(w, n, rows):
     return two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n))
 
 
+def from_both_ends_in_parts(w, n, rows):
+    return factor_halves(w, n, (n - 2 * w) // 2, whole_band(n, w), rows)
+
+
+@pytest.mark.parametrize("unit", [1e-280, 1e-160, 1e160, 1e280])
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("w", KNOWN)
+def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
+    """Pivots were found by products of two entries: beyond 1e154 or below 1e-162 these were no numbers, or zero."""
+    n = 6 * w + 1
+    _, rows = matrix(n, w, rng)
+    rows[::3, w] *= -1.0
+    scaled = unit * rows
+    ratio = factor(w, n, rows)
+    assert ratio > 0.1
+    np.testing.assert_allclose(factor(w, n, scaled), ratio, rtol=1e-9)
+    scaled[:, w] *= unit
+    np.testing.assert_allclose(scaled, rows, rtol=1e-9, atol=1e-12)
+
+
 @pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
 @pytest.mark.parametrize("w", KNOWN)
 def test_nothing_beside_the_matrix_is_read_or_changed(w, factor, rng):

@@ -176,7 +176,7 @@ def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
     scaled = unit * rows
     ratio = factor(w, n, rows)
     assert ratio > 0.1
-    np.testing.assert_allclose(factor(w, n, scaled), ratio, rtol=1e-9)
+    assert factor(w, n, scaled) == pytest.approx(ratio, rel=1e-9)
     scaled[:, w] *= unit
     np.testing.assert_allclose(scaled, rows, rtol=1e-9, atol=1e-12)
 

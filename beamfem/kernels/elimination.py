@@ -5,7 +5,7 @@ the diagonal holds the inverse pivots. If the half width is known to the compile
 """
 
 from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, merged, power_of_two, zeros
 from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -54,10 +54,13 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
         if start == 0:
             for i in range(min(count, w)):
                 original[i] = abs(ab[way * (i * width + w)])
-        # entries are not multiplied in a unit of their own: the square of 1e200 is too large for a number
+        # Products of two entries have a unit of 1, as the square of 1e200 would be too large for a number. A power of two
+        # changes no digit of them.
         size = 1.0
         if start < stop:
-            size = original[0]
+            size = power_of_two(original[0])
+            if size == 0.0:
+                return 0.0
         unit = 1.0 / size
         for k in range(start, stop, 2):
             top = at(ab, way * k * width)

@@ -181,6 +181,17 @@ def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
     np.testing.assert_allclose(scaled, rows, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("w", KNOWN)
+def test_entries_too_large_for_the_unit_of_the_others_are_refused(w, factor, rng):
+    """The inverse of a determinant that was infinite was zero, and the unknown too, whatever its right-hand side."""
+    n = 6 * w + 1
+    for where in (0, 1, n - 2, n - 1):
+        _, rows = matrix(n, w, rng)
+        rows[where, w] = 1e308
+        assert factor(w, n, rows) == 0.0 or rows[:, w].all()
+
+
 @pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
 @pytest.mark.parametrize("w", KNOWN)
 def test_nothing_beside_the_matrix_is_read_or_changed(w, factor, rng):

@@ -54,8 +54,8 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
         if start == 0:
             for i in range(min(count, w)):
                 original[i] = abs(ab[way * (i * width + w)])
-        # Products of two entries have a unit of 1, as the square of 1e200 would be too large for a number. A power of two
-        # changes no digit of them.
+        # entries are multiplied in a unit near their size, as the square of 1e200 is too large for a number; a power of
+        # two changes no digit
         size = 1.0
         if start < stop:
             size = power_of_two(original[0])
@@ -91,9 +91,9 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             # the second pivot is the determinant of both over the first one: its division waits for no other division
             own, beside, c = a * unit, top[way * (w + 1)] * unit, below[way * (w - 1)]
             determinant = own * below[way * w] - c * beside
-            if determinant == 0.0 or original[k + 1] == 0.0:
-                return 0.0
             inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse) * size
+            if determinant == 0.0 or inverse_determinant == 0.0 or original[k + 1] == 0.0:  # the second: too large
+                return 0.0
             if pivot < worst * original[k + 1]:
                 worst = pivot / original[k + 1]
             inverse_below, multiplier = own * inverse_determinant, c * inverse

@@ -7,7 +7,7 @@ import pytest
 
 from beamfem.kernels import nodes
 from beamfem.kernels.compiling import routine
-from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, merged, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, merged, power_of_two, zeros
 from beamfem.kernels.pointers import address_of
 from beamfem.kernels.record import ROW
 
@@ -82,6 +82,18 @@ def test_the_largest_size_is_that_of_numpy_and_what_is_no_number_is_larger(count
             y[place] = special
             assert np.isnan(size(count, y)) if np.isnan(special) else size(count, y) == np.inf
     assert size(WIDTH, np.zeros(ROW)) == 0.0
+
+
+@routine("d", "d")
+def unit_of(x):
+    """Return the power of two below a number."""
+    return power_of_two(x)
+
+
+def test_powers_of_two_are_those_below_numbers():
+    for x in (1.0, 1.999, 2.0, 3.0, 1e200, 7e-200, 0.1, 1.7e308, 2.3e-308):
+        assert unit_of(x) == unit_of(-x) == 2.0 ** math.floor(math.log2(x))
+    assert unit_of(0.0) == unit_of(5e-324) == 0.0
 
 
 @pytest.mark.parametrize("most", [1.0, 10.0, 1e3, 1e6])

@@ -161,6 +161,37 @@ def from_both_ends(w, n, rows):
     return two_sided(w, False).factor(n, w, whole_band(n, w), rows, np.empty(n))
 
 
+def from_both_ends_in_parts(w, n, rows):
+    return factor_halves(w, n, (n - 2 * w) // 2, whole_band(n, w), rows)
+
+
+@pytest.mark.parametrize("unit", [1e-280, 1e-160, 1e160, 1e280])
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("w", KNOWN)
+def test_a_matrix_has_the_same_factors_in_any_unit(w, factor, unit, rng):
+    """Pivots were found by products of two entries: beyond 1e154 or below 1e-162 these were no numbers, or zero."""
+    n = 6 * w + 1
+    _, rows = matrix(n, w, rng)
+    rows[::3, w] *= -1.0
+    scaled = unit * rows
+    ratio = factor(w, n, rows)
+    assert ratio > 0.1
+    assert factor(w, n, scaled) == pytest.approx(ratio, rel=1e-9)
+    scaled[:, w] *= unit
+    np.testing.assert_allclose(scaled, rows, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("factor", [from_one_end, from_both_ends, from_both_ends_in_parts])
+@pytest.mark.parametrize("w", KNOWN)
+def test_entries_too_large_for_the_unit_of_the_others_are_refused(w, factor, rng):
+    """The inverse of a determinant that was infinite was zero, and the unknown too, whatever its right-hand side."""
+    n = 6 * w + 1
+    for where in (0, 1, n - 2, n - 1):
+        _, rows = matrix(n, w, rng)
+        rows[where, w] = 1e308
+        assert factor(w, n, rows) == 0.0 or rows[:, w].all()
+
+
 @pytest.mark.parametrize("factor", [from_one_end, from_both_ends])
 @pytest.mark.parametrize("w", KNOWN)
 def test_nothing_beside_the_matrix_is_read_or_changed(w, factor, rng):

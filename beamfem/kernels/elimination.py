@@ -5,7 +5,7 @@ the diagonal holds the inverse pivots. If the half width is known to the compile
 """
 
 from beamfem.kernels.compiling import Routine, inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, merged, power_of_two, zeros
 from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
@@ -54,6 +54,14 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
         if start == 0:
             for i in range(min(count, w)):
                 original[i] = abs(ab[way * (i * width + w)])
+        # entries are multiplied in a unit near their size, as the square of 1e200 is too large for a number; a power of
+        # two changes no digit
+        size = 1.0
+        if start < stop:
+            size = power_of_two(original[0])
+            if size == 0.0:
+                return 0.0
+        unit = 1.0 / size
         for k in range(start, stop, 2):
             top = at(ab, way * k * width)
             if k + w < count:
@@ -81,14 +89,14 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             if k + 1 + w < count:
                 original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])
             # the second pivot is the determinant of both over the first one: its division waits for no other division
-            b, c = top[way * (w + 1)], below[way * (w - 1)]
-            determinant = a * below[way * w] - c * b
-            if determinant == 0.0 or original[k + 1] == 0.0:
+            own, beside, c = a * unit, top[way * (w + 1)] * unit, below[way * (w - 1)]
+            determinant = own * below[way * w] - c * beside
+            inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse) * size
+            if determinant == 0.0 or inverse_determinant == 0.0 or original[k + 1] == 0.0:  # the second: too large
                 return 0.0
-            inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse)
             if pivot < worst * original[k + 1]:
                 worst = pivot / original[k + 1]
-            inverse_below, multiplier = a * inverse_determinant, c * inverse
+            inverse_below, multiplier = own * inverse_determinant, c * inverse
             upper, lower = 0.0, 0.0
             if eliminates != 0:
                 upper = right[way * k]
@@ -107,7 +115,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             for i in range(k + 2, min(end, k + w + 1)):
                 row = at(ab, way * (i * width + w + k - i))
                 lanes, one, two = as_rows(row), row[0], row[way]
-                first, second = one * inverse, (two * a - one * b) * inverse_determinant
+                first, second = one * inverse, (two * own - one * beside) * inverse_determinant
                 changed = lanes[last_of_row] - first * change - second * change_below
                 if wide:
                     lanes[first_of_row] = lanes[first_of_row] - first * first_change - second * first_low

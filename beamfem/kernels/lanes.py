@@ -23,6 +23,7 @@ __all__ = [
     "larger",
     "largest",
     "merged",
+    "power_of_two",
     "zeros",
 ]
 
@@ -79,6 +80,13 @@ def gathered(build: Build, values: Value, places: Value) -> Value:
         number = builder.load(builder.gep(values.llvm, [index], inbounds=True))
         lanes = builder.insert_element(lanes, number, ir.IntType(32)(lane))
     return Value(LANES, lanes)
+
+
+@operation
+def power_of_two(build: Build, value: Value) -> Value:
+    """Return the largest power of two that is not above the size of a number, and zero for one below 2e-308."""
+    exponent = build.builder.and_(build.builder.bitcast(value.llvm, WHOLE.llvm), WHOLE.llvm(0x7FF << 52))
+    return Value(NUMBER, build.builder.bitcast(exponent, NUMBER.llvm))
 
 
 @operation

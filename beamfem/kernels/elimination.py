@@ -25,6 +25,24 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
     return _in_lanes(known, case, -1 if backwards else 1) if known else _one_by_one(case, -1 if backwards else 1)
 
 
+@inlined
+def _take_pivot(way, k, n, w, inverse, eliminates, ab, right):
+    """Eliminate below one pivot, the last one of an odd number, whose inverse is given."""
+    width = 2 * w + 1
+    top = at(ab, way * k * width)
+    top[way * w] = inverse
+    for i in range(k + 1, min(n, k + w + 1)):
+        row = at(ab, way * (i * width + w + k - i))
+        first = row[0] * inverse
+        row[0] = first
+        for j in range(1, w + 1):
+            row[way * j] -= first * top[way * (w + j)]
+        if eliminates != 0:
+            right[way * i] -= first * right[way * k]
+    for j in range(1, w + 1):
+        top[way * (w + j)] *= inverse
+
+
 def _in_lanes(w: int, case: str, way: int) -> Routine:
     width, wide, outside = 2 * w + 1, w > WIDTH, max(0, WIDTH - w)
 
@@ -73,17 +91,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
                 worst = abs(a) / original[k]
             inverse = 1.0 / a
             if k + 1 == stop:
-                top[way * w] = inverse
-                for i in range(k + 1, min(n, k + w + 1)):
-                    row = at(ab, way * (i * width + w + k - i))
-                    first = row[0] * inverse
-                    row[0] = first
-                    for j in range(1, w + 1):
-                        row[way * j] -= first * top[way * (w + j)]
-                    if eliminates != 0:
-                        right[way * i] -= first * right[way * k]
-                for j in range(1, w + 1):
-                    top[way * (w + j)] *= inverse
+                _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
                 break
             below = at(ab, way * (k + 1) * width)
             if k + 1 + w < count:
@@ -92,7 +100,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             own, beside, c = a * unit, top[way * (w + 1)] * unit, below[way * (w - 1)]
             determinant = own * below[way * w] - c * beside
             inverse_determinant, pivot = 1.0 / determinant, abs(determinant * inverse) * size
-            if determinant == 0.0 or inverse_determinant == 0.0 or original[k + 1] == 0.0:  # the second: too large
+            if determinant == 0.0 or inverse_determinant == 0.0 or original[k + 1] == 0.0:  # zero inverse: infinite
                 return 0.0
             if pivot < worst * original[k + 1]:
                 worst = pivot / original[k + 1]
@@ -158,19 +166,10 @@ def _one_by_one(case: str, way: int) -> Routine:
                 return 0.0
             worst = min(worst, abs(top[way * w]) / original[k])
             inverse = 1.0 / top[way * w]
-            top[way * w] = inverse
             if k + 1 == stop:
-                for i in range(k + 1, min(n, k + w + 1)):
-                    row = at(ab, way * (i * width + w + k - i))
-                    first = row[0] * inverse
-                    row[0] = first
-                    for j in range(1, w + 1):
-                        row[way * j] -= first * top[way * (w + j)]
-                    if eliminates != 0:
-                        right[way * i] -= first * right[way * k]
-                for j in range(1, w + 1):
-                    top[way * (w + j)] *= inverse
+                _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
                 break
+            top[way * w] = inverse
             below = at(ab, way * (k + 1) * width)
             if k + 1 + w < count:
                 original[k + 1 + w] = abs(ab[way * ((k + 1 + w) * width + w)])

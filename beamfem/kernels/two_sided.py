@@ -7,8 +7,9 @@ eliminated downwards, as many at the end upwards, and what is left between them 
 from functools import cache
 from typing import NamedTuple
 
-from beamfem.kernels.band import FAST, KNOWN, band, elimination, push
+from beamfem.kernels.band import KNOWN, band, push
 from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, room
 
 
@@ -16,7 +17,7 @@ class TwoSided(NamedTuple):
     """Compiled functions for a half width.
 
     factor(n, w, reach, ab, original): smallest ratio of a pivot to the row's original diagonal entry; reach (2, n): see
-    `band.elimination`, downwards and backwards; solve(n, w, lu, x).
+    `elimination`, downwards and backwards; solve(n, w, lu, x).
     """
 
     factor: Routine

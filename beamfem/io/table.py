@@ -87,13 +87,10 @@ def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
 def stations(model: Model, group: LikeBeams) -> Variables:
     """Return the coordinates of the stations of like beams by name, see `arrays`."""
     points, about = group.points, partial(named, model)
-    # elements agree on the arc length of their common end, to the last digit
-    start, end = points.mesh.ends(points.element)
-    arc = np.where(points.xi == 0.0, start, np.where(points.xi == 1.0, end, points.arc_length))
     attributes = _called(model)
     coordinates = {
         "beam": (np.repeat(group.numbers, group.counts), about("number of the beam", "1") | attributes),
-        "arc_length": (arc, about("arc length in the reference", "m")),
+        "arc_length": (points.arc_length, about("arc length in the reference", "m")),
         "x0": (points.reference[:, 0], about("reference x", "m")),
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }

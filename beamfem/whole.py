@@ -1,6 +1,6 @@
-"""Import of the whole package, for rooms below the one that does it.
+"""Import of the whole package, for layers below the module that imports it.
 
-The package says at its first import which module imports all of it, so no room below names one above.
+The package says at its first import which module that is, so that no layer names one above it.
 """
 
 from importlib import import_module

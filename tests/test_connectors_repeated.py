@@ -9,7 +9,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.assembly.connectors import connectors_of
-from tests.connectors import Anchor, PointMass, RigidLink, SpringDamper, beam
+from tests.connectors import STEEL, Anchor, PointMass, RigidLink, SpringDamper, beam
 from tests.test_connectors_conditions import (
     HalfLever,
     HalfLeverOnADamper,
@@ -86,6 +86,49 @@ class AsymmetricConditions:
 
     def energy(self, at):
         return 0.0, 0.0
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Linear springs and masses between all coordinates of some points; those of the energy may be others."""
+
+    points: tuple[bf.Point, ...]
+    stiffness: np.ndarray
+    mass: np.ndarray
+    stiffness_of_energy: np.ndarray
+    mass_of_energy: np.ndarray
+    unknowns = 0
+    conservative = True
+
+    def force(self, at):
+        return self.stiffness @ (at.q - at.reference).ravel() + self.mass @ at.a.ravel()
+
+    def energy(self, at):
+        moved, rate = (at.q - at.reference).ravel(), at.v.ravel()
+        return 0.5 * rate @ self.mass_of_energy @ rate, 0.5 * moved @ self.stiffness_of_energy @ moved
+
+
+def linear(points, wrong=None, row=0, column=0):
+    """Return a part of which one entry of a matrix is wrong by a thousandth of the largest."""
+    rng, number = np.random.default_rng(7), 3 * len(points)
+    length = np.tile([points[0].beam.curve.length] * 2 + [1.0], len(points))
+    matrices = {}
+    for name in ("stiffness", "mass"):
+        root = rng.standard_normal((number, number))
+        table = root @ root.T
+        for of in (name, f"{name}_of_energy"):
+            matrices[of] = table.copy()
+            matrices[of][row, column] += 1e-3 * table.max() * (of == wrong)
+            matrices[of] /= np.multiply.outer(length, length)
+    return Linear(points, **matrices)
+
+
+def is_refused(own, *parts):
+    try:
+        connectors_of(bf.Model([own], [bf.Clamp(own.start)], connectors=parts), static=True)
+    except bf.InputError:
+        return True
+    return False
 
 
 def refused(right, wrong, own):
@@ -175,3 +218,29 @@ def test_calls_of_a_tangent_do_not_copy_the_state_of_the_model():
     alone = tuple(values[item.dofs] for values in motion)
     weights, gravity = (1.0, 2.0, 3.0), np.zeros(2)
     assert np.array_equal(item.tangent(motion, 0.0, gravity, weights), item.alone.tangent(alone, 0.0, gravity, weights))
+
+
+@pytest.mark.parametrize("many", [1, 2, 3])
+@pytest.mark.parametrize("wrong", ["stiffness", "mass", "stiffness_of_energy", "mass_of_energy"])
+def test_a_single_wrong_entry_is_refused_after_right_parts_too(wrong, many):
+    """Parts wrong by less than 1e-2 passed, if other entries hid it in the sum over all coordinates."""
+    own = beam()
+    points = (own.end, own.at(0.5), own.at(0.25))[:many]
+    right, alone = linear(points), []
+    for row in range(3 * many):
+        for column in range(3 * many):
+            part = linear(points, wrong, row, column)
+            alone.append(is_refused(own, part))
+            assert is_refused(own, right, part) or not alone[-1]
+    assert any(alone)
+
+
+@pytest.mark.parametrize("places", [0.0, 1e3, 1e6, 1e9])
+def test_parts_far_from_the_origin_are_judged_as_near_it(places):
+    """Round-off of the coordinates looked like a force that is not analytic: maps have the origin 1e6 m away."""
+    own = bf.Beam(bf.Line((places, -places), (places + 1.0, -places)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), STEEL)
+    points = own.end, own.at(0.5)
+    right, wrong = linear(points), linear(points, "stiffness", 0, 4)
+    assert not is_refused(own, right, right)
+    assert is_refused(own, wrong)
+    assert is_refused(own, right, wrong)

@@ -1,5 +1,8 @@
 """Results of models with many beams: like beams are evaluated together, with the values of each by itself."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -8,7 +11,7 @@ from beamfem.io import axes_in_hdf5
 from beamfem.io.cells import Cells
 from beamfem.results import along, beam_stress, free_bodies, many_beams, neighbours
 from beamfem.results.along import QUANTITIES, AxisPoints
-from beamfem.results.many_beams import of_each, together
+from beamfem.results.many_beams import like_beams, of_each
 from tests.many_beams import PLASTIC, SECTION, mixed_model
 
 FORCES = ("arc_length", "normal", "shear", "moment")
@@ -52,7 +55,7 @@ FIELDS |= {"forces": _all_forces, "stresses": _all_stresses}
 def test_fields_of_beams_evaluated_together_are_those_of_each(solutions, values, motion):
     solution = solutions[motion]
     points = [AxisPoints(mesh, 1 + number % 2) for number, mesh in enumerate(solution.model.meshes)]
-    groups = together(solution.model, points, len(solution))
+    groups = like_beams(solution.model, points, len(solution))
     assert 1 < len(groups) < len(points)
     rows = slice(1, None)
     each = [values(own, solution, rows) for own in points]
@@ -92,7 +95,7 @@ def test_files_and_tables_are_the_same_beam_by_beam(solutions, monkeypatch, tmp_
     monkeypatch.setattr(many_beams, "VALUES", 0)
     monkeypatch.setattr(axes_in_hdf5, "VALUES", 0)  # row by row
     points = [AxisPoints(mesh, 1) for mesh in solution.model.meshes]
-    assert len(together(solution.model, points, 1)) == len(points)
+    assert len(like_beams(solution.model, points, 1)) == len(points)
     each = solution.to_pandas(), Cells(solution.model, True).arrays(solution, slice(None))
     solution.save(tmp_path / "each.h5")
     assert joined[0].equals(each[0])
@@ -139,7 +142,7 @@ def test_more_beams_do_not_take_more_evaluations(evaluate, monkeypatch, tmp_path
 def test_the_more_rows_the_fewer_beams_are_evaluated_at_once(rows):
     """All beams of a long motion at once would take more memory than its coordinates."""
     model = mixed_model()
-    groups = together(model, [AxisPoints(mesh, 4) for mesh in model.meshes], rows)
+    groups = like_beams(model, [AxisPoints(mesh, 4) for mesh in model.meshes], rows)
     assert sorted(number for group in groups for number in group.numbers) == list(range(len(model.beams)))
     for group in groups:
         assert len(group.numbers) == 1 or sum(group.counts) * rows <= many_beams.VALUES
@@ -162,6 +165,31 @@ def test_kept_values_are_bounded(monkeypatch):
     assert largest == [2, 5, 5]
     again.section_forces(solution.model.beams[-1])
     assert largest == [2, 5, 5, 2]
+
+
+def test_threads_may_ask_for_beams_at_once(monkeypatch):
+    """A thread changed what another one was reading: KeyError, or RuntimeError of a dictionary that changes size."""
+    solution = row_of(200)
+    beams = np.arange(200)
+
+    def values(_, mesh):
+        first = mesh.parts[0].first_element
+        return np.full((3, 1, 2 * mesh.elements), np.repeat(first + np.arange(mesh.elements), 2))
+
+    def ask(seed):
+        for number in np.random.default_rng(seed).permutation(np.tile(beams, 4)).tolist():
+            found = neighbours.of_beam(solution, number, values)
+            assert np.array_equal(found[0, 0], 2 * number + np.array([0, 0, 1, 1]))
+
+    monkeypatch.setattr(neighbours, "_VALUES", 2 * 2 * 6)
+    monkeypatch.setattr(neighbours, "_MOST", 100 * 6)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            list(pool.map(ask, range(8)))
+    finally:
+        sys.setswitchinterval(interval)
 
 
 def test_beams_of_two_kinds_in_turns_do_not_displace_each_other(monkeypatch):

@@ -165,13 +165,22 @@ def _slopes(
     of a coordinate.
     """
     columns, largest = [], np.zeros(1)
-    for dof, unit in zip(item.all.tolist(), scales_of(item).tolist(), strict=True):
+    widths = exact_steps(motion[kind][item.all], WIDTH * scales_of(item))
+    for dof, unit, width in zip(item.all.tolist(), scales_of(item).tolist(), widths.tolist(), strict=True):
         ends = []
         for side in (1.0, -1.0):
             moved = (motion[0].copy(), motion[1].copy(), motion[2].copy())
-            moved[kind][dof] += side * WIDTH * unit
+            moved[kind][dof] += side * width
             ends.append(np.real(values(item.at(moved, TIMES[0], gravity_of(item)))))
-        change = ends[0] - ends[1]
-        columns.append(change / (2.0 * WIDTH * unit))
-        largest = np.maximum(largest, np.maximum(np.abs(ends[0]), np.abs(change) / (2.0 * WIDTH)))
+        slope = (ends[0] - ends[1]) / (2.0 * width)
+        columns.append(slope)
+        largest = np.maximum(largest, np.maximum(np.abs(ends[0]), unit * np.abs(slope)))
     return np.array(columns).T, ROUND_OFF / WIDTH * largest
+
+
+def exact_steps(values: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Return steps (n,) close to given ones that can be added to values (n,) without round-off.
+
+    Coordinates far from the origin, as of maps, would otherwise not move by the step by which a change is divided.
+    """
+    return (values + np.copysign(np.maximum(np.abs(steps), np.spacing(np.abs(values))), steps)) - values

@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.io.scaled_arrays import scale, variable, write
 from beamfem.results.along import QUANTITIES, AxisPoints, rotation, section_forces
-from beamfem.results.many_beams import VALUES, Together, together
+from beamfem.results.many_beams import VALUES, LikeBeams, like_beams
 from beamfem.results.solution import Solution
 
 AXES = "beams"
@@ -26,7 +26,7 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
     """
     meshes = solution.model.meshes
     small = len(solution) * sum(mesh.elements for mesh in meshes) <= _MOST
-    for group in together(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
+    for group in like_beams(solution.model, [AxisPoints(mesh, 1) for mesh in meshes], len(solution)):
         # several beams are together only where one table holds all rows
         tables = _tables(solution, group, small) if len(group.numbers) == 1 else [*_tables(solution, group, small)]
         for place, number in enumerate(group.numbers):
@@ -36,7 +36,7 @@ def save_axes(file: Any, solution: Solution, require_written: Callable[[], None]
                 require_written()
 
 
-def _tables(solution: Solution, group: Together, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
+def _tables(solution: Solution, group: LikeBeams, forces: bool) -> Iterator[tuple[slice, list[np.ndarray]]]:
     """Yield x, y and rotation, and section forces if wanted (3 or 6, rows, points) of each beam, with their rows."""
     points, block = group.points, max(VALUES // sum(group.counts), 1)
     for first in range(0, len(solution), block):
@@ -77,7 +77,7 @@ class _Axis:
         self._moved = [variable(group, *each, (at, along)) for each in moved]
 
     def write(self, rows: slice, table: np.ndarray) -> None:
-        """Write some rows of a `_table`."""
+        """Write some rows of the values of `_tables`."""
         for moved, values in zip(self._moved, table, strict=False):
             write(moved, values[:, self._ends], rows)
         for force, values in zip(self._forces, table[3:], strict=True):

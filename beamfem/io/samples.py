@@ -11,7 +11,7 @@ from beamfem.model.reference import reference_axis
 from beamfem.once import cached_property
 from beamfem.results import postprocess
 from beamfem.results.along import AxisPoints, rotation, section_forces
-from beamfem.results.many_beams import Together, together
+from beamfem.results.many_beams import LikeBeams, like_beams
 from beamfem.results.self_stress import self_stress
 from beamfem.results.stresses import in_the_plane, second_piola_kirchhoff, von_mises
 from beamfem.section import Layered
@@ -31,7 +31,7 @@ class Samples:
     axis; order: places in the table (degree + 1, heights), flattened. element: elements that have this layer (ne,).
     """
 
-    def __init__(self, group: Together, layer: int | None, order: np.ndarray, across: int = 0) -> None:
+    def __init__(self, group: LikeBeams, layer: int | None, order: np.ndarray, across: int = 0) -> None:
         self.group, points = group, group.points
         self.points, self.layer, self.order, self.mesh = points, layer, order, points.mesh
         self.across = across
@@ -145,13 +145,13 @@ def bodies(model: Model, alike: bool = False) -> list[Samples]:
 
     They are exact for the field r0(x) + y d(x), and for the parabola of the shear stress in a rectangle.
     """
-    groups = together(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
+    groups = like_beams(model, [AxisPoints(mesh, _degree(mesh)) for mesh in model.meshes], 1)
     return [sample for group in groups for sample in _body(group, alike)]
 
 
 def centrelines(model: Model) -> list[Samples]:
     """Return the points of straight pieces, because ParaView 5.11 crashes on Lagrange curves."""
-    groups = together(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
+    groups = like_beams(model, [AxisPoints(mesh, _LINES_PER_ELEMENT) for mesh in model.meshes], 1)
     return [Samples(group, None, np.arange(_LINES_PER_ELEMENT + 1)) for group in groups]
 
 
@@ -159,7 +159,7 @@ def _degree(mesh: BeamMesh) -> int:
     return max(3, mesh.beam.element.field.degree, mesh.beam.element.field.director_degree)
 
 
-def _body(group: Together, alike: bool) -> list[Samples]:
+def _body(group: LikeBeams, alike: bool) -> list[Samples]:
     n = group.points.pieces
     m = n if alike else _ACROSS
     number = np.arange((n + 1) * (m + 1)).reshape(n + 1, m + 1)

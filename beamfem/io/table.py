@@ -12,7 +12,7 @@ from beamfem.model.model import Model
 from beamfem.model.named import names
 from beamfem.results.along import QUANTITIES, AxisPoints, section_forces
 from beamfem.results.beam_stress import stress_at
-from beamfem.results.many_beams import Together, together
+from beamfem.results.many_beams import LikeBeams, like_beams
 
 if TYPE_CHECKING:
     from beamfem.results.energies import Energy
@@ -45,7 +45,7 @@ def arrays(solution: "Solution", beam: Beam | None) -> tuple[Variables, Variable
     return side_by_side([_of_group(solution, group, energy) for group in groups])
 
 
-def _of_group(solution: "Solution", group: Together, energy: "Energy") -> tuple[Variables, Variables]:
+def _of_group(solution: "Solution", group: LikeBeams, energy: "Energy") -> tuple[Variables, Variables]:
     """Return the `arrays` of like beams."""
     points, about = group.points, partial(named, solution.model)
     along_beam = stations(solution.model, group)
@@ -76,24 +76,21 @@ def _of_group(solution: "Solution", group: Together, energy: "Energy") -> tuple[
     return data, {at[0]: (over, solution.at, about(at[1], at[2])), **along_beam}
 
 
-def groups_of(model: Model, beam: Beam | None, rows: int) -> list[Together]:
+def groups_of(model: Model, beam: Beam | None, rows: int) -> list[LikeBeams]:
     """Return the stations of one beam, or of all in groups of like beams."""
     if beam is None:
-        return together(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
+        return like_beams(model, [AxisPoints(mesh, _PIECES) for mesh in model.meshes], rows)
     number = model.number_of(beam)
-    return [Together([number], [AxisPoints(model.meshes[number], _PIECES)])]
+    return [LikeBeams([number], [AxisPoints(model.meshes[number], _PIECES)])]
 
 
-def stations(model: Model, group: Together) -> Variables:
+def stations(model: Model, group: LikeBeams) -> Variables:
     """Return the coordinates of the stations of like beams by name, see `arrays`."""
     points, about = group.points, partial(named, model)
-    # elements agree on the arc length of their common end, to the last digit
-    start, end = points.mesh.ends(points.element)
-    arc = np.where(points.xi == 0.0, start, np.where(points.xi == 1.0, end, points.arc_length))
     attributes = _called(model)
     coordinates = {
         "beam": (np.repeat(group.numbers, group.counts), about("number of the beam", "1") | attributes),
-        "arc_length": (arc, about("arc length in the reference", "m")),
+        "arc_length": (points.arc_length, about("arc length in the reference", "m")),
         "x0": (points.reference[:, 0], about("reference x", "m")),
         "y0": (points.reference[:, 1], about("reference y", "m")),
     }

@@ -9,8 +9,9 @@ memory twice.
 from functools import cache
 from typing import NamedTuple
 
-from beamfem.kernels.band import FAST, elimination, push
+from beamfem.kernels.band import push
 from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pointers import at, fetch, room
 
 BLOCK = 256  # rows

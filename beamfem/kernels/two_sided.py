@@ -8,8 +8,9 @@ of w or w + 1 rows is left.
 from functools import cache
 from typing import NamedTuple
 
-from beamfem.kernels.band import FAST, KNOWN, band, elimination, push
+from beamfem.kernels.band import KNOWN, band, push
 from beamfem.kernels.compiling import Routine, inlined, routine
+from beamfem.kernels.elimination import FAST, elimination
 from beamfem.kernels.pairs import as_pairs, first_of, paired, second_of
 from beamfem.kernels.pointers import at, room
 
@@ -18,7 +19,7 @@ class TwoSided(NamedTuple):
     """Compiled functions for a half width.
 
     factor(n, w, reach, ab, original): smallest ratio of a pivot to the row's original diagonal entry; reach (2, n): see
-    `band.elimination`, downwards and backwards; solve(n, w, lu, x).
+    `elimination`, downwards and backwards; solve(n, w, lu, x).
     """
 
     factor: Routine

@@ -99,11 +99,14 @@ class Grid:
 
     def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc lengths (n,) [m] of points, given by element and xi, both (n,)."""
-        along = self.parameter[element] + xi * np.diff(self.parameter)[element]
+        start, end = self.ends(element)
         if self.beam.elements == "knots":
             assert isinstance(self.beam.curve, BSpline)
-            return self.beam.curve.arc_length(along)
-        return along
+            along = self.beam.curve.arc_length(self.parameter[element] + xi * np.diff(self.parameter)[element])
+        else:
+            along = start + xi * (end - start)
+        # elements agree on the arc length of their common end, to the last digit
+        return np.where(xi == 0.0, start, np.where(xi == 1.0, end, along))
 
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which sections of points are evaluated: inside the element at jumps."""

@@ -55,11 +55,6 @@ class JoinedMesh(BeamMesh):
         """Return the numbers of elements in their block."""
         return self._in_block[element]
 
-    def arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Return the arc lengths (n,) [m] of points, given by element and xi, both (n,)."""
-        start, end = self.ends(element)
-        return start + xi * (end - start)
-
     def section_arc_length(self, element: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which sections of points are evaluated: inside the element at jumps."""
         result = np.empty(len(element))

@@ -17,8 +17,8 @@ _Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True, eq=False)
-class Together:
-    """Points of beams that are alike; numbers: of these beams; single: the points of each of them."""
+class LikeBeams:
+    """Points of beams that are alike; numbers: those of the beams in the model; single: the points of each beam."""
 
     numbers: list[int]
     single: list[AxisPoints]
@@ -42,7 +42,7 @@ class Together:
         return np.split(values, np.cumsum(self.counts)[:-1], axis=over)
 
 
-def together(model: Model, points: Sequence[AxisPoints], rows: int) -> list[Together]:
+def like_beams(model: Model, points: Sequence[AxisPoints], rows: int) -> list[LikeBeams]:
     """Return the points of all beams of a model by groups of like beams, as large as the number of rows allows."""
     result = []
     for numbers in alike(model):
@@ -52,13 +52,13 @@ def together(model: Model, points: Sequence[AxisPoints], rows: int) -> list[Toge
         for pieces, own in by_pieces.items():
             sizes = [(pieces + 1) * points[number].mesh.elements for number in own]
             result += [
-                Together(part, [points[number] for number in part])
+                LikeBeams(part, [points[number] for number in part])
                 for part in _parts(own, sizes, VALUES // max(rows, 1))
             ]
     return result
 
 
-def of_each(groups: Iterable[Together], values: Callable[[AxisPoints], np.ndarray], over: int = 1) -> list[np.ndarray]:
+def of_each(groups: Iterable[LikeBeams], values: Callable[[AxisPoints], np.ndarray], over: int = 1) -> list[np.ndarray]:
     """Return a function of points as values of each beam, in the order of the beams; over: axis of the points."""
     result: dict[int, np.ndarray] = {}
     for group in groups:

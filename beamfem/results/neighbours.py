@@ -46,13 +46,19 @@ def of_beam(solution: "Solution", number: int, values: Values) -> np.ndarray:
     chosen = _neighbours(solution.model, number, _VALUES // max(1, kept.per_element))
     if len(chosen) == 1:
         return values(solution, mesh)
-    if number not in kept.chunks.get(chosen[0], {}):
-        kept.chunks[chosen[0]] = _of_beams(solution, chosen, values)
-        chunk_sizes = {first: sum(own.size for own in chunk.values()) for first, chunk in kept.chunks.items()}
-        while sum(chunk_sizes.values()) > _MOST and len(chunk_sizes) > 1:
-            oldest = next(iter(chunk_sizes))
-            del kept.chunks[oldest], chunk_sizes[oldest]
-    return kept.chunks[chosen[0]][number].copy()  # the user may change what it gets
+    chunk = kept.chunks.get(chosen[0], {})
+    if number not in chunk:
+        chunk = _of_beams(solution, chosen, values)
+        # a new object, since other threads may be reading the one before
+        by_values[values] = _Kept(kept.per_element, _latest({**kept.chunks, chosen[0]: chunk}))
+    return chunk[number].copy()  # the user may change what it gets
+
+
+def _latest(chunks: dict[int, dict[int, np.ndarray]]) -> dict[int, dict[int, np.ndarray]]:
+    """Return the latest of some chunks that may be kept, at least one."""
+    sizes = [sum(own.size for own in chunk.values()) for chunk in chunks.values()]
+    too_old = sum(total > _MOST for total in np.cumsum(sizes[::-1])[1:].tolist())
+    return dict(list(chunks.items())[too_old:])
 
 
 def _of_beams(solution: "Solution", numbers: list[int], values: Values) -> dict[int, np.ndarray]:

@@ -27,8 +27,7 @@ def section_forces(solution: "Solution", beam: Beam) -> SectionForces:
     number = solution.model.number_of(beam)
     mesh = solution.model.meshes[number]
     cuts = stations(mesh)
-    (start, end), arc = mesh.ends(cuts.element), mesh.arc_length(cuts.element, cuts.xi)
-    arc = np.where(cuts.xi == 0.0, start, np.where(cuts.xi == 1.0, end, arc))
+    arc = mesh.arc_length(cuts.element, cuts.xi)
     normal, shear, moment = of_beam(solution, number, _at_stations)
     return SectionForces(arc, normal, shear, moment, units_of(solution.model.units))
 

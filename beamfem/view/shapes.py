@@ -9,7 +9,7 @@ import numpy as np
 from beamfem.errors import InputError
 from beamfem.once import cached_property
 from beamfem.results.along import AxisPoints, Quantity, quantity
-from beamfem.results.many_beams import Together, of_each, together
+from beamfem.results.many_beams import LikeBeams, like_beams, of_each
 from beamfem.results.solution import Solution
 from beamfem.view.frames import axis_points
 
@@ -44,9 +44,9 @@ class Shapes:
         return axis_points(self.solution) if self.total is None else axis_points(self.solution, self.total)
 
     @cached_property
-    def groups(self) -> list[Together]:
+    def groups(self) -> list[LikeBeams]:
         """The points of like beams, which are evaluated together."""
-        return together(self.solution.model, self.points, len(self.rows))
+        return like_beams(self.solution.model, self.points, len(self.rows))
 
     @cached_property
     def _moved(self) -> list[tuple[np.ndarray, np.ndarray]]:

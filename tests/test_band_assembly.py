@@ -51,19 +51,22 @@ def expected(nodes, coordinates, size, number, count, k):
     return matrix
 
 
-def without_parts(monkeypatch):
-    """Return the routine of processors that write parts of vectors slowly."""
-    monkeypatch.setattr(band_assembly, "WRITES_PARTS", False)
+@pytest.fixture(scope="module")
+def without_parts():
+    """The routine of processors that write parts of vectors slowly."""
     whole = band_assembly.add_to_band
     routine = Routine(whole.function, whole.kinds, whole.returns, whole.fastmath)
     routine.__module__ = __name__  # not from the cache
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(band_assembly, "WRITES_PARTS", False)
+        assert routine.address
     return routine
 
 
 @pytest.mark.parametrize("kind", ["free", "clamped", "supported", "backwards", "mixed"])
 @pytest.mark.parametrize(("nodes", "coordinates"), [(2, 3), (2, 4), (2, 5), (2, 6), (3, 3), (5, 3)])
-def test_matrices_in_a_band_are_the_sum_of_their_entries(nodes, coordinates, kind, rng, monkeypatch):
-    routines = band_assembly.add_to_band, without_parts(monkeypatch)
+def test_matrices_in_a_band_are_the_sum_of_their_entries(nodes, coordinates, kind, rng, without_parts):
+    routines = band_assembly.add_to_band, without_parts
     for elements in ELEMENTS:
         number, count = numbers_of(nodes, coordinates, elements, kind)
         number = np.ascontiguousarray(number, dtype=np.int64)

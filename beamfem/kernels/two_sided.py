@@ -37,6 +37,7 @@ def two_sided(half_width: int, short: bool) -> TwoSided:
     return _one_sided(half_width) if short else _two_sided(half_width)
 
 
+@cache
 def _two_sided(w: int) -> TwoSided:
     case, width, both = f"half_width_{w}", 2 * w + 1, 2 * w
     _down = inlined(elimination(w, f"{case}_down", backwards=False))

@@ -67,25 +67,12 @@ class ComplexEnergyLost(Anchor):
         return 0.5 * float(np.real(at.v[0] @ at.v[0])), super().energy(at)[1]
 
 
-@dataclass(frozen=True)
-class AsymmetricConditions:
+class AsymmetricConditions(RigidLink):
     """Two points keep their distance, by a multiplier that pulls one of them by half."""
 
-    a: bf.Point
-    b: bf.Point
-    unknowns = 1
-    conservative = True
-
-    @property
-    def points(self):
-        return self.a, self.b
-
     def force(self, at):
-        force = RigidLink(self.a, self.b).force(at)
+        force = super().force(at)
         return np.concatenate([0.5 * force[:3], force[3:]])
-
-    def energy(self, at):
-        return 0.0, 0.0
 
 
 @dataclass(frozen=True)

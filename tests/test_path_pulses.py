@@ -51,6 +51,7 @@ def test_a_column_under_a_pulse_loses_its_stability_and_regains_it(width, peak):
 
     path = bf.trace_equilibrium(cantilever((-EULER, 0.0), amplitude), 1.0)
     exact = [brentq(lambda at: amplitude(at) - 1.0, *ends) for ends in ((0.0, 0.5), (0.5, 1.0))]
+    # eight elements buckle 4e-6 above Euler's load, which counts for more where the pulse is flat
     assert [point.load_factor for point in path.bifurcations] == pytest.approx(exact, rel=3e-5)
     assert not path.stable.all()
     assert path.stable[[0, -1]].all()

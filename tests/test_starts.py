@@ -32,7 +32,8 @@ def test_modes_and_buckling_are_about_the_last_state_of_a_solution_as_about_the_
     exact = bf.solve_modes(pushed, 2, static[-1]).frequencies
     for about in (static, path, path[-1]):
         assert bf.solve_modes(pushed, 2, about).frequencies == pytest.approx(exact, rel=1e-8)
-        assert bf.solve_buckling(pushed, 1, about).load_factors == pytest.approx(np.pi**2 / 4.0, rel=1e-2)
+        # shear lowers Euler's load by a thousandth at L / h = 20
+        assert bf.solve_buckling(pushed, 1, about).load_factors == pytest.approx(np.pi**2 / 4.0, rel=1.2e-3)
     motion = bf.simulate(pushed, 1e-4, 1e-4)
     for solve in (bf.solve_modes, bf.solve_buckling):
         with pytest.raises(bf.InputError, match="this solution is a motion"):

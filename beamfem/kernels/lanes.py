@@ -28,8 +28,9 @@ __all__ = [
 ]
 
 COLUMNS = 4  # most rows that `add_columns` takes
-# whether the processor writes a part of a vector as fast as a whole one; others may take twenty times as long
-WRITES_PARTS = "+avx512vl" in machine.processor()[1].split(",")
+_NAME, _FEATURES = machine.processor()
+# whether the processor writes a part of a vector as fast as a whole one; those of AMD take about twenty operations
+WRITES_PARTS = "+avx512vl" in _FEATURES.split(",") and not _NAME.startswith("znver")
 _BITS = ir.VectorType(WHOLE.llvm, WIDTH)
 
 

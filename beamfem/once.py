@@ -1,4 +1,4 @@
-"""Properties, and functions of an object, that are computed once for each object."""
+"""Properties, and functions of an object, that are computed once for each object, or once for all that are alike."""
 
 import functools
 from collections.abc import Callable
@@ -25,6 +25,19 @@ class cached_property(functools.cached_property[_Value]):
         if instance is None:
             return self
         value: _Value = instance.__dict__.setdefault(str(self.attrname), self.func(instance))
+        return value
+
+
+class shared_property(cached_property[_Value]):
+    """A property that is computed once for all objects that are alike: they have one dictionary `alike` in common."""
+
+    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+        if instance is None:
+            return self
+        name, shared = self.attrname, instance.alike
+        if name not in shared:
+            shared.setdefault(name, self.func(instance))
+        value = instance.__dict__[name] = shared[name]
         return value
 
 

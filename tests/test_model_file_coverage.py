@@ -162,6 +162,8 @@ NO_KEY = {
     "Model.number_of": "numbers of the mesh for a program",
     "Model.mesh_of": "numbers of the mesh for a program",
     "Model.made_of": "numbers of the mesh for a program",
+    "Model.alike": "what models have in common, for a program",
+    "Model.blocks_of_beams": "numbers of the mesh for a program",
     "Model.supports_along": "numbers of the mesh for a program",
     **dict.fromkeys(
         (

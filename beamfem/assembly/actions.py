@@ -1,6 +1,6 @@
 """Forces, moments and springs at points of elements, in the form that the kernels expect."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,6 +48,16 @@ class Actions:
         count = last - first
         return np.sort(order[np.repeat(first - np.cumsum(count) + count, count) + np.arange(count.sum())])
 
+    def of(self, model: Model) -> "Actions":
+        """Return the actions on a model that is like the own one but for the size of its loads."""
+        loads: tuple[PointLoad | LineLoad, ...] = (*model.point_loads, *_lines(model))
+        if all(one is other for one, other in zip(loads, self.loads, strict=True)):
+            return self
+        unit = self.unit.copy()
+        for row in np.flatnonzero(self.rule == 0).tolist():
+            unit[row] = model.point_loads[self.source[row]].value
+        return replace(self, unit=unit, loads=loads)
+
     def values(self, time: float, static: bool) -> np.ndarray:
         """Return forces and moments (nl, 3) at a time."""
         factors = [factor(load, time, static) for load in self.loads]
@@ -56,8 +66,7 @@ class Actions:
 
 def build_actions(model: Model, block: int) -> Actions:
     """Return the point loads of a block; loads and foundations along beams act at Gauss points."""
-    points = model.point_loads
-    lines = [load for load in model.line_loads if not (load.uniform and load.axes == "plane")]
+    points, lines = model.point_loads, _lines(model)
     parts: list[dict[str, np.ndarray]] = []
     for number, load in enumerate(points):
         mesh = _mesh(model, load.point.beam, block)
@@ -85,6 +94,11 @@ def build_actions(model: Model, block: int) -> Actions:
         }
     values = {name: joined.pop(name) for name in ("unit", "source", "xi", "rule")}
     return Actions(PointLoads(**joined), **values, loads=(*points, *lines))
+
+
+def _lines(model: Model) -> list[LineLoad]:
+    """Return the loads along beams that act at points of elements: all but uniform ones in the axes of the plane."""
+    return [load for load in model.line_loads if not (load.uniform and load.axes == "plane")]
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:

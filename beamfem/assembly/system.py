@@ -10,9 +10,8 @@ from beamfem.assembly.actions import Actions, build_actions
 from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.blocks import build_block
 from beamfem.assembly.connectors import Connectors, connectors_of
-from beamfem.assembly.element_group import make_group, stored
+from beamfem.assembly.element_group import make_group
 from beamfem.assembly.grounded_springs import grounded_springs
-from beamfem.assembly.group_structure import storage_order
 from beamfem.assembly.history import History
 from beamfem.assembly.layout import Unknowns, order_unknowns
 from beamfem.assembly.loads_at import LoadsAt
@@ -22,46 +21,31 @@ from beamfem.assembly.row_errors import residual_errors, stress_errors
 from beamfem.assembly.solver_table import SolverTable
 from beamfem.assembly.strain_rates import StrainRates, strain_rates
 from beamfem.assembly.stress_free import stress_free
+from beamfem.assembly.turning import turning_vectors
 from beamfem.errors import InputError
-from beamfem.kernels.block import (
-    GRADIENTS,
-    ROTATION,
-    SHEAR_RIGID,
-    STRETCH,
-    TURNED_GRADIENTS,
-    Block,
-    Layout,
-    PointLoads,
-    Springs,
-)
+from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.model.load import factor
 from beamfem.model.model import Model
 from beamfem.model.returned import forces_of
-from beamfem.once import cached_property
+from beamfem.once import cached_property, shared_property
 from beamfem.validation import shown
 
-_GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
 _KEPT_LOADS = 2  # load factors whose loads are cached
 _NOTHING = np.empty(0)
 _NO_MOVEMENT = 1e300  # scale of history variables: no change of them counts as movement
-# kinds of nodes that have r, r_x and r_y themselves as coordinates
-_TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 
 
 @dataclass(frozen=True, eq=False)
 class System:
     """All data of a model that solvers need; `system_of` creates it once.
 
-    proven: names of properties that have been checked; spare, spare_motions, spare_assemblers: unused workspaces of
-    solves, motions and evaluations; known_loads: loads at recent load factors.
+    Systems of models that are alike but for the size of their loads share what does not depend on it.
+    proven: names of properties that have been checked; known_loads: loads at recent load factors.
     """
 
     model: Model
     static: bool
     proven: set[str] = field(default_factory=set)
-    spare: list[Any] = field(default_factory=list)
-    spare_motions: list[Any] = field(default_factory=list)
-    spare_assemblers: list[Assembler] = field(default_factory=list)
     known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -69,13 +53,34 @@ class System:
         return system_of, (self.model, self.static)
 
     @cached_property
+    def alike(self) -> dict[Any, Any]:
+        """What the systems of models that are alike have in common, by name."""
+        shared: dict[Any, Any] = self.model.alike.setdefault(self.static, {})
+        return shared
+
+    @shared_property
+    def spare(self) -> list[Any]:
+        """Unused workspaces of solves."""
+        return []
+
+    @shared_property
+    def spare_motions(self) -> list[Any]:
+        """Unused workspaces of motions."""
+        return []
+
+    @shared_property
+    def spare_assemblers(self) -> list[Assembler]:
+        """Unused workspaces of evaluations."""
+        return []
+
+    @shared_property
     def reference(self) -> np.ndarray:
         """Coordinates of the stress-free state (n,)."""
         p = stress_free(self.model, self.blocks)
         p[self.history.numbers] = self.history.start
         return p
 
-    @cached_property
+    @shared_property
     def blocks(self) -> tuple[Block, ...]:
         numbered = list(enumerate(self.model.meshes))
         return tuple(
@@ -83,17 +88,17 @@ class System:
             for number, element in enumerate(self.model.groups)
         )
 
-    @cached_property
+    @shared_property
     def equations(self) -> Equations:
         """The equations in the form that compiled code expects."""
         return self.equations_of(self.blocks)
 
-    @cached_property
+    @shared_property
     def without_stiffness(self) -> Equations:
         """The equations with zero section stiffness."""
         return self.equations_of([block.resisting(np.zeros_like(block.stiffness)) for block in self.blocks])
 
-    @cached_property
+    @shared_property
     def strain_rates(self) -> tuple[StrainRates, ...]:
         """Strains of each block and their derivatives by the unknowns."""
         return tuple(strain_rates(block, self.unknowns.free) for block in self.blocks)
@@ -107,25 +112,25 @@ class System:
         """Return the equations with a new workspace; lent: see `Assembler`."""
         return Assembler(self.equations, lent=lent)
 
-    @cached_property
+    @shared_property
     def solver_table(self) -> SolverTable:
         """The unknowns of a band, as compiled drivers take them."""
         return SolverTable(self.unknowns, self.rotated, self.scale)
 
-    @cached_property
+    @shared_property
     def residual_errors(self) -> np.ndarray:
         """Residual (2, n) per unit relative error: in positions of 1 m [1/m], and in directions."""
         vectors = [element.field.vectors for element in self.model.groups]
         errors = residual_errors(self.blocks, vectors, self.springs, self.point_loads, self.model.size)
         return errors + self.connectors.errors
 
-    @cached_property
+    @shared_property
     def stress_errors(self) -> tuple[np.ndarray, ...]:
         """Stress resultants (2, nc, nq, ns) of each block per unit relative error, as `residual_errors`."""
         vectors = [element.field.vectors for element in self.model.groups]
         return tuple(stress_errors(*parts) for parts in zip(self.blocks, vectors, strict=True))
 
-    @cached_property
+    @shared_property
     def positions(self) -> np.ndarray:
         """Mask (n,) of the coordinates that are positions [m]."""
         result = np.zeros(self.model.size, dtype=bool)
@@ -136,12 +141,17 @@ class System:
     @cached_property
     def actions(self) -> tuple[Actions, ...]:
         """Loads and springs at points of each block, with their values."""
+        return tuple(actions.of(self.model) for actions in self._actions_alike)
+
+    @shared_property
+    def _actions_alike(self) -> tuple[Actions, ...]:
+        """The actions on the first of the models that are alike."""
         return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
 
-    @cached_property
+    @shared_property
     def point_loads(self) -> tuple[PointLoads, ...]:
         """Loads and springs at points of each block, in the order of `point_values`."""
-        return tuple(actions.points for actions in self.actions)
+        return tuple(actions.points for actions in self._actions_alike)
 
     def point_values(self, time: float) -> tuple[np.ndarray, ...]:
         """Return the forces and moments (nl, 3) [N, N, N m] of each block at a time."""
@@ -177,7 +187,7 @@ class System:
         """Whether all loads are proportional to the load factor of statics."""
         return self.static and all(load.scale and load.amplitude is None for load in self.model.loads)
 
-    @cached_property
+    @shared_property
     def springs(self) -> Springs:
         """Springs of single coordinates to the ground."""
         return grounded_springs(self.model, self.unknowns, self.reference)
@@ -193,7 +203,7 @@ class System:
                 result[row, 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, self.static)
         return result
 
-    @cached_property
+    @shared_property
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric: no load follows the sections, and all else has a potential."""
         following = any(loads.follows.any() and loads.follows[~loads.stretches].any() for loads in self.point_loads)
@@ -206,7 +216,7 @@ class System:
         """Prescribed coordinates, ordered by number. Raises InputError if two supports prescribe the same one."""
         return prescribed_coordinates(self.model)
 
-    @cached_property
+    @shared_property
     def prescribed_dofs(self) -> np.ndarray:
         return np.array([item.dof for item in self.prescribed], dtype=np.int64)
 
@@ -219,7 +229,7 @@ class System:
         """Return the changes (nh,) of the prescribed coordinates from the reference at a time or load factor."""
         return np.array([item.change(time, self.static) for item in self.prescribed], dtype=float)
 
-    @cached_property
+    @shared_property
     def _prescribed_reference(self) -> np.ndarray:
         return self.reference[self.prescribed_dofs]
 
@@ -241,7 +251,7 @@ class System:
         """Prescribed rotations that may differ from the reference."""
         return tuple(item for item in self.prescribed if item.rotation and (callable(item.value) or item.value != 0.0))
 
-    @cached_property
+    @shared_property
     def unknowns(self) -> Unknowns:
         """The order of the coordinates that are not prescribed."""
         connectors, joined = self.connectors, bool(self.model.joints)
@@ -266,18 +276,18 @@ class System:
         """Positions of the element matrices of each block in the matrix."""
         return self.unknowns.layouts
 
-    @cached_property
+    @shared_property
     def inclined(self) -> tuple[tuple[int, np.ndarray], ...]:
         """First coordinate of r and unit normal of each roller whose normal is not along x or y."""
         return inclined_rollers(self.model, set(self.prescribed_dofs.tolist()))
 
-    @cached_property
+    @shared_property
     def rotated(self) -> tuple[np.ndarray, np.ndarray]:
         """Equation number of x (nt,) and unit normal (nt, 2) of each inclined roller."""
         first = np.array([self.unknowns.free[dof] for dof, _ in self.inclined], dtype=np.int64)
         return first, np.array([normal for _, normal in self.inclined], dtype=float).reshape(-1, 2)
 
-    @cached_property
+    @shared_property
     def turning(self) -> np.ndarray:
         """Equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
 
@@ -285,21 +295,7 @@ class System:
         consecutively over all blocks, in storage order. Vectors with a prescribed component or an inclined roller are
         left out.
         """
-        free, tables, first = self.unknowns.free, [], 0
-        for numbered in self.blocks:
-            block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
-            vectors = block.scale.shape[1] // block.node.shape[1]
-            for slot in range(vectors):
-                turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
-                nodes = np.flatnonzero(np.isin(block.node_kind, turning))
-                x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
-                mask = (x >= 0) & (y >= 0)
-                tables.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[mask])
-            first += len(block.dof)
-        pairs = np.concatenate(tables)
-        _, once = np.unique(pairs[:, 0], return_index=True)
-        inclined = np.isin(pairs[once, 0], self.rotated[0])
-        return np.ascontiguousarray(pairs[once[~inclined]])
+        return turning_vectors(self.blocks, self.unknowns.free, self.rotated[0])
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknowns without the reactions of inclined rollers."""
@@ -313,7 +309,7 @@ class System:
         """The unknown coordinates (unknown,) in the order of the equations."""
         return self.unknowns.dofs
 
-    @cached_property
+    @shared_property
     def extent(self) -> float:
         """Size of the model [m]: its longest beam, or twice the largest distance of a node from their mean."""
         position = np.concatenate([mesh.position for mesh in self.model.meshes])
@@ -321,7 +317,7 @@ class System:
         reach = float(np.hypot(x, y).max())
         return max(2.0 * reach, *(beam.curve.length for beam in self.model.beams))
 
-    @cached_property
+    @shared_property
     def scale(self) -> np.ndarray:
         """Scale (n,) of the change of each coordinate: the size of the model for positions [m], 1 for the rest.
 
@@ -333,7 +329,7 @@ class System:
         result[self.history.numbers] = _NO_MOVEMENT
         return result
 
-    @cached_property
+    @shared_property
     def strain_scale(self) -> np.ndarray:
         """Change of a coordinate that strains an element by about one (n,): its length for positions [m], else 1."""
         length = min(float(block.weight.sum(axis=1).min()) for block in self.blocks)

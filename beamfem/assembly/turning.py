@@ -1,6 +1,37 @@
 """Nodal vectors that rotate with their section, in runs that compiled code rotates one after the other."""
 
+from collections.abc import Sequence
+
 import numpy as np
+
+from beamfem.assembly.element_group import stored
+from beamfem.assembly.group_structure import storage_order
+from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS, Block
+
+_GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+# kinds of nodes that have r, r_x and r_y themselves as coordinates
+_TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
+
+
+def turning_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndarray) -> np.ndarray:
+    """Return equation numbers of x and y, node and number of each nodal vector that is a coordinate (np, 4).
+
+    free (n,): equation number of each coordinate; inclined (nt,): equation number of x of each inclined roller.
+    """
+    tables, first = [], 0
+    for numbered in blocks:
+        block = stored(numbered, storage_order(numbered.node, len(numbered.node_kind)))
+        vectors = block.scale.shape[1] // block.node.shape[1]
+        for slot in range(vectors):
+            turning = _TURNING[0 if slot == 0 else 2 if slot == vectors - 1 else 1]
+            nodes = np.flatnonzero(np.isin(block.node_kind, turning))
+            x, y = (free[block.dof[nodes, 2 * slot + axis]] if len(nodes) else nodes for axis in (0, 1))
+            mask = (x >= 0) & (y >= 0)
+            tables.append(np.column_stack([x, y, first + nodes, np.full(len(nodes), slot)])[mask])
+        first += len(block.dof)
+    pairs = np.concatenate(tables)
+    _, once = np.unique(pairs[:, 0], return_index=True)
+    return np.ascontiguousarray(pairs[once[~np.isin(pairs[once, 0], inclined)]])
 
 
 def runs_of(pairs: np.ndarray) -> np.ndarray:

@@ -159,12 +159,15 @@ def kept_with_elements(function: Callable[..., _Value]) -> Callable[..., _Value]
 
     @wraps(function)
     def kept(element: Element, *arguments: Hashable) -> _Value:
-        field, coordinates, forces = type(element.field), type(element.coordinates), type(element.forces)
-        if field in _LASTING and coordinates in _LASTING and forces in _LASTING:
-            return known(element, *arguments)
-        return function(element, *arguments)
+        return known(element, *arguments) if lasts(element) else function(element, *arguments)
 
     return kept
+
+
+def lasts(element: Element) -> bool:
+    """Return whether all parts of an element are of the package: those of users may change."""
+    field, coordinates, forces = type(element.field), type(element.coordinates), type(element.forces)
+    return field in _LASTING and coordinates in _LASTING and forces in _LASTING
 
 
 def has_stations(field: Field) -> bool:

@@ -31,7 +31,7 @@ def made_of(model: "Model") -> MadeOf:
         element = beam.element
         parts = beam.section, beam.material, beam.curve, element.field, element.coordinates, element.forces
         kinds.update(map(type, parts))
-    changing = {kind for kind in kinds if not _plain(kind)}
+    changing = {kind for kind in kinds if not is_plain(kind)}
     if not changing:
         return ()
     known: dict[int, tuple[str, Any]] = {}
@@ -67,7 +67,7 @@ def _parts(model: "Model") -> Iterator[tuple[str, Collection[Any]]]:
 
 
 @lru_cache(maxsize=256)
-def _plain(kind: type) -> bool:
+def is_plain(kind: type) -> bool:
     """Return whether a class of the package holds numbers, text, places on beams and functions only."""
     if not (kind is type(None) or (of_package(kind) and is_dataclass(kind))):
         return False

@@ -1,10 +1,12 @@
 """The numbered mesh of one beam: its grid, and the coordinates of the model at its nodes."""
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 
 from beamfem.element.coordinates import labels
+from beamfem.model.beam import Beam
 from beamfem.model.classes import Classes, element_classes
 from beamfem.model.grid import Grid
 from beamfem.model.numbering import Nodes
@@ -29,6 +31,12 @@ class BeamMesh(Grid):
     def classes(self) -> Classes:
         """Classes of identical elements, with their data."""
         return element_classes(self)
+
+    def on(self, beam: Beam) -> "BeamMesh":
+        """Return the mesh, with all that was computed for it, as that of another beam that is alike."""
+        mesh = copy(self)
+        object.__setattr__(mesh, "beam", beam)
+        return mesh
 
     @property
     def parts(self) -> tuple["BeamMesh", ...]:

@@ -1,8 +1,7 @@
 """A model: beams with their supports, joints, loads and connectors."""
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from math import prod
+from dataclasses import dataclass, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -11,27 +10,21 @@ from beamfem.alike import by_value
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
-from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.beam import Beam, Point, reference_positions
-from beamfem.model.body import require_body
-from beamfem.model.contribution import Contribution, remembered, require_connector
-from beamfem.model.gaps import close_gaps
-from beamfem.model.grid import Grid
-from beamfem.model.grids import make_grids
+from beamfem.model.contribution import Contribution, require_connector
 from beamfem.model.joints import Joint
+from beamfem.model.likeness import shared_by_likes
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
-from beamfem.model.nodes_asked import nodes_asked
-from beamfem.model.numbering import number_nodes
+from beamfem.model.numbered import Numbered, numbered
 from beamfem.model.part_checks import require_part
-from beamfem.model.size import require_room
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
-from beamfem.once import cached_property
+from beamfem.once import cached_property, shared_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
 from beamfem.validation import shown
@@ -43,8 +36,6 @@ _KINDS: dict[str, tuple[type, ...]] = {
     "joints": (Joint,),
     "connectors": (Contribution,),
 }
-_GRID = tuple(each.name for each in fields(Grid))
-_NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,6 +159,11 @@ class Model(ModelOutputs):
         return self._units.of(unit)
 
     @cached_property
+    def alike(self) -> dict[Any, Any]:
+        """What this model and all models that are like it but for the size of loads have in common, by name."""
+        return shared_by_likes(self)
+
+    @shared_property
     def made_of(self) -> MadeOf:
         """What the meshes were made of and may change, see `made_of`."""
         return made_of(self)
@@ -177,74 +173,45 @@ class Model(ModelOutputs):
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def _numbered(self) -> tuple[tuple[BeamMesh, ...], int, int]:
-        require_room(self.beams)
+    def _numbered(self) -> Numbered:
+        shared = self._numbered_alike
+        if shared.meshes[0].beam is self.beams[0]:
+            return shared
+        meshes = tuple(mesh.on(beam) for mesh, beam in zip(shared.meshes, self.beams, strict=True))
+        return shared._replace(meshes=meshes)
+
+    @shared_property
+    def _numbered_alike(self) -> Numbered:
+        """The meshes of the first of the models that are alike."""
         _ = self.made_of
-        connected = [point for connector in self.connectors for point in connector.points]
-        fractions = [[fraction for fraction, _ in requested] for requested in nodes_asked(self)]
-        grids = make_grids(self.beams, fractions)
-        turned = [support.point for support in self.point_supports if _turns(support)]
-        angled = self._places(grids, turned + connected)
-        turning, moving = self._joined(grids)
-        grids = close_gaps(grids, moving)
-        for grid in grids:
-            require_body(grid, self.unit)
-        nodes, size = number_nodes(grids, angled, moving, turning)
-        filled = [0] * len(self.groups)
-        meshes = []
-        behind = size + sum(connector.unknowns + len(remembered(connector)) for connector in self.connectors)
-        for grid, carried, block in zip(grids, nodes, self._kinds[1], strict=True):
-            parts = {name: getattr(grid, name) for name in _GRID}
-            history = _history(grid, behind)
-            meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
-            filled[block] += grid.elements
-            behind += history.size
-        return tuple(meshes), size, behind
-
-    def _joined(self, grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs (grid, node, grid, node) (n, 4) of nodes with a common rotation, and with a common position."""
-        corners = [(i, a, i, a + 1) for i, grid in enumerate(grids) for a in _corners(grid)]
-        if not corners and not self.joints:
-            return _NO_PAIRS, _NO_PAIRS
-        rigid, hinged = (self._pairs(grids, keeps_angle) for keeps_angle in (True, False))
-        turning = np.concatenate([np.array(corners, dtype=np.int64).reshape(-1, 4), rigid])
-        return turning, np.concatenate([turning, hinged])
-
-    def _pairs(self, grids: Sequence[Grid], keeps_angle: bool) -> np.ndarray:
-        """Return grid and node of both points (n, 4) of the joints that keep the angle, or of those that do not."""
-        joints = [joint for joint in self.joints if joint.keeps_angle == keeps_angle]
-        a, b = [joint.a for joint in joints], [joint.b for joint in joints]
-        return np.hstack([self._places(grids, a), self._places(grids, b)])
-
-    def _places(self, grids: Sequence[Grid], points: Sequence[Point]) -> np.ndarray:
-        """Return grid and node (n, 2) of points at nodes."""
-        if not points:
-            return np.empty((0, 2), dtype=np.int64)
-        numbers = [self._numbers[id(point.beam)] for point in points]
-        pairs = [(i, grids[i].node_at(point.fraction)) for i, point in zip(numbers, points, strict=True)]
-        return np.array(pairs, dtype=np.int64)
+        return numbered(self)
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:
         """The mesh of each beam, in the order of the beams."""
-        return self._numbered[0]
+        return self._numbered.meshes
 
     @property
     def coordinates(self) -> int:
         """Number of coordinates of the beams, including prescribed ones; shared ones are counted once."""
-        return self._numbered[1]
+        return self._numbered.coordinates
 
     @property
     def size(self) -> int:
         """Number of all variables: coordinates of the beams, unknowns of connectors, and history variables."""
-        return self._numbered[2]
+        return self._numbered.size
 
-    @cached_property
+    @shared_property
     def groups(self) -> tuple[Element, ...]:
         """The element of each block of beams, in order of appearance; different section laws form separate blocks."""
         return tuple(element for element, *_ in self._kinds[0])
 
-    @cached_property
+    @property
+    def blocks_of_beams(self) -> tuple[int, ...]:
+        """The number of the block of each beam."""
+        return self._kinds[1]
+
+    @shared_property
     def _kinds(self) -> tuple[tuple[tuple[Element, Hashable], ...], tuple[int, ...]]:
         """The key of each block of beams, and the number of the block of each beam."""
         blocks: dict[tuple[Element, Hashable], int] = {}
@@ -319,24 +286,3 @@ def block_key(beam: Beam) -> tuple[Element, Hashable]:
     """Return the key that beams of one block share."""
     law = beam.law
     return beam.element, None if law is None else (by_value(law.section), by_value(law.material))
-
-
-def _history(grid: Grid, first: int) -> np.ndarray:
-    """Return the numbers (ne, nq, k) of the history variables at the quadrature points of a beam."""
-    law = grid.beam.law
-    if law is None or not law.remembers:
-        return NO_HISTORY
-    shape = grid.elements, len(grid.beam.element.energy_points()[0]), len(law.start)
-    return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
-
-
-def _turns(support: PointSupport) -> bool:
-    """Return whether a support involves the rotation."""
-    return "rotation" in support.prescribed() or "rotation" in support.springs()
-
-
-def _corners(grid: Grid) -> Sequence[int]:
-    """Return the first of the two nodes at each corner."""
-    if not grid.beam.curve.corners:
-        return ()
-    return grid.node[:-1, -1][grid.node[:-1, -1] != grid.node[1:, 0]].tolist()

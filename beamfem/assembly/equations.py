@@ -9,6 +9,7 @@ from beamfem.assembly.mixed_tangent import MixedTangent, mixed
 from beamfem.assembly.system import System
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
+from beamfem.once import kept_with
 
 STATICS = (1.0, 0.0, 0.0)
 INERTIA = (0.0, 0.0, 1.0)
@@ -157,10 +158,17 @@ def _sure_stresses(system: System, p: np.ndarray, time: float) -> tuple[np.ndarr
 
 def sizes(system: System, p: np.ndarray) -> tuple[float, float]:
     """Return the largest position [m], at least the size of the model, and the largest other coordinate, at least 1."""
-    size, others = np.abs(p), ~system.positions
-    others[system.history.numbers] = False
-    reach, turn = (float(size.max(where=mask, initial=0.0)) for mask in (system.positions, others))
+    positions, others = _positions_and_others(system)
+    reach, turn = (float(np.abs(p[dofs]).max(initial=0.0)) for dofs in (positions, others))
     return max(reach, system.extent), max(turn, 1.0)
+
+
+@kept_with
+def _positions_and_others(system: System) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of the coordinates that are positions, and of the others but for history variables."""
+    others = ~system.positions
+    others[system.history.numbers] = False
+    return np.flatnonzero(system.positions), np.flatnonzero(others)
 
 
 def predicted_stresses(

@@ -51,6 +51,11 @@ class Unknowns:
         in_a_row = len(self.dofs) > 0 and (self.dofs[1:] - self.dofs[:-1] == 1).all()
         return int(self.dofs[0]) if in_a_row else -1
 
+    @cached_property
+    def chosen(self) -> slice | np.ndarray:
+        """What the unknown coordinates are among all, as an index."""
+        return slice(self.first, self.first + len(self.dofs)) if self.first >= 0 else self.dofs
+
     def diagonal(self, numbers: np.ndarray) -> np.ndarray:
         """Return the positions of the diagonal entries of unknowns (k,) in the matrix data."""
         if self.pattern is None:

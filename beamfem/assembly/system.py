@@ -299,7 +299,7 @@ class System:
 
     def along_free(self, residual: np.ndarray) -> np.ndarray:
         """Return the residual of the unknowns without the reactions of inclined rollers."""
-        result = residual[self.free_dofs]
+        result = residual[self.unknowns.chosen].copy()
         for first, normal in zip(*self.rotated, strict=True):
             result[first : first + 2] -= normal * (normal @ result[first : first + 2])
         return result

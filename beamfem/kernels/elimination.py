@@ -18,11 +18,18 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
     eliminate(n, count, start, stop, half, eliminates, reach, ab, right, original): the smallest ratio of a pivot to the
     row's original diagonal entry. reach (n,): end of the rows that a row and those above are coupled to, which are the
     only ones that change. right (n,): eliminated on the way if `eliminates`, `solve_upper` does the rest. original
-    (count,): space; so many pivots are taken in all, and the rows below keep what is left of the matrix, their Schur
-    complement. A call takes those from `start`, which is even, to `stop`, and needs the rows before stop + w only.
+    (count,): filled with the original diagonal entries, with the signs of the pivots; so many pivots are taken in all,
+    and the rows below keep what is left of the matrix, their Schur complement. A call takes those from `start`, which is
+    even, to `stop`, and needs the rows before stop + w only.
     Backwards ab, right and reach are the last entries, and rows the last ones first.
     """
     return _in_lanes(known, case, -1 if backwards else 1) if known else _one_by_one(case, -1 if backwards else 1)
+
+
+@inlined
+def _signed(size, pivot):
+    """Return a size with the sign of a pivot, or of its inverse."""
+    return -size if pivot < 0.0 else size
 
 
 @inlined
@@ -89,6 +96,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
                 return 0.0
             if abs(a) < worst * original[k]:
                 worst = abs(a) / original[k]
+            original[k] = _signed(original[k], a)
             inverse = 1.0 / a
             if k + 1 == stop:
                 _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
@@ -105,6 +113,7 @@ def _in_lanes(w: int, case: str, way: int) -> Routine:
             if pivot < worst * original[k + 1]:
                 worst = pivot / original[k + 1]
             inverse_below, multiplier = own * inverse_determinant, c * inverse
+            original[k + 1] = _signed(original[k + 1], inverse_below)
             upper, lower = 0.0, 0.0
             if eliminates != 0:
                 upper = right[way * k]
@@ -166,6 +175,7 @@ def _one_by_one(case: str, way: int) -> Routine:
                 return 0.0
             worst = min(worst, abs(top[way * w]) / original[k])
             inverse = 1.0 / top[way * w]
+            original[k] = _signed(original[k], inverse)
             if k + 1 == stop:
                 _take_pivot(way, k, n, w, inverse, eliminates, ab, right)
                 break
@@ -181,6 +191,7 @@ def _one_by_one(case: str, way: int) -> Routine:
                 return 0.0
             worst = min(worst, abs(below[way * w]) / original[k + 1])
             inverse_below = 1.0 / below[way * w]
+            original[k + 1] = _signed(original[k + 1], inverse_below)
             below[way * w] = inverse_below
             upper, lower = 0.0, 0.0
             if eliminates != 0:

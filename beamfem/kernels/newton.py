@@ -1,7 +1,7 @@
 """Newton's iterations for an equilibrium at fixed loads, of models whose tangent is a band, in one compiled call."""
 
 from beamfem.kernels import record as r
-from beamfem.kernels.compiling import routine
+from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 
@@ -25,6 +25,15 @@ def take_step(n, step, p, scale):
         if not relative <= size and size == size:  # NaN counts as the largest
             size = relative
     return size
+
+
+@inlined
+def _negative(unknown, signs):
+    """Return how many numbers (unknown,) are negative."""
+    negative = 0
+    for i in range(unknown):
+        negative += signs[i] < 0.0
+    return negative
 
 
 @routine("iii", "i")
@@ -79,9 +88,7 @@ def iterate(system, solver, calls):
             _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
         if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[3]:
             return 0
-        negative = 0
-        for i in range(unknown):
-            negative += rows[i * (2 * half + 1) + half] < 0.0
+        negative = _negative(unknown, step)
         found[6] = negative
         if found[0] == 1.0:
             found[8] = negative
@@ -149,9 +156,7 @@ def count_after_step(system, solver, calls):
     _balance(call[r.BALANCE], system)
     if rollers > 0:
         _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL]))
-    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, reals(b[r.STEP])) > limits[3]:
+    signs = reals(b[r.STEP])
+    if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, signs) > limits[3]:
         return -1
-    negative = 0
-    for i in range(unknown):
-        negative += rows[i * (2 * half + 1) + half] < 0.0
-    return negative
+    return _negative(unknown, signs)

@@ -85,7 +85,7 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
     if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
         ended = Termination.CONVERGED
     elif _settled(system, balance.p, correction) and np.all(
-        np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.free_dofs]
+        np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.unknowns.chosen]
     ):
         ended = Termination.ROUND_OFF
     else:

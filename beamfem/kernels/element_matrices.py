@@ -3,6 +3,7 @@
 from beamfem.kernels import record as r
 from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import routine
+from beamfem.kernels.point import HESSIAN
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 from beamfem.kernels.record import ROW
 
@@ -12,12 +13,12 @@ _add_scaled, _add_mass = caller("iidrr"), caller("iiiiiidrrrr")
 _reduce, _add_to_band, _add_to_sparse = caller("iiiiiirrr"), caller("iiiiinirr"), caller("iiiinsrr")
 
 
-@routine("iiir")
-def form_matrices(group, system, count, x):
+@routine("iiirri")
+def form_matrices(group, system, count, x, nodal, stride):
     """Fill the reduced matrices B^T (ck K B + M C) of a batch of elements.
 
     C = ca B + ck de''/dp + cv de''/dp'; ck, cv, ca: weights of the derivatives with respect to p, p' and p''; x:
-    workspace.
+    workspace; nodal: rows of the first nodes, those of the next ones `stride` numbers on.
     """
     b, s = wholes(group), wholes(system)
     call, factors = wholes(b[r.ROUTINES]), reals(s[r.FACTORS])
@@ -30,9 +31,10 @@ def form_matrices(group, system, count, x):
     )
     points, bends, coordinates = b[r.POINTS], b[r.BENDS], b[r.COORDINATES]
     size, slots_, rows = 2 * vectors, nodes * vectors, nodes * coordinates
-    _, e, _, _, t, _, h, z, pair, k, _ = rows_of(nodes, vectors, points, gathered, b[r.TABLE_ROWS])
-    e, t, h, z, pair, k = (
-        at(x, e * ROW),
+    _, _, _, _, t, q, h, z, pair, k, _ = rows_of(nodes, vectors, points, gathered, b[r.TABLE_ROWS])
+    if points == 1:
+        h = q + HESSIAN
+    t, h, z, pair, k = (
         at(x, t * ROW),
         at(x, h * ROW),
         at(x, z * ROW),
@@ -42,7 +44,7 @@ def form_matrices(group, system, count, x):
     ck, linear = factors[0], size - turned
     if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # `linear_law.add_viscous` has applied ck and cv at the points
         ck = 1.0 if ck != 0.0 or factors[1] != 0.0 else 0.0
-    transform, director = at(e, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
+    transform, director = at(nodal, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
     if ck != 0.0:
         for m in range(nodes):
             for point in range(points):
@@ -62,12 +64,12 @@ def form_matrices(group, system, count, x):
                     to,
                 )
                 if turned != 0:
-                    turn = at(transform, m * gathered * ROW)
+                    turn = at(transform, m * stride)
                     _combine(call[r.COMBINE], 6, turned, turning, count, turn, at(to, 6 * linear * ROW), x)
             for n in range(m + 1):
                 slope = at(t, (b[r.SLOPE] + n * vectors) * ROW)
                 second = at(t, (b[r.SECOND] + n * vectors * bends) * ROW)
-                turn, to = at(transform, n * gathered * ROW), at(k, (rows * m + n) * coordinates * ROW)
+                turn, to = at(transform, n * stride), at(k, (rows * m + n) * coordinates * ROW)
                 done = _products(
                     call[r.PRODUCTS],
                     vectors,
@@ -94,7 +96,7 @@ def form_matrices(group, system, count, x):
     else:
         _clear(call[r.CLEAR], rows * rows, count, k)
     if factors[2] != 0.0:
-        convective = at(e, b[r.CONVECTIVE] * ROW)
+        convective = at(nodal, b[r.CONVECTIVE] * ROW)  # a copy
         if turned != 0:
             for n in range(nodes):
                 to = at(convective, n * gathered * ROW)

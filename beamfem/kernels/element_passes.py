@@ -13,7 +13,7 @@ _collect, _scatter = caller("iiiiii", "i"), caller("iiiiiniirr")
 _interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iiiiiirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
-_form, _add, _copy = caller("iiir"), caller("iiiir"), caller("iirr")
+_form, _add, _copy = caller("iiirri"), caller("iiiir"), caller("iirr")
 _release = caller("iiiiirr")
 _rate_nodes, _viscous = caller("iii"), caller("iiddrrrr")
 
@@ -33,6 +33,7 @@ def add_elements(group, system):
     gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
     ck, cv = reals(s[r.FACTORS])[0], reals(s[r.FACTORS])[1] if damped else 0.0
     stiff = tangent != 0 and (ck != 0.0 or cv != 0.0)
+    changed = 1 if tangent != 0 and reals(s[r.FACTORS])[2] != 0.0 else 0  # what the mass adds, the chunks must not keep
     if damped:
         _rate_nodes(call[r.RATE_NODES], group, system, b[r.VELOCITY])
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)
@@ -52,7 +53,7 @@ def add_elements(group, system):
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        apart = _collect(call[r.COLLECT], group, system, first, count, rows, tangent)
+        apart = _collect(call[r.COLLECT], group, system, first, count, rows, changed)
         nodal = copied if apart == 0 else at(chunks, place[first])
         stride = rows * ROW if apart == 0 else apart
         _add_inertia(
@@ -131,6 +132,7 @@ def add_elements(group, system):
                         resultant[i] *= ck
             if stiff:
                 _measure(call[r.HESSIAN], count, q)
+            if stiff and b[r.POINTS] > 1:
                 _copy(call[r.COPY], 21, count, at(q, POINT_HESSIAN * ROW), at(x, (h + 21 * number) * ROW))
         _scatter(call[r.SCATTER], nodes, count, first, elements, ordered, place, size, b[r.FORCE], f, chunks)
         if predicted != 0:
@@ -148,6 +150,6 @@ def add_elements(group, system):
                 chunks,
             )
         if tangent != 0:
-            _form(call[r.FORM_MATRICES], group, system, count, x)
+            _form(call[r.FORM_MATRICES], group, system, count, x, nodal, stride)
             _add(call[r.ADD_MATRICES], group, system, first, count, k)
         first += count

@@ -19,9 +19,9 @@ def elimination(known: int, case: str, backwards: bool) -> Routine:
     row's original diagonal entry. reach (n,): end of the rows that a row and those above are coupled to, which are the
     only ones that change. right (n,): eliminated on the way if `eliminates`, `solve_upper` does the rest. original
     (count,): filled with the original diagonal entries, with the signs of the pivots; so many pivots are taken in all,
-    and the rows below keep what is left of the matrix, their Schur complement. A call takes those from `start`, which is
-    even, to `stop`, and needs the rows before stop + w only.
-    Backwards ab, right and reach are the last entries, and rows the last ones first.
+    and the rows below keep what is left of the matrix, their Schur complement. A call takes those from `start`, which
+    is even, to `stop`, and needs the rows before stop + w only. Backwards ab, right and reach are the last entries, and
+    rows the last ones first.
     """
     return _in_lanes(known, case, -1 if backwards else 1) if known else _one_by_one(case, -1 if backwards else 1)
 

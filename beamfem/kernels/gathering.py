@@ -5,7 +5,7 @@ from beamfem.kernels.batch import rows_of
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, merged, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
-from beamfem.kernels.record import ROW
+from beamfem.kernels.record import LANES, ROW
 
 
 @inlined
@@ -50,6 +50,18 @@ def gather(nodes, count, first, stride, ordered, place, rows, chunks, e):
                 to, source = at(whole, row * ROW), at(chunks, row * ROW)
                 for i in range(count):
                     to[i] = source[offsets[i]]
+
+
+@inlined
+def _bring_last(b, offsets, count, rows):
+    """Copy the last node of a batch behind the lanes of the chunk of the others; return whether these are in a row."""
+    chunk, last, before = b[r.NODE_ROWS] * ROW, offsets[count - 1], offsets[count - 2]
+    behind = count > 1 and before - offsets[0] == count - 2 and last % chunk == 0 and before % chunk == LANES - 1
+    if behind:
+        chunks = reals(b[r.CHUNKS])
+        for row in range(rows):
+            chunks[before + 1 + row * ROW] = chunks[last + row * ROW]
+    return behind
 
 
 @inlined
@@ -101,7 +113,8 @@ def collect(group, system, first, count, rows, copied):
     """Fill the workspace of a batch: tables, body forces and the first `rows` rows of its nodes.
 
     system: 0 if body forces are not needed. Unless copies are needed (`copied`), nodes with consecutive lanes of one
-    chunk are read there: then the offset from one node of an element to the next is returned, otherwise 0.
+    chunk are read there, the last one behind the lanes of the others: then the offset from one node of an element to
+    the next is returned, otherwise 0.
     """
     small_code()
     b = wholes(group)
@@ -116,8 +129,10 @@ def collect(group, system, first, count, rows, copied):
         apart, begin = place[elements + first] - place[first], place[first]
         for n in range(nodes):
             offsets = at(place, n * elements + first)
-            if offsets[0] - begin != n * apart or offsets[count - 1] - offsets[0] != count - 1:
+            if offsets[0] - begin != n * apart:
                 apart = 0
+            elif offsets[count - 1] - offsets[0] != count - 1:
+                apart = apart if _bring_last(b, offsets, count, rows) else 0
         if apart != 0:
             return apart
     gather(nodes, count, first, elements, b[r.ORDERED], place, rows, reals(b[r.CHUNKS]), at(x, e * ROW))

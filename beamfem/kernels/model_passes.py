@@ -140,20 +140,22 @@ def predict_resultants(group, system, placed):
         s[r.COORDINATES_V] = step
     _, e, _, _, tables, q, unit, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, t, q, unit = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW), at(x, unit * ROW)
-    pairs = measures * (measures + 1) // 2
+    pairs, chunks, place = measures * (measures + 1) // 2, reals(b[r.CHUNKS]), wholes(b[r.PLACE])
     first = 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
         for i in range(count):
             unit[i] = 1.0
-        _collect(call[r.COLLECT], group, 0, first, count, rows, 1)
+        apart = _collect(call[r.COLLECT], group, 0, first, count, rows, 0)
+        nodal = e if apart == 0 else at(chunks, place[first])
+        stride = rows * ROW if apart == 0 else apart
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            stride, rate, time = rows * ROW, at(q, RATE * ROW), at(t, b[r.DAMPING] * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, e, q)
+            rate, time = at(q, RATE * ROW), at(t, b[r.DAMPING] * ROW)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
             _measure(call[r.STRAINS], count, q)
-            change = at(e, b[r.ACCELERATION] * ROW)
+            change = at(nodal, b[r.ACCELERATION] * ROW)
             _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, change, rate)
             _measure(call[r.RATES], count, q)
             for row in range(measures):
@@ -164,7 +166,7 @@ def predict_resultants(group, system, placed):
                     for i in range(count):
                         strain[i] += time[i] * cv * rate_row[i]
             if damped:
-                moving = at(e, b[r.VELOCITY] * ROW)
+                moving = at(nodal, b[r.VELOCITY] * ROW)
                 _interpolate(
                     call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, moving, rate
                 )
@@ -212,14 +214,17 @@ def smallest_jacobian(group):
     size, slots = 2 * vectors, nodes * vectors
     _, e, _, _, tables, q, _, _, _, _, _ = rows_of(nodes, vectors, b[r.POINTS], b[r.CURVATURE], b[r.TABLE_ROWS])
     e, t, q = at(x, e * ROW), at(x, tables * ROW), at(x, q * ROW)
+    chunks, place = reals(b[r.CHUNKS]), wholes(b[r.PLACE])
     smallest, first = 1.0, 0
     while first < elements:
         count = min(b[r.BATCH], elements - first)
-        _collect(call[r.COLLECT], group, 0, first, count, size, 1)
+        apart = _collect(call[r.COLLECT], group, 0, first, count, size, 0)
+        nodal = e if apart == 0 else at(chunks, place[first])
+        stride = size * ROW if apart == 0 else apart
         for number in range(b[r.POINTS]):
             slope, factor = at(t, (b[r.SLOPE] + number * slots) * ROW), at(director, number * nodes)
             second = at(t, (b[r.SECOND] + number * slots * bends) * ROW)
-            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, size * ROW, slope, second, factor, e, q)
+            _interpolate(call[r.INTERPOLATE], nodes, vectors, bends, count, stride, slope, second, factor, nodal, q)
             for i in range(count):
                 smallest = min(smallest, q[i] * q[3 * ROW + i] - q[ROW + i] * q[2 * ROW + i])
         first += count

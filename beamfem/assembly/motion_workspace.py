@@ -15,7 +15,7 @@ from beamfem.kernels.pointers import address_of
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 _NONE = np.empty(0, dtype=np.int64)
-_FROM_ZERO = record.ROWS, record.DIFFERENCES, record.KEPT, record.TURNS
+_FROM_ZERO = record.DIFFERENCES, record.KEPT, record.TURNS
 
 
 class MotionWorkspace:

@@ -2,6 +2,7 @@
 
 import pytest
 from random_models import random_recipe
+from recipes import View
 
 import beamfem as bf
 from beamfem.linalg import eigenpairs, general_pairs, repeated
@@ -20,6 +21,15 @@ def test_a_search_ends_where_the_beam_would_be_turned_inside_out(seed):
     path = caught.value.solution
     assert path.stable.all()
     assert found.ended == f"beyond load factor {path.load_factor[-1]:.6g} the beam would be turned inside out"
+
+
+@pytest.mark.parametrize("seed", [7, 179])
+def test_a_search_that_is_lost_where_an_element_is_bent_by_half_a_turn_asks_for_more_elements(seed):
+    model = random_recipe(seed).build().model
+    with pytest.raises(bf.ConvergenceError, match=r"an element of beam 0 is bent by \d(\.\d)? rad there: use more"):
+        bf.solve_buckling(model, 4)
+    finer = bf.solve_buckling(random_recipe(seed).build(View(finer=2)).model, 4)
+    assert "goes no further than 300 times" in finer.ended
 
 
 def test_a_search_along_a_path_computes_a_few_modes_only(monkeypatch):

@@ -12,6 +12,7 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.progress import progress
+from beamfem.results.bent import advice
 from beamfem.results.path import Bifurcation, Path, PathState
 from beamfem.solve.continuation.continuation import Continuation, PathPoint, begin
 from beamfem.solve.continuation.critical_points import Segment, SegmentLostError
@@ -219,7 +220,7 @@ def _step(
             record.ended = max(reasons, key=reasons.count)
             raise ConvergenceError(
                 f"the path ends at load factor {point.load_factor:.6g} after {len(record.rows)} points: "
-                f"{record.ended}, with steps along it down to {size:.1e}",
+                f"{record.ended}, with steps along it down to {size:.1e}{advice(record.model, point.y[:-1])}",
                 record.path(),
             )
 

@@ -12,6 +12,7 @@ from beamfem.linalg.eigenpairs import digits_for
 from beamfem.model.beam import Beam
 from beamfem.model.model import Model
 from beamfem.registry import offered
+from beamfem.results.bent import advice
 from beamfem.results.drawing_options import ModeOptions
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
@@ -273,7 +274,9 @@ def solve_buckling(model: Model, count: int = 1, about: State | Solution | None 
         criticals, ended, status = _criticals(path, count, farthest)
     if not criticals and path.lost:
         raise ConvergenceError(
-            f"the loading path was lost before any load factor was critical: {ended}", path.solution()
+            f"the loading path was lost before any load factor was critical: {ended}"
+            + advice(model, path.points[-1].y[:-1]),
+            path.solution(),
         )
     uncertainty = np.array([point.uncertainty for point in criticals])
     if np.any(uncertainty > _UNCERTAIN):

@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, LimitPointError
 from beamfem.progress import progress
+from beamfem.results.bent import advice
 from beamfem.solve.newton.iteration import Newton, Termination
 from beamfem.solve.newton.newton import solve_equilibrium
 from beamfem.solve.statics.load_path import OutOfReachError, PathFollower, PathLostError, TurnsBackError
@@ -121,7 +122,9 @@ def _follow(done: StaticRecord, follower: PathFollower, to: tuple[float, float],
         if lost_near_by and _merges(follower, done, reached, 2.0 * reached - np.append(done.rows[-2][1], 0.0), to[1]):
             return
         raise ConvergenceError(
-            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}", done.solution()
+            f"the path could not be followed beyond load factor {done.reached:.6g}: {lost}"
+            + advice(done.model, done.state),
+            done.solution(),
         ) from lost
 
 

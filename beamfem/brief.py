@@ -14,8 +14,13 @@ _LONGEST = 700  # characters of everything
 
 
 def brief(item: Any) -> str:
-    """Return a dataclass with its fields: arrays by their shape and range, long sequences by their length."""
-    parts = (f"{field.name}={_shown(getattr(item, field.name))}" for field in fields(item) if field.repr)
+    """Return a dataclass with its fields: arrays by their shape and range, long sequences by their length.
+
+    Where a class has a method `_unit_of`, the unit of each field that it names follows the value.
+    """
+    unit_of = getattr(item, "_unit_of", lambda name: "")
+    shown_fields = ((field.name, unit_of(field.name)) for field in fields(item) if field.repr)
+    parts = (f"{name}={_shown(getattr(item, name))}{unit and f' {unit}'}" for name, unit in shown_fields)
     text = f"{type(item).__name__}({', '.join(parts)})"
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...)"
 

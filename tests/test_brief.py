@@ -7,6 +7,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.convergence.result import Convergence
+from beamfem.results.energies import Energy
 
 
 @pytest.fixture(scope="module")
@@ -125,9 +126,15 @@ def test_a_sweep_prints_its_first_and_last_points_and_a_study_its_table(large):
 
 def test_arrays_are_shown_by_shape_and_range(results):
     said = repr(results["section forces"])
-    assert said.startswith("SectionForces(arc_length=<array (160,) from 0 to 1>, normal=<array (2, 160) from ")
+    assert said.startswith("SectionForces(arc_length=<array (160,) from 0 to 1> m, normal=<array (2, 160) from ")
+    assert said.endswith("> N m)")
     assert "values=({'y': <array (1000,) from 0 to 0>}, {'y': <array " in repr(results["sweep"])
     assert "parameters=<300 items>" in repr(results["long sweep"])
+
+
+def test_energies_have_the_unit_of_their_model():
+    energy = Energy(np.zeros(2), np.ones(2), np.zeros(2), np.zeros(2), unit="N mm")
+    assert repr(energy).startswith("Energy(kinetic=[0., 0.] N mm, strain=[1., 1.] N mm, potential=")
 
 
 def test_a_path_and_its_states_show_load_factors(results):

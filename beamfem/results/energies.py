@@ -51,6 +51,9 @@ class Energy:
 
     __repr__ = brief
 
+    def _unit_of(self, name: str) -> str:
+        return self.unit
+
     def _repr_html_(self) -> str:
         return offered(Energy._repr_html_)(self)
 

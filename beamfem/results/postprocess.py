@@ -119,6 +119,9 @@ class SectionForces:
 
     __repr__ = brief
 
+    def _unit_of(self, name: str) -> str:
+        return self.units.of({"arc_length": "m", "moment": "N m"}.get(name, "N"))
+
     def _repr_html_(self) -> str:
         return offered(SectionForces._repr_html_)(self)
 

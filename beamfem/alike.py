@@ -67,7 +67,7 @@ def _compared(kind: type) -> tuple[str, ...]:
     """Return the names of the fields that a class is compared by, but for those that the package sees to be numbers."""
     if not is_dataclass(kind):
         return ()
-    numbers = (float, float | None) if of_package(kind) else ()
+    numbers = (float, float | None, tuple[float, float]) if of_package(kind) else ()
     return tuple(field.name for field in fields(kind) if field.compare and field.type not in numbers)
 
 

@@ -120,3 +120,17 @@ def test_lost_digits_are_told_from_mistakes_of_ours():
     with pytest.raises(ValueError, match="square") as caught, digits_for("modes"):
         eigh(np.ones((2, 3)))
     assert not isinstance(caught.value, bf.BeamfemError)
+
+
+@pytest.mark.parametrize("name", ["at", "p", "v", "a"])
+def test_rows_cannot_be_overwritten_behind_what_was_computed_from_them(name, solution):
+    """Section forces that were asked for before would be those of the states of before."""
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(solution, name)[-1] += 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        solution[-1].p[0] = 1.0
+    own = solution.p.copy()
+    changed = replace(solution, p=own)
+    own[:] = own  # what was given stays as it was
+    assert np.shares_memory(changed.p, own)
+    assert bf.simulate(CANTILEVER, 0.01, 0.01, start=changed[-1]).p.shape[0] == 2

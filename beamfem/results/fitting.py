@@ -57,6 +57,14 @@ def require_rows(solution: "Solution") -> None:
         _require_array(solution, "turned", (rows, len(uncounted(model))))
 
 
+def made_read_only(solution: "Solution") -> None:
+    """Make the arrays of a solution read-only, for it keeps quantities that were computed from them."""
+    for name in ("at", "p", "v", "a"):
+        values = getattr(solution, name).view()
+        values.flags.writeable = False
+        object.__setattr__(solution, name, values)
+
+
 def require_finite(name: str, state: "State") -> None:
     """Raise InputError if a state passed as argument `name` has numbers that are not finite."""
     for part in ("p", "v", "a"):

@@ -13,7 +13,7 @@ from beamfem.once import cached_property
 from beamfem.registry import offered
 from beamfem.results.energy_drift import drift_warnings
 from beamfem.results.exports import Exports
-from beamfem.results.fitting import require_rows, require_state
+from beamfem.results.fitting import made_read_only, require_rows, require_state
 from beamfem.results.locking import locking_warnings
 from beamfem.results.pictures import Pictures
 from beamfem.results.quantities import Quantities
@@ -81,7 +81,7 @@ class Solution(Quantities, Pictures, Exports):
     at : array, (steps,)
         Load factors, or times [s].
     p, v, a : array, (steps, n)
-        Coordinates and their rates.
+        Coordinates and their rates; like `at`, they can be read only, since what is computed from them is kept.
     statistics : Statistics
         How the solve went.
     stability : array of bool, (steps,), optional
@@ -111,6 +111,7 @@ class Solution(Quantities, Pictures, Exports):
 
     def __post_init__(self) -> None:
         require_rows(self)
+        made_read_only(self)
 
     def __repr__(self) -> str:
         what = "load factor" if self.static else "time"

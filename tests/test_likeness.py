@@ -144,6 +144,27 @@ def test_meshes_are_those_of_the_beams_of_the_model(nothing_known):
     assert one.meshes[0].classes is other.meshes[0].classes
 
 
+@pytest.mark.parametrize("common", [0, 1])
+def test_models_that_have_one_of_their_beams_in_common(common, nothing_known):
+    """The mesh of each other beam is that of the own beam: results are looked up by it, and files name it."""
+
+    def second(load, name):
+        arm = replace(one.beams[1], name=name) if common == 0 else one.beams[1]
+        column = one.beams[0] if common == 0 else replace(one.beams[0], name=name)
+        loads = [bf.PointForce(arm.end, (0.0, load)), bf.Temperature(arm, 20.0, 30.0)]
+        return bf.Model([column, arm], [bf.Clamp(column.start)], loads, [bf.Rigid(column.end, arm.start)])
+
+    one = frame()
+    models = second(-5.0, "first"), second(-7.0, "second")
+    for model in models:
+        bf.solve_static(model)
+    assert models[0].alike is models[1].alike
+    for model in models:
+        assert all(mesh.beam is beam for mesh, beam in zip(model.meshes, model.beams, strict=True))
+    crooked = models[1].with_imperfection(bf.solve_modes(models[1], 1), 1e-3)
+    assert crooked.beams[1 - common].name == "second"
+
+
 def test_names_of_beams_are_their_own(nothing_known):
     """Messages name the beam of the model that fails, not of the one before it."""
 

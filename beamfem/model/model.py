@@ -175,9 +175,10 @@ class Model(ModelOutputs):
     @cached_property
     def _numbered(self) -> Numbered:
         shared = self._numbered_alike
-        if shared.meshes[0].beam is self.beams[0]:
+        pairs = tuple(zip(shared.meshes, self.beams, strict=True))
+        if all(mesh.beam is beam for mesh, beam in pairs):  # models may have some of their beams in common
             return shared
-        meshes = tuple(mesh.on(beam) for mesh, beam in zip(shared.meshes, self.beams, strict=True))
+        meshes = tuple(mesh.on(beam) for mesh, beam in pairs)
         return shared._replace(meshes=meshes)
 
     @shared_property

@@ -1,5 +1,7 @@
 """Models that are alike but for the size of their loads share what does not depend on it, and nothing else."""
 
+import gc
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -163,6 +165,50 @@ def test_models_that_have_one_of_their_beams_in_common(common, nothing_known):
         assert all(mesh.beam is beam for mesh, beam in zip(model.meshes, model.beams, strict=True))
     crooked = models[1].with_imperfection(bf.solve_modes(models[1], 1), 1e-3)
     assert crooked.beams[1 - common].name == "second"
+
+
+def test_beams_of_users_own_classes_are_like_no_other(nothing_known):
+    class Low(bf.Beam):
+        def section_at(self, arc_length):
+            return bf.Rectangle(0.01, 0.005)
+
+    def tip(kind):
+        beam = kind(bf.Arc((0.0, 0.0), 1.0, 0.0, 1.0), 4, bf.CRBF(order=3), SECTION, STEEL)
+        model = bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.end, (0.0, -1.0))])
+        return bf.solve_static(model).displacement(beam.end)[-1]
+
+    assert np.linalg.norm(tip(Low)) > 5.0 * np.linalg.norm(tip(bf.Beam))
+
+
+def test_amplitudes_of_the_first_model_are_not_kept(nothing_known):
+    """They may hold a whole solution."""
+
+    class Amplitude:
+        def __call__(self, time):
+            return time
+
+    model = frame(more=lambda beam: [bf.PointMoment(beam.end, 1.0, amplitude=Amplitude())])
+    kept = weakref.ref(model.loads[-1].amplitude)
+    bf.simulate(model, 0.01, 0.001)
+    assert frame(more=lambda beam: [bf.PointMoment(beam.end, 1.0)]).alike is model.alike
+    del model
+    gc.collect()
+    assert kept() is None
+
+
+@pytest.mark.parametrize("large", ["corners", "loads"])
+def test_large_models_are_not_kept_however_their_elements_come_about(large, nothing_known):
+    place = np.linspace(0.0, 10.0, 400)
+    corners = tuple(zip(place.tolist(), np.sin(7.0 * place).tolist(), strict=True))
+    curve = bf.Polyline(corners) if large == "corners" else bf.Line((0.0, 0.0), (10.0, 0.0))
+
+    def made():
+        beam = bf.Beam(curve, 1, bf.CRBF(order=3), SECTION, STEEL)
+        fractions = (0.1 * place).tolist() if large == "loads" else [1.0]
+        return bf.Model([beam], [bf.Clamp(beam.start)], [bf.PointForce(beam.at(at), (0.0, 1.0)) for at in fractions])
+
+    assert made().meshes[0].elements > 300
+    assert made().alike is not made().alike
 
 
 def test_names_of_beams_are_their_own(nothing_known):

@@ -1,7 +1,7 @@
 """The numerical data of a model: coordinates, blocks of elements, prescribed coordinates and loads at a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -145,8 +145,9 @@ class System:
 
     @shared_property
     def _actions_alike(self) -> tuple[Actions, ...]:
-        """The actions on the first of the models that are alike."""
-        return tuple(build_actions(self.model, number) for number in range(len(self.model.groups)))
+        """The actions on the first of the models that are alike, without its loads: their amplitudes may be large."""
+        built = (build_actions(self.model, number) for number in range(len(self.model.groups)))
+        return tuple(replace(actions, loads=()) for actions in built)
 
     @shared_property
     def point_loads(self) -> tuple[PointLoads, ...]:

@@ -41,13 +41,14 @@ def _likeness(model: "Model") -> Hashable | None:
         return None
     described: list[Hashable] = []
     for beam in beams:
-        of_package = lasts(beam.element) and lasting(beam.curve, beam.section, beam.material)
+        of_package = type(beam) is Beam and lasts(beam.element) and lasting(beam.curve, beam.section, beam.material)
         if isinstance(beam.elements, str) or not of_package or beam.law is not None:
             return None
-        elements += beam.elements if isinstance(beam.elements, int) else len(beam.elements)
+        elements += beam.element_count + len(beam.curve.corners)
         described.append((beam.curve, beam.elements, beam.element, beam.section, beam.material))
     parts: tuple[Any, ...] = (*model.supports, *model.loads, *model.joints)
-    if elements > _MOST_ELEMENTS or not all(map(is_plain, map(type, parts))):
+    # each of the parts may divide an element
+    if elements + len(parts) > _MOST_ELEMENTS or not all(map(is_plain, map(type, parts))):
         return None
     numbers = {id(beam): number for number, beam in enumerate(beams)}
     described += [_described(load, numbers) for load in model.loads]

@@ -194,16 +194,16 @@ def _nearest(word: Any, known: Sequence[str]) -> str | None:
 
 
 def vector(name: str, value: Sequence[float] | np.ndarray) -> tuple[float, float]:
-    """Return `value` as two finite floats, or raise InputError naming it."""
+    """Return `value` as two finite floats, zeros without a sign, or raise InputError naming it."""
     if type(value) is tuple and [type(number) for number in value] == [float, float] and all(map(math.isfinite, value)):
-        return value[0], value[1]
+        return value[0] + 0.0, value[1] + 0.0
     try:
         numbers = tuple(map(_number, items(name, value)))
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name} must be two numbers (x, y), got {shown(value)}") from None
     if len(numbers) != 2 or not all(map(math.isfinite, numbers)):
         raise InputError(f"{name} must be two finite numbers (x, y), got {shown(value)}")
-    return numbers[0], numbers[1]
+    return numbers[0] + 0.0, numbers[1] + 0.0
 
 
 def fulfils(item: object, protocol: type) -> bool:

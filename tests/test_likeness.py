@@ -295,3 +295,23 @@ def _numbers(value):
     elif not isinstance(value, tuple | list):
         value = vars(value).values()
     return [number for part in value for number in _numbers(part)]
+
+
+@pytest.mark.parametrize("curve", [bf.Line((0, 0), (1, 0)), bf.Arc((0, 0), 1.0, 0.0, 1.0)])
+def test_what_is_shared_cannot_be_overwritten(curve, nothing_known):
+    mesh = bf.Model([bf.Beam(curve, 3, bf.CRBF(2), SECTION, STEEL)]).meshes[0]
+    for values in (mesh.position, mesh.tangent, mesh.arc, mesh.lengths, mesh.node, *mesh.carried, *mesh.classes):
+        with pytest.raises(ValueError, match="read-only"):
+            values[...] = 0
+
+
+def test_zeros_have_no_sign():
+    line = bf.Line((-0.0, 0.0), (-1.0, -0.0))
+    assert [str(x) for x in (*line.start, *line.end)] == ["0.0", "0.0", "-1.0", "0.0"]
+
+
+def test_loads_of_a_motion_are_not_kept_with_its_workspace(nothing_known):
+    model = frame(more=lambda beam: [bf.PointForce(beam.end, (0.0, 5.0), amplitude=np.sin)])
+    bf.simulate(model, 0.5, 1e-3)
+    (space,) = system_of(model, static=False).spare_motions
+    assert max(array.size for array in space.assembler._acting) == 0

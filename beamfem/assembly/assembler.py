@@ -184,6 +184,10 @@ class Assembler:
             work.table[record.NATURAL] = address
         return addresses
 
+    def unload(self) -> None:
+        """Let go of the loads, which may be many rows of a motion."""
+        self._acting, self._natural, self._taken = (_NONE,), (), None
+
     def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
         """Set the weights ck, cv, ca of p, p', p'' in the tangent; with ca = 0 the residual has no inertia forces.
 

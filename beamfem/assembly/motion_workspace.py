@@ -92,4 +92,5 @@ def motion_workspace(system: System) -> Iterator[MotionWorkspace]:
         space = MotionWorkspace(system)
     yield space
     if space.arrays[record.ROWS].size <= _KEPT:
+        space.assembler.unload()
         system.spare_motions.append(space)

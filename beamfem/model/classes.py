@@ -53,11 +53,16 @@ def element_classes(grid: Grid) -> Classes:
         x, y = grid.tangent[0].tolist()
         known = _known(beam.element, by_value(beam.section), beam.material, grid.lengths.tobytes(), x, y)
         if not known:
-            known.append(_classes(grid))
-            for values in known[0]:
-                values.setflags(write=False)
+            known.append(_read_only(_classes(grid)))
         return known[0]
-    return _classes(grid)
+    return _read_only(_classes(grid))
+
+
+def _read_only(classes: Classes) -> Classes:
+    """Return the classes, whose arrays beams that are alike share."""
+    for values in classes:
+        values.setflags(write=False)
+    return classes
 
 
 @lru_cache(maxsize=64)

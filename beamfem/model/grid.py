@@ -56,7 +56,9 @@ class Grid:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Mesh length of each element (ne,) [m]."""
-        return self.rate * (self.parameter[1:] - self.parameter[:-1])
+        lengths = self.rate * (self.parameter[1:] - self.parameter[:-1])
+        lengths.setflags(write=False)
+        return lengths
 
     @property
     def nodes(self) -> int:

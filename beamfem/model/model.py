@@ -17,10 +17,10 @@ from beamfem.model.likeness import shared_by_likes
 from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
 from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
+from beamfem.model.meshes import NumberedMeshes, numbered_meshes
 from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
 from beamfem.model.named import require_different_names
-from beamfem.model.numbered import Numbered, numbered
 from beamfem.model.part_checks import require_part
 from beamfem.model.support import LineSupport, PointSupport, Support
 from beamfem.model.supports_along import SupportsAlong
@@ -173,7 +173,7 @@ class Model(ModelOutputs):
         return {id(beam): number for number, beam in enumerate(self.beams)}
 
     @cached_property
-    def _numbered(self) -> Numbered:
+    def _numbered(self) -> NumberedMeshes:
         shared = self._numbered_alike
         pairs = tuple(zip(shared.meshes, self.beams, strict=True))
         if all(mesh.beam is beam for mesh, beam in pairs):  # models may have some of their beams in common
@@ -182,10 +182,10 @@ class Model(ModelOutputs):
         return shared._replace(meshes=meshes)
 
     @shared_property
-    def _numbered_alike(self) -> Numbered:
+    def _numbered_alike(self) -> NumberedMeshes:
         """The meshes of the first of the models that are alike."""
         _ = self.made_of
-        return numbered(self)
+        return numbered_meshes(self)
 
     @property
     def meshes(self) -> tuple[BeamMesh, ...]:

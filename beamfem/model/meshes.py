@@ -27,7 +27,7 @@ _GRID = tuple(each.name for each in fields(Grid))
 _NO_PAIRS = np.empty((0, 4), dtype=np.int64)
 
 
-class Numbered(NamedTuple):
+class NumberedMeshes(NamedTuple):
     """The mesh of each beam, the number of coordinates of the beams, and that of all variables of the model."""
 
     meshes: tuple[BeamMesh, ...]
@@ -35,7 +35,7 @@ class Numbered(NamedTuple):
     size: int
 
 
-def numbered(model: "Model") -> Numbered:
+def numbered_meshes(model: "Model") -> NumberedMeshes:
     """Return the meshes of a model. Raises InputError for a beam that cannot be meshed."""
     require_room(model.beams)
     fractions = [[fraction for fraction, _ in requested] for requested in nodes_asked(model)]
@@ -55,9 +55,12 @@ def numbered(model: "Model") -> Numbered:
         parts = {name: getattr(grid, name) for name in _GRID}
         history = _history(grid, behind)
         meshes.append(BeamMesh(**parts, carried=carried, first_element=filled[block], block=block, history=history))
+        for values in (history, *parts.values()):
+            if isinstance(values, np.ndarray):
+                values.setflags(write=False)  # models that are alike share it
         filled[block] += grid.elements
         behind += history.size
-    return Numbered(tuple(meshes), size, behind)
+    return NumberedMeshes(tuple(meshes), size, behind)
 
 
 def _joined(model: "Model", grids: Sequence[Grid]) -> tuple[np.ndarray, np.ndarray]:

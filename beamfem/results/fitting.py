@@ -60,9 +60,11 @@ def require_rows(solution: "Solution") -> None:
 def made_read_only(solution: "Solution") -> None:
     """Make the arrays of a solution read-only, for it keeps quantities that were computed from them."""
     for name in ("at", "p", "v", "a"):
-        values = getattr(solution, name).view()
-        values.flags.writeable = False
-        object.__setattr__(solution, name, values)
+        values = getattr(solution, name)
+        if values.flags.writeable:  # whoever made it may go on writing to it
+            values = values.view()
+            values.flags.writeable = False
+            object.__setattr__(solution, name, values)
 
 
 def require_finite(name: str, state: "State") -> None:

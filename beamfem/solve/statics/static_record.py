@@ -73,13 +73,16 @@ class StaticRecord:
             messages += (few,)
             warn(few, RoundOffWarning)
         statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, messages, self.digits)
+        rates = np.zeros(states.shape)  # unlike zeros_like, it takes no memory until it is written to
+        for values in (load_factors, states, rates):
+            values.flags.writeable = False
         return Solution(
             self.model,
             True,
             load_factors,
             states,
-            np.zeros(states.shape),  # unlike zeros_like, it takes no memory until it is written to
-            np.zeros(states.shape),
+            rates,
+            rates,
             statistics,
             ~unstable if self.symmetric else None,
         )

@@ -33,11 +33,14 @@ class SolverTable:
         free_dofs, self.half_width = unknowns.dofs, unknowns.layouts[0].half_width
         self._kept = (
             *(np.ascontiguousarray(array, dtype=np.int64) for array in (free_dofs, rotated[0])),
-            *(np.ascontiguousarray(array, dtype=float) for array in (rotated[1], scale)),
+            *(np.ascontiguousarray(array, dtype=float) for array in (rotated[1], scale, 1.0 / scale)),
             unknowns.reach,
         )
         self._table = np.zeros(record.SOLVER_FIELDS, dtype=np.int64)
-        fields = record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL, record.SCALE, record.REACH
+        fields = (
+            *(record.FREE_DOFS, record.ROLLER_FIRST, record.ROLLER_NORMAL),
+            *(record.SCALE, record.INVERSE_SCALE, record.REACH),
+        )
         for field, values in zip(fields, self._kept, strict=True):
             self._table[field] = address_of(values)
         self._table[record.UNKNOWN], self._table[record.HALF] = len(free_dofs), self.half_width

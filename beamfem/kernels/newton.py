@@ -5,25 +5,43 @@ from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, caller, reals, slots, wholes
 
+_FAST = {"contract", "reassoc", "nsz"}
+
 _balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
 _factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
 _hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
-@routine("irrr", "d", fastmath={"contract", "reassoc", "nsz"})
-def take_step(n, step, p, scale):
-    """Add a step (n,) to p; return its largest component relative to scale, NaN if one is NaN."""
-    change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(scale), zeros(), n // WIDTH * WIDTH
+@inlined
+def _larger_of(size, value):
+    """Return the larger of a size and that of a value; NaN counts as the largest."""
+    return abs(value) if not abs(value) <= size and size == size else size
+
+
+@routine("irrr", "d", fastmath=_FAST)
+def take_step(n, step, p, inverse_scale):
+    """Add a step (n,) to p; return its largest component relative to the scale, NaN if one is NaN."""
+    change, lanes, weight, sizes, whole = as_rows(step), as_rows(p), as_rows(inverse_scale), zeros(), n // WIDTH * WIDTH
     for i in range(0, whole, WIDTH):
         correction = change[i]
         lanes[i] += correction
-        sizes = larger(sizes, correction / weight[i])
+        sizes = larger(sizes, correction * weight[i])
     size = largest(sizes)
     for i in range(whole, n):
         p[i] += step[i]
-        relative = abs(step[i]) / scale[i]
-        if not relative <= size and size == size:  # NaN counts as the largest
-            size = relative
+        size = _larger_of(size, step[i] * inverse_scale[i])
+    return size
+
+
+@inlined
+def _largest_product(n, one, other):
+    """Return the largest product of the numbers (n,) of two rows, NaN if one is NaN."""
+    lanes, others, sizes, whole = as_rows(one), as_rows(other), zeros(), n // WIDTH * WIDTH
+    for i in range(0, whole, WIDTH):
+        sizes = larger(sizes, lanes[i] * others[i])
+    size = largest(sizes)
+    for i in range(whole, n):
+        size = _larger_of(size, one[i] * other[i])
     return size
 
 
@@ -53,11 +71,12 @@ def iterate(system, solver, calls):
     s, b, call = wholes(system), wholes(solver), wholes(calls)
     n, unknown, half, rollers = s[r.SIZE], b[r.UNKNOWN], b[r.HALF], b[r.ROLLERS]
     free, first_of, normal = wholes(b[r.FREE_DOFS]), wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
-    rows, right, step, scale = (
+    rows, right, step, scale, inverse_scale = (
         reals(b[r.ROWS]),
         reals(b[r.RIGHT]),
         reals(b[r.STEP]),
         reals(b[r.SCALE]),
+        reals(b[r.INVERSE_SCALE]),
     )
     limits, found, prescribed_step, prescribed_force = (
         reals(b[r.LIMITS]),
@@ -118,22 +137,19 @@ def iterate(system, solver, calls):
             for group in range(s[r.GROUPS]):
                 _predict(call[r.PREDICT_RESULTANTS], groups[group], system, 1)
         found[0] += 1.0
-        found[2], found[1] = found[1], _take(call[r.TAKE_STEP], n, step, p, scale)
+        found[2], found[1] = found[1], _take(call[r.TAKE_STEP], n, step, p, inverse_scale)
         if found[0] == 1.0:
             found[7] = found[1]
         if not found[1] <= limits[2]:
             return 1
         stagnant = found[0] > 2.0 and found[1] > 0.25 * found[2] and found[1] < limits[1]
         done = found[1] <= limits[0] or stagnant or not found[0] < limits[4]
-    found[3], found[4] = 0.0, 0.0
-    for i in range(n):
-        found[4] = max(found[4], abs(residual[i]) * scale[i])
+    found[4] = _largest_product(n, residual, scale)
     for i in range(unknown):
-        right[i] = residual[free[i]]
+        right[i], step[i] = residual[free[i]], scale[free[i]]
     if rollers > 0:
         _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    for i in range(unknown):
-        found[3] = max(found[3], abs(right[i]) * scale[free[i]])
+    found[3] = _largest_product(unknown, right, step)
     found[5] = 1.0
     for group in range(s[r.GROUPS]):
         found[5] = min(found[5], _jacobian(call[r.SMALLEST_JACOBIAN], groups[group]))

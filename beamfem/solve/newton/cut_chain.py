@@ -29,7 +29,7 @@ class Substructure:
     free: np.ndarray
     inner: int
     equations: Assembler
-    scale: np.ndarray
+    inverse_scale: np.ndarray
     p: np.ndarray
     zeros: np.ndarray
     step: np.ndarray
@@ -116,7 +116,7 @@ def _half(
         free=order,
         inner=len(order) - shared,
         equations=equations,
-        scale=system.scale[place],
+        inverse_scale=1.0 / system.scale[place],
         p=start[place].copy(),
         zeros=np.zeros(size),
         step=np.empty(size),

@@ -85,7 +85,7 @@ def _advance(half: Substructure, predicts: bool, change: Change) -> float:
     half.step[half.free] = half.right
     if predicts:
         half.equations.predict(half.p, half.step)
-    return float(take_step(len(half.p), half.step, half.p, half.scale))
+    return float(take_step(len(half.p), half.step, half.p, half.inverse_scale))
 
 
 def joined(substructures: tuple[Substructure, Substructure], pool: Executor) -> tuple[np.ndarray, np.ndarray, float]:

@@ -27,7 +27,7 @@ def row_floors(system: System, p: np.ndarray) -> np.ndarray:
     """Return the residual (n,) [N, N m] that rounded coordinates cause in each row, see `row_errors`."""
     reach, turn = sizes(system, p)
     positions, directions = system.residual_errors
-    return np.asarray(ROUND_OFF * (reach * positions + turn * directions))
+    return np.asarray(ROUND_OFF * reach * positions + ROUND_OFF * turn * directions)
 
 
 def round_off_floor(system: System, p: np.ndarray) -> float:

@@ -63,7 +63,7 @@ def made_read_only(solution: "Solution") -> None:
         values = getattr(solution, name)
         if values.flags.writeable:  # whoever made it may go on writing to it
             values = values.view()
-            values.flags.writeable = False
+            values.setflags(write=False)
             object.__setattr__(solution, name, values)
 
 

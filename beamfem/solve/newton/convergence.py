@@ -84,8 +84,8 @@ def check_convergence(system: System, balance: Balance, newton: Newton, correcti
     """
     if correction.size <= newton.tolerance and balance.largest <= newton.residual_tolerance * balance.force:
         ended = Termination.CONVERGED
-    elif _settled(system, balance.p, correction) and np.all(
-        np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.unknowns.chosen]
+    elif _settled(system, balance.p, correction) and bool(
+        (np.abs(system.along_free(balance.residual)) <= row_floors(system, balance.p)[system.unknowns.chosen]).all()
     ):
         ended = Termination.ROUND_OFF
     else:
@@ -100,5 +100,6 @@ def _settled(system: System, p: np.ndarray, correction: Correction) -> bool:
     size, before = correction.size, correction.before
     following = size * min(size / before, 1.0) if correction.number > 1 else size
     moved = float((np.abs(p - system.reference) / system.scale).max(initial=0.0))
-    last_digit = _EPS * float((np.abs(p) / system.scale).max(initial=1.0))
-    return following <= max(_SURE * moved, last_digit)
+    if following <= _SURE * moved:
+        return True
+    return following <= _EPS * float((np.abs(p) / system.scale).max(initial=1.0))

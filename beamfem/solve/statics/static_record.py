@@ -75,7 +75,7 @@ class StaticRecord:
         statistics = Statistics(self.iterations, len(states) - 1, self.cuts, ended, status, messages, self.digits)
         rates = np.zeros(states.shape)  # unlike zeros_like, it takes no memory until it is written to
         for values in (load_factors, states, rates):
-            values.flags.writeable = False
+            values.setflags(write=False)
         return Solution(
             self.model,
             True,

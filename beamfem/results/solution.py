@@ -81,7 +81,8 @@ class Solution(Quantities, Pictures, Exports):
     at : array, (steps,)
         Load factors, or times [s].
     p, v, a : array, (steps, n)
-        Coordinates and their rates; like `at`, they can be read only, since what is computed from them is kept.
+        Coordinates and their rates. Like `at`, they are read-only, since what is computed from them is kept; for other
+        values, `dataclasses.replace(solution, p=...)` makes another solution.
     statistics : Statistics
         How the solve went.
     stability : array of bool, (steps,), optional

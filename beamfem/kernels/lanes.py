@@ -24,6 +24,7 @@ __all__ = [
     "largest",
     "merged",
     "power_of_two",
+    "where_negative",
     "zeros",
 ]
 
@@ -62,6 +63,15 @@ def largest(build: Build, value: Value) -> Value:
     reduce = build.declared(name, ir.FunctionType(WHOLE.llvm, [_BITS]))
     bits = build.builder.call(reduce, [build.builder.bitcast(value.llvm, _BITS)])
     return Value(NUMBER, build.builder.bitcast(bits, NUMBER.llvm))
+
+
+@operation
+def where_negative(build: Build, condition: Value, value: Value, other: Value) -> Value:
+    """Return `value` where a condition is negative and `other` elsewhere, for numbers or lane by lane."""
+    kind = LANES if LANES in (condition.kind, value.kind, other.kind) else NUMBER
+    tested, *both = (build.converted(each, kind) for each in (condition, value, other))
+    negative = build.builder.fcmp_ordered("<", tested, ir.Constant(kind.llvm, None if kind is LANES else 0.0))
+    return Value(kind, build.builder.select(negative, *both))
 
 
 @operation

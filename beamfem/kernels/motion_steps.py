@@ -3,7 +3,7 @@
 import math
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, where_negative, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
@@ -42,18 +42,31 @@ def larger_of(a, b):
 
 
 @inlined
+def alternates(difference, higher):
+    """Return a negative number if a difference had the other sign a step ago, and at least half its size.
+
+    higher: the next difference, of this one and that of a step ago; both must be known, or zero.
+    """
+    return difference * (1.5 * difference - higher)
+
+
+@inlined
 def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
     """Do what `predict` does for the coordinates from `first` to `end`."""
     h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = first + (end - first) // WIDTH * WIDTH
+    alternating, tested, last = 0.0 <= order < MOST, length * min(int(order), 1), length * int(order)
     for i in range(first, whole, WIDTH):
         p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
         then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
         ahead = zeros()
         for k in range(int(order)):
             ahead += lanes[k * length + i]
+        if alternating != 0:
+            test = alternates(lanes[tested + i], lanes[tested + length + i])
+            ahead -= where_negative(test, lanes[last + i], 0.0)
         if order < 0.0:
             ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
         new = kept * a - mean * mean_a + fraction * ahead
@@ -67,6 +80,9 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         change = 0.0
         for k in range(int(order)):
             change += differences[k * length + i]
+        if alternating != 0:
+            sign = alternates(differences[tested + i], differences[tested + length + i])
+            change -= where_negative(sign, differences[last + i], 0.0)
         if order < 0.0:
             change = (-(last_v / h + (0.5 - beta) * last_mean) / beta - kept * last_a + mean * last_mean) / fraction
         next_a = kept * last_a - mean * last_mean + fraction * change
@@ -85,8 +101,10 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
 
     The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
     linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
-    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known; rule:
-    step, alpha_m, alpha_f, gamma, beta.
+    Where the error of the last polynomials changed its sign from step to step, as that of parts does whose period is
+    shorter than a few steps, it is expected to change it again.
+    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
+    others zero; rule: step, alpha_m, alpha_f, gamma, beta.
     """
     predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
 
@@ -194,24 +212,37 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
         now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
         change = a - last_a
         largest_change = larger(largest_change, change * factor)
+        test, higher = alternates(lanes[i], lanes[length + i]), alternates(lanes[length + i], lanes[2 * length + i])
         for k in range(top + 1):
-            size = change * factor
-            lanes[errors + k * WIDTH] += size * size
+            size = change
             if k < MOST:
                 earlier = lanes[k * length + i]
                 lanes[k * length + i] = change
+                size += where_negative(test, earlier, 0.0)
                 change -= earlier
+            size *= factor
+            lanes[errors + k * WIDTH] += size * size
+            test = higher
+        for k in range(top + 1, MOST):
+            lanes[k * length + i] = 0.0
     for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
         rest = larger_of(rest, abs(difference * inverse_scale[i]))
+        one, two, three = differences[i], differences[length + i], differences[2 * length + i]
+        sign, next_sign = alternates(one, two), alternates(two, three)
         for k in range(top + 1):
-            error = difference * inverse_scale[i]
-            differences[errors + k * WIDTH + i - whole] += error * error
+            error = difference
             if k < MOST:
                 previous = differences[k * length + i]
                 differences[k * length + i] = difference
+                error += where_negative(sign, previous, 0.0)
                 difference -= previous
+            error *= inverse_scale[i]
+            differences[errors + k * WIDTH + i - whole] += error * error
+            sign = next_sign
+        for k in range(top + 1, MOST):
+            differences[k * length + i] = 0.0
     for i in range(prescribed):
         if first <= dofs[i] and dofs[i] < end:
             state[3 * n + dofs[i]] = state[2 * n + dofs[i]]

@@ -27,12 +27,15 @@ def no_progress() -> Iterator[None]:
 def progress(label: str, total: float) -> AbstractContextManager[Callable[[float], None]]:
     """Return a context with a function that takes how much of `total` is done."""
     # rich moves a bar of a notebook by ipywidgets
-    moves = (in_notebook() and find_spec("ipywidgets") is not None) or sys.stderr.isatty()
-    return nullcontext(_silent) if _held.get() or not moves else _bar(label, total)
+    moves = sys.stderr.isatty() or (in_notebook() and find_spec("ipywidgets") is not None)
+    return _SILENCE if _held.get() or not moves else _bar(label, total)
 
 
 def _silent(done: float) -> None:
     """Show nothing."""
+
+
+_SILENCE = nullcontext(_silent)
 
 
 @contextmanager

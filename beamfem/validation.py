@@ -83,9 +83,11 @@ def number_below(name: str, value: Any, size: int, lowest: int = 0) -> int:
 def whole(name: str, value: Any) -> int:
     """Return an int of what is one whole number, also in an array without dimensions, or raise InputError naming it."""
     if not isinstance(value, _TRUTH):
-        with suppress(TypeError):
+        try:
             return index(value)
-    raise InputError(f"{name} must be a whole number, got {shown(value)}")
+        except TypeError:
+            pass
+    raise InputError(f"{name} must be a whole number, got {shown(value)}") from None
 
 
 def convert(item: object, check: Callable[[str, Any], Any], *names: str) -> None:

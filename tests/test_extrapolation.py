@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.kernels.motion_steps import MOST, complete, difference_rows, padded, predict
+from beamfem.kernels.motion_steps import MOST, complete, difference_rows, judge, padded, predict
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
 RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule
@@ -43,11 +43,36 @@ def test_a_polynomial_is_extrapolated_exactly(degree, n):
     np.testing.assert_allclose(expected[first:], accelerations[first + 1 :], atol=1e-10 * np.abs(accelerations).max())
 
 
-def test_what_jumps_to_and_fro_is_not_extrapolated():
-    accelerations = (-1.0) ** np.arange(30)[:, None] * np.ones(9)
-    expected, order = extrapolated(accelerations, 1.0)
-    assert order[0] <= 0.0
-    np.testing.assert_allclose(np.abs(expected), 1.0, rtol=1e-12)
+@pytest.mark.parametrize("n", [4, 9, 16])
+@pytest.mark.parametrize("degree", [0, 1])
+def test_what_jumps_to_and_fro_about_a_line_is_expected_to_go_on(n, degree):
+    """Polynomials through the last steps expected it three times as far on the wrong side, or farther."""
+    steps = np.arange(30.0)[:, None]
+    accelerations = (-1.0) ** steps * np.linspace(1.0, 2.0, n) + (0.2 * steps) ** degree
+    expected, _ = extrapolated(accelerations, 1.0)
+    np.testing.assert_allclose(expected[degree + 4 :], accelerations[degree + 5 :], atol=1e-12)
+
+
+def test_beside_what_jumps_to_and_fro_smooth_coordinates_are_extrapolated_as_alone():
+    smooth = np.cos(0.1 * np.arange(60.0)[:, None] + np.arange(8.0))
+    rough = np.column_stack([smooth, (-1.0) ** np.arange(60)])
+    alone, beside = (extrapolated(accelerations, 1.0)[0] for accelerations in (smooth, rough))
+    errors = [np.abs(expected[:, :8] - smooth[1:])[10:].max() for expected in (alone, beside)]
+    assert errors[1] < 3.0 * 0.1**2  # of order 1, where the cosine bends; order 3 has no part that alternates
+    assert errors[0] < errors[1]
+
+
+@pytest.mark.parametrize("ratios", [(1e-3, 0.25), (0.25, 1e-3), (1e-2, 1e-2), (1e-4, 0.4)])
+@pytest.mark.parametrize("first", [1e-3, 1e-5, 3e-6])
+def test_what_is_left_of_the_error_is_small_where_ratios_of_corrections_take_turns(ratios, first):
+    """By the last ratio alone a step ended at 1.1e-11 with 4e-12 to come, where 1e-14 was meant."""
+    sizes = first * np.cumprod([1.0, *np.tile(ratios, 10)])
+    rate, noise = np.array([0.1, 0.0]), np.zeros(1)
+    for number, size in enumerate(sizes, start=1):
+        last = sizes[number - 2] if number > 1 else 0.0
+        if judge(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, noise) == 1:
+            break
+    assert sizes[number:].sum() < 1.1e-14
 
 
 def test_coordinates_without_weight_do_not_choose_the_order():

@@ -3,6 +3,7 @@
 import os
 import signal
 import threading
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -118,8 +119,12 @@ def moved(model, cores, monkeypatch, steps=12, step=5e-4):
 
 
 def assert_near(found, expected):
-    """Assert that motions differ by round-off, which stiff short elements make more of in velocities."""
-    assert found.statistics == expected.statistics
+    """Assert that motions differ by round-off, which stiff short elements make more of in velocities.
+
+    It may decide whether a correction at the limit is the last one.
+    """
+    assert abs(found.iterations - expected.iterations) <= 1
+    assert found.statistics == replace(expected.statistics, iterations=found.iterations)
     for name, allowed in (("p", 1e-10), ("v", 1e-6)):
         one, other = getattr(found, name), getattr(expected, name)
         assert np.abs(one - other).max() < allowed * max(np.abs(other).max(), 1.0)

@@ -87,7 +87,8 @@ def test_a_small_motion_needs_one_tangent_and_two_corrections_a_step(widest_band
     """Its equations are linear: one correction solves a step, a second proves it, however small the motion is.
 
     Under 1e-9 N it moves by so little that corrections end in the round-off of positions: it takes a few more, and as
-    that grows with the motion from nothing, new tangents to tell it from corrections that a kept one does not see.
+    that grows with the motion from nothing, new tangents to tell it from corrections that a kept one does not see. Each
+    of them allows for twice the round-off, which grows from 1e-17 to 1e-16.
     """
     widest_band(-1)
     tangents = []
@@ -101,4 +102,4 @@ def test_a_small_motion_needs_one_tangent_and_two_corrections_a_step(widest_band
     push = bf.PointForce(beam.end, (0.0, force), amplitude=lambda t: np.sin(20.0 * t))
     solution = bf.simulate(bf.Model([beam], [bf.Clamp(beam.start)], [push]), 0.4, 0.01)
     assert 2 * 40 <= solution.iterations <= (2 if force > 1e-8 else 4) * 40
-    assert len(tangents) <= (1 if force > 1e-8 else 3)
+    assert len(tangents) <= (1 if force > 1e-8 else 5)

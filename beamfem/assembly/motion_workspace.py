@@ -15,7 +15,6 @@ from beamfem.kernels.pointers import address_of
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model
 _NONE = np.empty(0, dtype=np.int64)
-_FROM_ZERO = record.DIFFERENCES, record.KEPT, record.TURNS
 
 
 class MotionWorkspace:
@@ -44,7 +43,7 @@ class MotionWorkspace:
                 "residual": (size,),
                 record.ROWS: (unknown, 2 * half + 1),
                 **({} if in_place else {record.RIGHT: (unknown,)}),
-                record.STEP: (max(size, unknown) + 1,),
+                record.STEP: (max(size, unknown) + 2,),
                 record.CHANGE: (padded(size),),
                 record.BEFORE: (4, size),
                 record.DIFFERENCES: (difference_rows(size, len(self._bounds)),),
@@ -83,11 +82,9 @@ def _whole(system: System) -> np.ndarray:
 
 @contextmanager
 def motion_workspace(system: System) -> Iterator[MotionWorkspace]:
-    """Lend a workspace that no other motion uses, with factors, differences and rotations set to zero."""
+    """Lend a workspace that no other motion uses; its contents are arbitrary."""
     try:
         space = system.spare_motions.pop()
-        for field in _FROM_ZERO:
-            space.arrays[field][:] = 0.0
     except IndexError:
         space = MotionWorkspace(system)
     yield space

@@ -168,8 +168,9 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
     full: whether every correction has a new tangent (Newton's method); own: whether this one has; far: whether the
     first correction was larger than `FAR`, so that its tangent says little about the state reached; size, last: sizes
     of this correction and the previous one; changed: change of p in the step that the change of the acceleration
-    causes. Updated: rate (1,), the ratio of successive corrections; noise (1,), the size up to which corrections have
-    been found, with a new tangent, to be round-off. Hairer and Wanner 1996, IV.8.
+    causes. Updated: rate (2,), the ratio of successive corrections and the one before, of which the larger counts: if a
+    kept tangent lacks the coupling of stiff and soft directions, small and large ratios take turns; noise (1,), the
+    size up to which corrections have been found, with a new tangent, to be round-off. Hairer and Wanner 1996, IV.8.
     """
     if not size < _LARGEST:
         return -1
@@ -182,13 +183,15 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
                 return 1 if size <= noise[0] else 2
+        rate[1] = rate[0] if iteration > 2 else 0.0
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
         if size <= tolerance:
             return 1
         return -1 if iteration > 2 and size > _GROWTH * last else 0
-    small = rate[0] * size <= (1.0 - rate[0]) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
-    if rate[0] < 1.0 and small:
+    worst = rate[0] if iteration == 1 else max(rate[0], rate[1])
+    small = worst * size <= (1.0 - worst) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
+    if worst < 1.0 and small:
         return 2 if far != 0 and own == 0 else 1
     return 0
 
@@ -201,7 +204,8 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    top, length, rest = min(int(known[1]), int(known[0]) + 1), padded(n), 0.0
+    differences_known, length, rest = int(known[1]), padded(n), 0.0
+    top = min(differences_known, int(known[0]) + 1)
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
     errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
     whole = first + (end - first) // WIDTH * WIDTH
@@ -213,36 +217,34 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
         change = a - last_a
         largest_change = larger(largest_change, change * factor)
         test, higher = alternates(lanes[i], lanes[length + i]), alternates(lanes[length + i], lanes[2 * length + i])
-        for k in range(top + 1):
+        for k in range(differences_known + 1):
             size = change
             if k < MOST:
                 earlier = lanes[k * length + i]
                 lanes[k * length + i] = change
                 size += where_negative(test, earlier, 0.0)
                 change -= earlier
-            size *= factor
-            lanes[errors + k * WIDTH] += size * size
+            if k <= top:
+                size *= factor
+                lanes[errors + k * WIDTH] += size * size
             test = higher
-        for k in range(top + 1, MOST):
-            lanes[k * length + i] = 0.0
     for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
         rest = larger_of(rest, abs(difference * inverse_scale[i]))
         one, two, three = differences[i], differences[length + i], differences[2 * length + i]
         sign, next_sign = alternates(one, two), alternates(two, three)
-        for k in range(top + 1):
+        for k in range(differences_known + 1):
             error = difference
             if k < MOST:
                 previous = differences[k * length + i]
                 differences[k * length + i] = difference
                 error += where_negative(sign, previous, 0.0)
                 difference -= previous
-            error *= inverse_scale[i]
-            differences[errors + k * WIDTH + i - whole] += error * error
+            if k <= top:
+                error *= inverse_scale[i]
+                differences[errors + k * WIDTH + i - whole] += error * error
             sign = next_sign
-        for k in range(top + 1, MOST):
-            differences[k * length + i] = 0.0
     for i in range(prescribed):
         if first <= dofs[i] and dofs[i] < end:
             state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
@@ -270,7 +272,7 @@ def best_order(parts, n, state, before, differences, inverse_scale, rule, extrap
         to_acceleration = (1.0 - rule[1]) / (h * h * beta * (1.0 - rule[2]))
         if 4.0 * to_acceleration * to_acceleration * changed < least:
             order = -1
-    extrapolation[0], extrapolation[1] = order, min(top + 1, MOST)
+    extrapolation[0], extrapolation[1] = order, min(extrapolation[1] + 1.0, MOST)
 
 
 @routine("iirrrrnrr", "d", fastmath=FAST)

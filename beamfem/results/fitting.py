@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from beamfem.results.solution import Solution, State
 
 _REAL = "fiu"  # dtype kinds
+_TYPES = {_REAL: np.dtype(float), "b": np.dtype(bool)}
 
 
 def require_state(state: "State") -> None:
@@ -82,7 +83,7 @@ def _model_of(item: Any) -> Model:
 def _require_array(item: Any, name: str, shape: tuple[int, ...], kinds: str = _REAL) -> None:
     """Convert an attribute to a double precision or boolean array; raise InputError if its shape is wrong."""
     given = getattr(item, name)
-    if type(given) is np.ndarray and given.shape == shape and given.dtype == (bool if kinds == "b" else float):
+    if type(given) is np.ndarray and given.shape == shape and given.dtype == _TYPES[kinds]:
         return
     try:
         values = np.asarray(given)

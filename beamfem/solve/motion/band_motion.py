@@ -27,6 +27,7 @@ class BandMotion:
         self._system, self._space, self._statistics = system, space, statistics
         h, alpha_m, alpha_f, gamma, beta = rule
         space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, limits
+        space.arrays[record.DIFFERENCES][:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)

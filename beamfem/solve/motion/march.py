@@ -193,13 +193,14 @@ def initial_acceleration(system: System, state: np.ndarray, time: float, step: f
     a step. In a beam with strong damping D, p'' itself decays within an instant, and from it the generalized-alpha
     method would move by step^2 (1 / 2 - beta / gamma) p''. To first order in the step both are the same.
     """
-    p, v, a = state[0].copy(), state[1].copy(), state[2].copy()
+    motion = state[:3].copy()
+    p, v, a = motion
     free = system.free_dofs
     multipliers = system.connectors.multipliers
     a[free] = p[multipliers] = v[multipliers] = 0.0
     if is_long(system) and not step > 0.0:
         with motion_workspace(system) as space:
-            found = acceleration(system, space, np.array([p, v, a]), time) if space.in_two else None
+            found = acceleration(system, space, motion, time) if space.in_two else None
         if found is not None:
             a[free] = found
             return a

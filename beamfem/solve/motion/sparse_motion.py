@@ -43,7 +43,7 @@ class SparseMotion:
         size = system.model.size
         self._inverse_scale = np.zeros(padded(size))
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
-        self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(1)
+        self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(2)
         self._change = np.zeros(padded(size))
         self._multipliers, self._history, self._dt = system.connectors.multipliers, system.history, float(h)
         self._factors: Factorised | None = None

@@ -1,7 +1,7 @@
 """Convergence of an iteration: small corrections, and a residual that is small or at the round-off floor."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ _EPS = float(np.finfo(float).eps)
 LARGEST = 1e3  # of the model; larger corrections mean divergence
 
 
-@dataclass(frozen=True)
-class Correction:
+class Correction(NamedTuple):
     """A correction: its number, its size and that of the previous one, and the negative pivots of its tangent.
 
     Sizes are relative to the model for positions, and absolute otherwise.
@@ -40,8 +39,7 @@ class Correction:
         return self.size <= newton.tolerance or self.stagnates
 
 
-@dataclass(frozen=True, eq=False)
-class Balance:
+class Balance(NamedTuple):
     """Balance of forces in a state p (n,): residual (n,), its largest unconstrained component, and the largest force.
 
     Forces are multiplied by the scale of their coordinate, so that they can be compared with moments [N m]. inverted:

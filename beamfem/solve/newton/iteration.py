@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +28,7 @@ class Termination(Enum):
         return self is Termination.CONVERGED or self is Termination.ROUND_OFF
 
 
-@dataclass(frozen=True)
-class NewtonResult:
+class NewtonResult(NamedTuple):
     """The last state (n,) of an iteration, the number of iterations and why it ended.
 
     negative_pivots: of the last tangent; for a symmetric one, the number of unstable directions; digits: least number

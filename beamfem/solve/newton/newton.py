@@ -2,7 +2,6 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 
@@ -38,14 +37,14 @@ def solve_equilibrium(
 def _with_digits(system: System, load_factor: float, newton: Newton, result: NewtonResult) -> NewtonResult:
     """Return a result with the number of reliable digits of its forces and, if these are few, a corrected state."""
     if result.ended is Termination.CONVERGED and math.isnan(result.digits):
-        return replace(result, digits=-float(np.log10(newton.residual_tolerance)))
+        return result._replace(digits=-float(np.log10(newton.residual_tolerance)))
     if result.ended is Termination.ROUND_OFF:
         digits = digits_of(system, result.state, load_factor) if math.isnan(result.digits) else result.digits
         if digits >= ENOUGH:
-            return replace(result, digits=digits)
+            return result._replace(digits=digits)
         missing = remainder(system, result.state, load_factor)
         ended = Termination.ROUND_OFF if missing.digits >= 1.0 else Termination.NO_DIGITS
-        return replace(result, state=result.state + missing.step, ended=ended, digits=missing.digits)
+        return result._replace(state=result.state + missing.step, ended=ended, digits=missing.digits)
     return result
 
 

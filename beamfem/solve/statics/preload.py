@@ -67,9 +67,9 @@ def _grown(system: System, newton: Newton, failed: NewtonResult) -> NewtonResult
     try:
         reach(growing, record, 1.0, newton, "error")
     except LimitPointError:
-        return replace(failed, iterations=record.iterations, ended=Termination.LIMIT)
+        return failed._replace(iterations=record.iterations, ended=Termination.LIMIT)
     except ConvergenceError:
-        return replace(failed, iterations=record.iterations)
+        return failed._replace(iterations=record.iterations)
     return NewtonResult(record.state, record.iterations, record.ended, record.negative_pivots, record.digits)
 
 

@@ -52,15 +52,15 @@ class StaticRecord:
         load_factors, states = np.array([row[0] for row in self.rows]), np.array([row[1] for row in self.rows])
         counts = [count for _, _, count in self.rows]
         # follower loads: an odd count, a negative determinant, means that a motion grows; an even one proves nothing
-        unstable = np.array([count > 0 if self.symmetric else count % 2 == 1 for count in counts])
+        unstable = [count > 0 if self.symmetric else count % 2 == 1 for count in counts]
         status = Status.STOPPED if not complete else Status.COMPLETED
         if complete and self.ended is Termination.ROUND_OFF:
             status = Status.ROUND_OFF
         ended = self.ended.value
         messages: tuple[str, ...] = ()
-        if unstable.any():
+        if any(unstable):
             status = Status.UNSTABLE if complete else status
-            messages = (_describe(unstable, load_factors),)
+            messages = (_describe(np.array(unstable), load_factors),)
             if unstable[-1] and self.symmetric:
                 ended += f"; the equilibrium is unstable, {counts[-1]} eigenvalues of its tangent are negative"
             elif unstable[-1]:
@@ -84,7 +84,7 @@ class StaticRecord:
             rates,
             rates,
             statistics,
-            ~unstable if self.symmetric else None,
+            ~np.array(unstable) if self.symmetric else None,
         )
 
 

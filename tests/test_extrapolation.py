@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import beamfem as bf
-from beamfem.kernels.motion_steps import MOST, complete, difference_rows, judge, padded, predict
+from beamfem.kernels.extrapolation import MOST, complete, difference_rows, padded, predict
+from beamfem.kernels.motion_steps import judge
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
 RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule

@@ -10,7 +10,7 @@ from beamfem.assembly.system import System
 from beamfem.assembly.tiles import tiles_of
 from beamfem.assembly.turning import runs_of
 from beamfem.kernels import record
-from beamfem.kernels.motion_steps import difference_rows, padded
+from beamfem.kernels.extrapolation import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
 _KEPT = 40_000_000  # entries of the largest tangent whose workspace is kept for the next motion of the model

@@ -1,10 +1,10 @@
 """Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
 
-from beamfem.kernels import model_passes, motion_steps, rollers
+from beamfem.kernels import extrapolation, model_passes, motion_steps, rollers
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
+from beamfem.kernels.extrapolation import FAST
 from beamfem.kernels.lanes import WIDTH, as_rows
-from beamfem.kernels.motion_steps import FAST
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
@@ -24,7 +24,7 @@ def predict(part, system, solver, calls):
     small_code()
     s, b = wholes(system), wholes(solver)
     bounds, rule = bounds_of(b, part), reals(b[r.RULE])
-    motion_steps.predict_part(
+    extrapolation.predict_part(
         bounds[r.FIRST_COORDINATE],
         bounds[r.END_COORDINATE],
         s[r.SIZE],
@@ -150,14 +150,14 @@ def correct(part, system, solver, calls):
 def complete(part, system, solver, calls):
     """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
     s, b = wholes(system), wholes(solver)
-    bounds, n, rule, extrapolation = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
+    bounds, n, rule, orders = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
     state, before, differences, scale = (
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
         reals(b[r.DIFFERENCES]),
         reals(b[r.INVERSE_SCALE]),
     )
-    change = motion_steps.complete_part(
+    change = extrapolation.complete_part(
         part,
         bounds[r.FIRST_COORDINATE],
         bounds[r.END_COORDINATE],
@@ -169,8 +169,8 @@ def complete(part, system, solver, calls):
         scale,
         wholes(b[r.PRESCRIBED_DOFS]),
         rule,
-        extrapolation,
+        orders,
     )
     if part == b[r.PARTS] - 1:
-        motion_steps.best_order(b[r.PARTS], n, state, before, differences, scale, rule, extrapolation)
+        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, orders)
     return change

@@ -1,13 +1,13 @@
-"""Operations of a generalized-alpha time step on the state: prediction, correction, convergence, end of the step."""
+"""Operations of a generalized-alpha time step: corrections of the state, convergence, rotation of the tangent."""
 
 import math
 
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, where_negative, zeros
+from beamfem.kernels.extrapolation import FAST, larger_of
+from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
 from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
 
-FAST = {"contract", "reassoc", "nsz"}
 # of the tolerance: largest estimated error if the tangent is not that of the last iterate
 _REMAINDER = 1e-5
 # Largest estimated error as a fraction of the change of p in a step that the change of the acceleration causes, which
@@ -15,98 +15,8 @@ _REMAINDER = 1e-5
 # so they must decrease with the step as well.
 _NEGLECTED = 1e-8
 FAR = 0.01  # of the model: after a larger correction, elements are checked for inversion
-MOST = 3  # differences of the acceleration used to extrapolate it; higher ones would amplify noise from step to step
 _LARGEST = 1e3  # of the model: a larger correction means divergence
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
-
-
-@inlined
-def padded(n):
-    """Return the length of a row of n numbers, padded to a multiple of the lanes."""
-    return (n + WIDTH - 1) // WIDTH * WIDTH
-
-
-def difference_rows(n: int, parts: int = 1) -> int:
-    """Return the size of the array for the backward differences of n accelerations.
-
-    It contains the differences (MOST, padded(n)) and, for the choice of the order, sums (parts, MOST + 1, WIDTH) of the
-    squared errors of the extrapolations of order 0 to MOST.
-    """
-    return MOST * -(-n // WIDTH) * WIDTH + parts * (MOST + 1) * WIDTH
-
-
-@inlined
-def larger_of(a, b):
-    """Return the larger of two non-negative numbers; NaN counts as larger than any number."""
-    return b if not b <= a and a == a else a
-
-
-@inlined
-def alternates(difference, higher):
-    """Return a negative number if a difference had the other sign a step ago, and at least half its size.
-
-    higher: the next difference, of this one and that of a step ago; both must be known, or zero.
-    """
-    return difference * (1.5 * difference - higher)
-
-
-@inlined
-def predict_part(first, end, n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Do what `predict` does for the coordinates from `first` to `end`."""
-    h, alpha_m, alpha_f, gamma, beta = rule[0], rule[1], rule[2], rule[3], rule[4]
-    kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
-    length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
-    whole = first + (end - first) // WIDTH * WIDTH
-    alternating, tested, last = 0.0 <= order < MOST, length * min(int(order), 1), length * int(order)
-    for i in range(first, whole, WIDTH):
-        p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
-        then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
-        ahead = zeros()
-        for k in range(int(order)):
-            ahead += lanes[k * length + i]
-        if alternating != 0:
-            test = alternates(lanes[tested + i], lanes[tested + length + i])
-            ahead -= where_negative(test, lanes[last + i], 0.0)
-        if order < 0.0:
-            ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
-        new = kept * a - mean * mean_a + fraction * ahead
-        now[i] = p + h * v + h * h * ((0.5 - beta) * mean_a + beta * new)
-        now[n + i] = v + h * ((1.0 - gamma) * mean_a + gamma * new)
-        now[2 * n + i] = a + ahead
-    for i in range(whole, end):
-        last_p, last_v, last_a, last_mean = state[i], state[n + i], state[2 * n + i], state[3 * n + i]
-        for k in range(4):
-            before[k * n + i] = state[k * n + i]
-        change = 0.0
-        for k in range(int(order)):
-            change += differences[k * length + i]
-        if alternating != 0:
-            sign = alternates(differences[tested + i], differences[tested + length + i])
-            change -= where_negative(sign, differences[last + i], 0.0)
-        if order < 0.0:
-            change = (-(last_v / h + (0.5 - beta) * last_mean) / beta - kept * last_a + mean * last_mean) / fraction
-        next_a = kept * last_a - mean * last_mean + fraction * change
-        state[i] = last_p + h * last_v + h * h * ((0.5 - beta) * last_mean + beta * next_a)
-        state[n + i] = last_v + h * ((1.0 - gamma) * last_mean + gamma * next_a)
-        state[2 * n + i] = last_a + change
-    for i in range(prescribed):
-        if first <= dofs[i] and dofs[i] < end:
-            for k in range(3):
-                state[k * n + dofs[i]] = values[k * prescribed + i]
-
-
-@routine("iidrrrnrr")
-def predict(n, prescribed, order, state, before, differences, dofs, values, rule):
-    """Store the state (4, n) in `before` and predict the end of the step; prescribed coordinates take their `values`.
-
-    The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
-    linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
-    Where the error of the last polynomials changed its sign from step to step, as that of parts does whose period is
-    shorter than a few steps, it is expected to change it again.
-    values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
-    others zero; rule: step, alpha_m, alpha_f, gamma, beta.
-    """
-    predict_part(0, n, n, prescribed, order, state, before, differences, dofs, values, rule)
 
 
 @inlined
@@ -194,98 +104,6 @@ def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise
     if worst < 1.0 and small:
         return 2 if far != 0 and own == 0 else 1
     return 0
-
-
-@inlined
-def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, known):
-    """Do what `complete` does, except for the choice of the order, for the coordinates from `first` to `end`.
-
-    known (2,): `extrapolation` of `complete`. The sums of squared errors are stored for `best_order`.
-    """
-    alpha_m, alpha_f = rule[1], rule[2]
-    new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    differences_known, length, rest = int(known[1]), padded(n), 0.0
-    top = min(differences_known, int(known[0]) + 1)
-    lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
-    errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
-    whole = first + (end - first) // WIDTH * WIDTH
-    for k in range(MOST + 1):
-        lanes[errors + k * WIDTH] = 0.0
-    for i in range(first, whole, WIDTH):
-        a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
-        now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
-        change = a - last_a
-        largest_change = larger(largest_change, change * factor)
-        test, higher = alternates(lanes[i], lanes[length + i]), alternates(lanes[length + i], lanes[2 * length + i])
-        for k in range(differences_known + 1):
-            size = change
-            if k < MOST:
-                earlier = lanes[k * length + i]
-                lanes[k * length + i] = change
-                size += where_negative(test, earlier, 0.0)
-                change -= earlier
-            if k <= top:
-                size *= factor
-                lanes[errors + k * WIDTH] += size * size
-            test = higher
-    for i in range(whole, end):
-        state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
-        difference = state[2 * n + i] - before[2 * n + i]
-        rest = larger_of(rest, abs(difference * inverse_scale[i]))
-        one, two, three = differences[i], differences[length + i], differences[2 * length + i]
-        sign, next_sign = alternates(one, two), alternates(two, three)
-        for k in range(differences_known + 1):
-            error = difference
-            if k < MOST:
-                previous = differences[k * length + i]
-                differences[k * length + i] = difference
-                error += where_negative(sign, previous, 0.0)
-                difference -= previous
-            if k <= top:
-                error *= inverse_scale[i]
-                differences[errors + k * WIDTH + i - whole] += error * error
-            sign = next_sign
-    for i in range(prescribed):
-        if first <= dofs[i] and dofs[i] < end:
-            state[3 * n + dofs[i]] = state[2 * n + dofs[i]]
-    return larger_of(largest(largest_change), rest)
-
-
-@inlined
-def best_order(parts, n, state, before, differences, inverse_scale, rule, extrapolation):
-    """Set the order of extrapolation that would have been best for this step, and the number of known differences."""
-    top = min(int(extrapolation[1]), int(extrapolation[0]) + 1)
-    order, least, errors = 0, math.inf, MOST * padded(n)
-    for k in range(top + 1):
-        error = 0.0
-        for part in range(parts):
-            for i in range(WIDTH):
-                error += differences[errors + (part * (MOST + 1) + k) * WIDTH + i]
-        if error < least:
-            order, least = k, error
-    # order -1 is better if p changed by less than half of the change that corresponds to that of the acceleration
-    if order == 0:
-        h, beta, changed = rule[0], rule[4], 0.0
-        for i in range(n):
-            moved = (state[i] - before[i]) * inverse_scale[i]
-            changed += moved * moved
-        to_acceleration = (1.0 - rule[1]) / (h * h * beta * (1.0 - rule[2]))
-        if 4.0 * to_acceleration * to_acceleration * changed < least:
-            order = -1
-    extrapolation[0], extrapolation[1] = order, min(extrapolation[1] + 1.0, MOST)
-
-
-@routine("iirrrrnrr", "d", fastmath=FAST)
-def complete(n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation):
-    """Update the auxiliary acceleration and the differences of p'' at the end of a step, and choose the next order.
-
-    Return the largest change of p'', relative to its scale. inverse_scale (padded(n),): zero beyond n; extrapolation
-    (2,), updated: the order of `predict` that would have been best, at most one more than the last one, and the number
-    of known differences.
-    """
-    change = complete_part(0, 0, n, n, prescribed, state, before, differences, inverse_scale, dofs, rule, extrapolation)
-    best_order(1, n, state, before, differences, inverse_scale, rule, extrapolation)
-    return change
 
 
 @routine("inrrr")

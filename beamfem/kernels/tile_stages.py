@@ -4,10 +4,10 @@ Equations are eliminated as soon as they are complete, and corrections are added
 residual, matrix and state would pass through memory once for each of the operations.
 """
 
-from beamfem.kernels import model_passes, motion_stages, motion_steps
+from beamfem.kernels import model_passes, motion_stages
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
-from beamfem.kernels.motion_steps import FAST
+from beamfem.kernels.extrapolation import FAST, larger_of
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _in_two, _substitute = caller("iiii", "d"), caller("iiii", "d")
@@ -109,7 +109,7 @@ def substitute(part, system, solver, calls):
         stop = tile[r.ROWS_BEFORE]
         _turn_vectors(b, call, tile, 1.0)
         if b[r.STEP_WANTED] == 0:
-            size = motion_steps.larger_of(size, motion_stages.correct_range(s, b, at(tile, r.DONE_COORDINATE)))
+            size = larger_of(size, motion_stages.correct_range(s, b, at(tile, r.DONE_COORDINATE)))
     return size
 
 

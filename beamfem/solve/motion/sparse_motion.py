@@ -8,16 +8,8 @@ from scipy.linalg import LinAlgError
 
 from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
-from beamfem.kernels.motion_steps import (
-    FAR,
-    complete,
-    correct,
-    count_turns,
-    difference_rows,
-    judge,
-    padded,
-    predict,
-)
+from beamfem.kernels.extrapolation import complete, difference_rows, padded, predict
+from beamfem.kernels.motion_steps import FAR, correct, count_turns, judge
 from beamfem.kernels.rollers import stay_on_planes
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
@@ -101,7 +93,7 @@ class SparseMotion:
     ) -> bool:
         """Iterate and return whether the error is small enough; full: a new tangent for each iterate.
 
-        order: of the extrapolation of the acceleration, see `motion_steps.predict`.
+        order: of the extrapolation of the acceleration, see `extrapolation.predict`.
         """
         statistics, most = self.statistics, self.iterations if full else min(_MOST, self.iterations)
         free = self.system.free_dofs

@@ -4,6 +4,7 @@ import math
 
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, where_negative, zeros
+from beamfem.kernels.pointers import at
 
 FAST = {"contract", "reassoc", "nsz"}
 MOST = 3  # differences of the acceleration used to extrapolate it; higher ones would amplify noise from step to step
@@ -99,6 +100,18 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
 
 
 @inlined
+def errors_of_orders(first, second, third, before, second_before, third_before):
+    """Return the errors of the accelerations that orders 0 to 3 predicted, from differences now and a step before."""
+    low, high = alternates(before, second_before), alternates(second_before, third_before)
+    return (
+        first + where_negative(low, before, 0.0),
+        second + where_negative(high, second_before, 0.0),
+        third + where_negative(high, third_before, 0.0),
+        third - third_before,
+    )
+
+
+@inlined
 def complete_part(part, first, end, n, prescribed, state, before, differences, inverse_scale, dofs, rule, known):
     """Do what `complete` does, except for the choice of the order, for the coordinates from `first` to `end`.
 
@@ -106,47 +119,44 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
     """
     alpha_m, alpha_f = rule[1], rule[2]
     new, old, mean = (1.0 - alpha_f) / (1.0 - alpha_m), alpha_f / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m)
-    differences_known, length, rest = int(known[1]), padded(n), 0.0
-    top = min(differences_known, int(known[0]) + 1)
+    # differences that are not known yet stay zero
+    has_second, has_third = 1.0 if known[1] > 0.0 else 0.0, 1.0 if known[1] > 1.0 else 0.0
+    length, rest, sum_0, sum_1, sum_2, sum_3 = padded(n), 0.0, zeros(), zeros(), zeros(), zeros()
     lanes, weight, now, then = as_rows(differences), as_rows(inverse_scale), as_rows(state), as_rows(before)
     errors, largest_change = MOST * length + part * (MOST + 1) * WIDTH, zeros()
     whole = first + (end - first) // WIDTH * WIDTH
-    for k in range(MOST + 1):
-        lanes[errors + k * WIDTH] = 0.0
     for i in range(first, whole, WIDTH):
         a, last_a, factor = now[2 * n + i], then[2 * n + i], weight[i]
         now[3 * n + i] = new * a + old * last_a - mean * then[3 * n + i]
         change = a - last_a
         largest_change = larger(largest_change, change * factor)
-        test, higher = alternates(lanes[i], lanes[length + i]), alternates(lanes[length + i], lanes[2 * length + i])
-        for k in range(differences_known + 1):
-            size = change
-            if k < MOST:
-                earlier = lanes[k * length + i]
-                lanes[k * length + i] = change
-                size += where_negative(test, earlier, 0.0)
-                change -= earlier
-            if k <= top:
-                size *= factor
-                lanes[errors + k * WIDTH] += size * size
-            test = higher
+        one, two, three = lanes[i], lanes[length + i], lanes[2 * length + i]
+        second, third = change - one, change - one - two
+        by_0, by_1, by_2, by_3 = errors_of_orders(change, second, third, one, two, three)
+        lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
+        by_0, by_1, by_2, by_3 = factor * by_0, factor * by_1, factor * by_2, factor * by_3
+        sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
+    lanes[errors], lanes[errors + WIDTH], lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = (
+        sum_0,
+        sum_1,
+        sum_2,
+        sum_3,
+    )
     for i in range(whole, end):
         state[3 * n + i] = new * state[2 * n + i] + old * before[2 * n + i] - mean * before[3 * n + i]
         difference = state[2 * n + i] - before[2 * n + i]
         rest = larger_of(rest, abs(difference * inverse_scale[i]))
-        one, two, three = differences[i], differences[length + i], differences[2 * length + i]
-        sign, next_sign = alternates(one, two), alternates(two, three)
-        for k in range(differences_known + 1):
-            error = difference
-            if k < MOST:
-                previous = differences[k * length + i]
-                differences[k * length + i] = difference
-                error += where_negative(sign, previous, 0.0)
-                difference -= previous
-            if k <= top:
-                error *= inverse_scale[i]
-                differences[errors + k * WIDTH + i - whole] += error * error
-            sign = next_sign
+        d_1, d_2, d_3 = differences[i], differences[length + i], differences[2 * length + i]
+        differences[i], differences[length + i] = difference, has_second * (difference - d_1)
+        differences[2 * length + i] = has_third * (difference - d_1 - d_2)
+        error_0, error_1, error_2, error_3 = errors_of_orders(
+            difference, difference - d_1, difference - d_1 - d_2, d_1, d_2, d_3
+        )
+        own = at(differences, errors + i - whole)
+        own[0] += (inverse_scale[i] * error_0) ** 2
+        own[WIDTH] += (inverse_scale[i] * error_1) ** 2
+        own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
+        own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2
     for i in range(prescribed):
         if first <= dofs[i] and dofs[i] < end:
             state[3 * n + dofs[i]] = state[2 * n + dofs[i]]

@@ -188,13 +188,14 @@ class Assembler:
         """Let go of the loads, which may be many rows of a motion."""
         self._acting, self._natural, self._taken = (_NONE,), (), None
 
-    def weigh(self, coefficients: Sequence[float], dt: float = 0.0) -> None:
-        """Set the weights ck, cv, ca of p, p', p'' in the tangent; with ca = 0 the residual has no inertia forces.
+    def weigh(self, coefficients: Sequence[float], dt: float = 0.0, moving: bool = False) -> None:
+        """Set the weights ck, cv, ca of p, p', p'' in the tangent.
 
-        With cv = ca = 0 it has no damping forces. dt [s]: time step since the committed history.
+        With ca = 0 there are no inertia forces unless `moving`, with cv = ca = 0 no damping forces either. dt [s]: time
+        step since the committed history.
         """
         self._factors[:] = *coefficients, dt
-        moving, rated = coefficients[2] != 0.0, coefficients[1] != 0.0
+        moving, rated = moving or coefficients[2] != 0.0, coefficients[1] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 
     def require(self, *tasks: str) -> None:

@@ -61,17 +61,19 @@ def linearise(
     stresses: tuple[np.ndarray, ...] | None = None,
     equations: Equations | None = None,
     dt: float = 0.0,
+    moving: bool = False,
 ) -> tuple[np.ndarray, Tangent]:
     """Return residual (n,) and tangent; `coefficients` are the weights of p, p' and p'' (`STATICS`, `INERTIA`).
 
     stresses: resultants (ne, nq, ns) of each block for the geometric part of the tangent; equations: those of other
-    blocks, used instead of those of the system; dt [s]: see `residual`.
+    blocks, used instead of those of the system; dt [s]: see `residual`; moving: whether there are inertia forces where
+    p'' has no weight, which statics lacks.
     """
     matrix, result = _entries(system), np.empty(len(p))
     borrowed = stresses is None and equations is None
     assembler = _borrowed(system) if borrowed else Assembler(equations or system.equations, stresses)
     assembler.take(system.loads_at(time))
-    assembler.weigh(coefficients, dt)
+    assembler.weigh(coefficients, dt, moving)
     assembler.balance(_plain(p), _plain(v), _plain(a), result, matrix, stresses is not None)
     if borrowed:
         _give_back(system, assembler)

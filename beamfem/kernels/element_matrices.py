@@ -95,7 +95,7 @@ def form_matrices(group, system, count, x, nodal, stride):
         _mirror(call[r.MIRROR], rows, count, k)
     else:
         _clear(call[r.CLEAR], rows * rows, count, k)
-    if factors[2] != 0.0:
+    if s[r.MOVING] != 0:
         convective = at(nodal, b[r.CONVECTIVE] * ROW)  # a copy
         if turned != 0:
             for n in range(nodes):

@@ -33,7 +33,7 @@ def add_elements(group, system):
     gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
     ck, cv = reals(s[r.FACTORS])[0], reals(s[r.FACTORS])[1] if damped else 0.0
     stiff = tangent != 0 and (ck != 0.0 or cv != 0.0)
-    changed = 1 if tangent != 0 and reals(s[r.FACTORS])[2] != 0.0 else 0  # what the mass adds, the chunks must not keep
+    changed = 1 if tangent != 0 and moving != 0 else 0  # what the mass adds, the chunks must not keep
     if damped:
         _rate_nodes(call[r.RATE_NODES], group, system, b[r.VELOCITY])
     rows = gathered if tangent != 0 or damped else (2 * size if moving != 0 else size)

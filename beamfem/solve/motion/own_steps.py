@@ -95,7 +95,7 @@ class EquationsOfMotion:
         csr_array, (unknown, unknown)
             The derivative.
         """
-        return linearise(self.system, p, v, a, time, weights)[1].sparse(UNROTATED)
+        return linearise(self.system, p, v, a, time, weights, moving=True)[1].sparse(UNROTATED)
 
     def energy(self, p: np.ndarray, time: float) -> float:
         """Return the strain energy and the potential of loads, springs and foundations, see `results.energies`.

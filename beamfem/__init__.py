@@ -37,7 +37,7 @@ Contents; see help(bf.Beam), for example, for details.
     Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
     Studies           sweep converge
     User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
-                      Contribution At Remembering RememberingLaw Integrator EquationsOfMotion
+                      Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion
     Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
                       LimitPointError FileError MissingPackageError
     Warnings          UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning
@@ -133,6 +133,7 @@ __all__ = [
     "Roller",
     "Rotation",
     "RoundOffWarning",
+    "Scheme",
     "Section",
     "SectionForces",
     "SectionLaw",

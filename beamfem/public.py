@@ -65,7 +65,7 @@ from beamfem.results.status import Status
 from beamfem.section import Circle, Layer, Layered, Rectangle, RememberingLaw, Section, SectionLaw, Tube
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
-from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme
 from beamfem.solve.motion.own_steps import EquationsOfMotion, Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium

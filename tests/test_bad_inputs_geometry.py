@@ -285,3 +285,19 @@ def test_lists_may_be_generators_and_counts_arrays_without_dimensions():
     assert a_beam(elements=np.array(3)).elements == 3
     assert len(bf.Chain(bf.Line((x, 0), (x + 1, 0)) for x in range(2)).curves) == 2
     assert bf.Layered((bf.Layer(STEEL, 0.1) for _ in range(2)), 0.1).height == 0.2
+
+
+class OwnMeasures(bf.Structural):
+    code = -1
+
+
+class OwnNodes(bf.Rotation):
+    code = 9
+
+
+@pytest.mark.parametrize(("part", "own"), [("forces", OwnMeasures()), ("coordinates", OwnNodes())])
+def test_a_code_that_compiled_code_does_not_know_is_refused(part, own):
+    """A code of -1 wrapped round to the last strain measure, and another one ended in an IndexError."""
+    parts = {"coordinates": bf.Rotation(), "forces": bf.Structural()} | {part: own}
+    with pytest.raises(bf.InputError, match=f"{part} of an element: code of {type(own).__name__} is {own.code}, but"):
+        bf.Element(bf.Lagrange(2), **parts)

@@ -114,6 +114,7 @@ NO_KEY = {
     ),
     "Curve": "what curves have in common",
     "Integrator": "what integrators have in common; [analysis] integrator takes any class",
+    "Scheme": "as Integrator",
     "EquationsOfMotion": "what an integrator is given",
     "RememberingLaw": "as SectionLaw",
     "SectionLaw": "what sections with a law have in common; [sections.NAME] takes any class",

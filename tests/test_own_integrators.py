@@ -119,7 +119,7 @@ def test_a_step_that_fails_keeps_what_is_before(then, said):
 def test_what_own_integrators_do_not_take_is_refused():
     beam, model = pendulum(bf.CRBF(2))
     for wrong in (Radau, "radau", 0.9):
-        with pytest.raises(bf.InputError, match=r"GeneralizedAlpha\(rho_inf=...\), or an object with step"):
+        with pytest.raises(bf.InputError, match=r"GeneralizedAlpha\(rho_inf=...\), an object with rule\(step\)"):
             bf.simulate(model, 0.1, 1e-2, integrator=wrong)
     shaken = bf.Model([beam], [bf.Pin(beam.start), bf.Prescribed(beam.end, uy=lambda time: 0.01 * time)])
     with pytest.raises(bf.InputError, match="is moved, which user-defined integrators do not support"):

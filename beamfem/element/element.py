@@ -14,11 +14,22 @@ from beamfem.element.field_checks import require_field
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ElasticLine, Forces
 from beamfem.errors import InputError
+from beamfem.kernels.block import (
+    ELASTIC_LINE,
+    GRADIENTS,
+    GREEN_LAGRANGE,
+    ROTATION,
+    SHEAR_RIGID,
+    STRETCH,
+    STRUCTURAL,
+)
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
 _Value = TypeVar("_Value")
+# codes of nodal coordinates and of strain measures
+_NODES, _MEASURES = (GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (GREEN_LAGRANGE, STRUCTURAL, ELASTIC_LINE)
 _LASTING = frozenset((Cubic, Lagrange, *get_args(Coordinates), *get_args(Forces)))
 
 
@@ -64,9 +75,15 @@ class Element:
     def __post_init__(self) -> None:
         one_of("integration", self.integration, ("full", "reduced", "lobatto", None))
         optional(text)("label of an element", self.label)
-        for name, kind in (("coordinates", Coordinates), ("forces", Forces)):
-            if not isinstance(getattr(self, name), kind):
-                raise InputError(f"{name} of an element must be one of {kind}, got {shown(getattr(self, name))}")
+        for name, kind, codes in (("coordinates", Coordinates, _NODES), ("forces", Forces, _MEASURES)):
+            part = getattr(self, name)
+            if not isinstance(part, kind):
+                raise InputError(f"{name} of an element must be one of {kind}, got {shown(part)}")
+            if part.code not in codes:
+                raise InputError(
+                    f"{name} of an element: code of {type(part).__name__} is {shown(part.code)}, but compiled code "
+                    f"knows {', '.join(map(str, codes))} only"
+                )
         require_field(self.field)
         has_slope = "r_x" in self.field.vectors
         if self.integration is None:

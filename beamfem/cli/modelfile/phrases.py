@@ -57,8 +57,9 @@ _PHRASES = (
     ("use GeneralizedAlpha, or", "leave `integrator` out, or"),
     ("use GeneralizedAlpha", "leave `integrator` out"),
     (
-        "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end)",
-        "integrator must be left out, or be a class with step(motion, begin, end)",
+        "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
+        "step(motion, begin, end)",
+        "integrator must be left out, or be a class with rule(step) or step(motion, begin, end)",
     ),
     ("as Piecewise does", 'as those of kind "table" and "piecewise" do'),
     ("newton must be a Newton(tolerance=..., iterations=...)", "newton must be a table with tolerance and iterations"),

@@ -17,7 +17,7 @@ from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
 from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
-from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
 from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lack
@@ -38,7 +38,7 @@ def simulate(
     model: Model,
     duration: float,
     step: float,
-    integrator: GeneralizedAlpha | Integrator | None = None,
+    integrator: Scheme | Integrator | None = None,
     start: State | Solution | None = None,
     velocity: RigidVelocity | Callable[[np.ndarray], np.ndarray] | None = None,
     save_every: int = 1,
@@ -53,8 +53,9 @@ def simulate(
         Time to simulate; the last step ends at or just after it.
     step : float, [s]
         Time step.
-    integrator : GeneralizedAlpha or Integrator, optional
-        Time integration method, by default `GeneralizedAlpha()`; an `Integrator` is a user-defined one.
+    integrator : GeneralizedAlpha, Scheme or Integrator, optional
+        Time integration method, by default `GeneralizedAlpha()`; a user-defined one is a `Scheme` of the same family,
+        such as Newmark's method, or any other `Integrator`.
     start : State or Solution, optional
         State to start from: a state of any solution, static or a motion, or a solution for its last state; by default
         the reference at rest. It may come from a model with other supports, which have to hold its points where they
@@ -87,18 +88,20 @@ def simulate(
     duration, step, save_every = positive("duration", duration), positive("step", step), count("save_every", save_every)
     if step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
-    user_defined = not isinstance(integrator, GeneralizedAlpha | None)
-    if user_defined and (isinstance(integrator, type) or not callable(getattr(integrator, "step", None))):
+    integrator = GeneralizedAlpha() if integrator is None else integrator
+    user_defined = not isinstance(integrator, Scheme)
+    if isinstance(integrator, type) or (user_defined and not callable(getattr(integrator, "step", None))):
         raise InputError(
-            "integrator must be a GeneralizedAlpha(rho_inf=...), or an object with step(motion, begin, end) as "
-            f"bf.Integrator describes it, got {shown(integrator)}"
+            "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
+            f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
     system = system_to_solve(model, static=False)
-    if user_defined:
+    if isinstance(integrator, Scheme):
+        require_rule(integrator, step)
+    else:
         refuse_what_own_steps_lack(system)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
-    integrator = integrator or GeneralizedAlpha()
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)
     acting, second = functions_of_time(system), system.model.unit("s")
     parts = stretches(times, [function for function in acting if function.amplitude])

@@ -1,11 +1,52 @@
 """Time integrators."""
 
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from beamfem.errors import InputError
-from beamfem.validation import convert, finite
+from beamfem.validation import convert, finite, shown
+
+
+@runtime_checkable
+class Scheme(Protocol):
+    """A time integration method of the generalized-alpha family, such as Newmark's method or HHT-alpha.
+
+    With the auxiliary acceleration a, (1 - alpha_m) a1 + alpha_m a0 = (1 - alpha_f) p1'' + alpha_f p0'',
+    p1 = p0 + h p0' + h^2 ((1/2 - beta) a0 + beta a1), p1' = p0' + h ((1 - gamma) a0 + gamma a1), and the equations of
+    motion hold at the end of a step (Arnold and Bruels 2007).
+    """
+
+    def rule(self, step: float) -> np.ndarray:
+        """Return the parameters of the method.
+
+        Parameters
+        ----------
+        step : float, [s]
+            Time step h.
+
+        Returns
+        -------
+        array, (5,)
+            Time step [s], alpha_m and alpha_f below 1, gamma and beta above 0 [-].
+        """
+        ...
+
+
+def require_rule(scheme: Scheme, step: float) -> None:
+    """Raise InputError unless the rule of a scheme gives an implicit method."""
+    given = scheme.rule(step)
+    try:
+        rule = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        rule = np.empty(0)
+    implicit = rule.shape == (5,) and np.isfinite(rule).all() and rule[0] == step
+    if not implicit or not (max(rule[1], rule[2]) < 1.0 and min(rule[3], rule[4]) > 0.0):
+        raise InputError(
+            f"rule of {type(scheme).__name__} must return (step, alpha_m, alpha_f, gamma, beta) with alpha_m and "
+            f"alpha_f below 1, and gamma and beta above 0, got {shown(given)}"
+        )
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
-from beamfem.solve.motion.integrators import GeneralizedAlpha
+from beamfem.solve.motion.integrators import Scheme
 from beamfem.solve.motion.own_steps import Integrator, OwnSteps
 from beamfem.solve.motion.sparse_motion import SparseMotion
 from beamfem.solve.motion.time_steps import Stretch
@@ -75,7 +75,7 @@ class Failure:
 
 def march(
     system: System,
-    integrator: GeneralizedAlpha | Integrator,
+    integrator: Scheme | Integrator,
     parts: tuple[Stretch, ...],
     prescribed: np.ndarray,
     state: np.ndarray,
@@ -89,20 +89,19 @@ def march(
     """
     statistics = record.statistics
     done, row, failed = 0, 0, None
-    user_defined = not isinstance(integrator, GeneralizedAlpha)
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
-    # 1 / 2 = beta / gamma with rho_inf = 1: see initial_acceleration; laws with history know rates by differences only
-    relaxed = isinstance(integrator, GeneralizedAlpha) and (
-        bool(system.history.laws) or (damped and integrator.rho_inf < 1.0)
+    # see initial_acceleration; laws with history know rates by differences only
+    relaxed = isinstance(integrator, Scheme) and (
+        bool(system.history.laws) or (damped and not _keeps_rates(integrator))
     )
     # a user-defined integrator may raise any exception; the states reached before are kept
-    size = 1 if user_defined else max(_FIRST_CHUNK // system.model.size, 1)
+    size = max(_FIRST_CHUNK // system.model.size, 1) if isinstance(integrator, Scheme) else 1
     turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             if number > 0:
-                if isinstance(integrator, GeneralizedAlpha):
+                if isinstance(integrator, Scheme):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
                 statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
@@ -127,7 +126,7 @@ def march(
                     if part.whole and completed:
                         last.reach(done, state[:3], turned)
                         report(float(part.times[begun]))
-                    if part.whole and spent < _CHUNK_SECONDS and not user_defined:
+                    if part.whole and spent < _CHUNK_SECONDS and isinstance(integrator, Scheme):
                         size *= 4
             if failed is not None:
                 break
@@ -146,10 +145,10 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 
 @contextmanager
 def _steps(
-    system: System, integrator: GeneralizedAlpha | Integrator, part: Stretch, statistics: np.ndarray
+    system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
 ) -> Iterator[BandMotion | SparseMotion | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
-    if not isinstance(integrator, GeneralizedAlpha):
+    if not isinstance(integrator, Scheme):
         yield OwnSteps(system, integrator, part.loads_from, statistics)
         return
     rule, limits = integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS])
@@ -166,6 +165,12 @@ def _why(statistics: np.ndarray) -> str:
         f"the last correction was {statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
         "A smaller step may help"
     )
+
+
+def _keeps_rates(scheme: Scheme) -> bool:
+    """Return whether 1 / 2 = beta / gamma, as of the trapezoidal rule."""
+    *_, gamma, beta = scheme.rule(1.0)
+    return bool(2.0 * beta == gamma)
 
 
 def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 import beamfem as bf
 from beamfem.kernels.extrapolation import MOST, complete, difference_rows, padded, predict
-from beamfem.kernels.motion_steps import judge
+from beamfem.kernels.motion_steps import check_convergence
 from studies.benchmarks.peer_cases import STRUCTURAL, pendulum, swing
 
 RULE = np.array([0.01, 0.5, 0.5, 0.5, 0.25])  # trapezoidal rule
@@ -71,7 +71,7 @@ def test_what_is_left_of_the_error_is_small_where_ratios_of_corrections_take_tur
     rate, noise = np.array([0.1, 0.0]), np.zeros(1)
     for number, size in enumerate(sizes, start=1):
         last = sizes[number - 2] if number > 1 else 0.0
-        if judge(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, noise) == 1:
+        if check_convergence(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, noise) == 1:
             break
     assert sizes[number:].sum() < 1.1e-14
 

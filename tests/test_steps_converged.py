@@ -7,7 +7,7 @@ import pytest
 from fuzz_steps import faults_of_steps
 
 import beamfem as bf
-from beamfem.kernels.motion_steps import judge
+from beamfem.kernels.motion_steps import check_convergence
 from beamfem.solve.motion import band_motion, march, sparse_motion
 
 TOLERANCE = 1e-9
@@ -63,12 +63,12 @@ def test_a_step_that_is_not_converged_or_does_not_follow_is_seen():
     ],
 )
 def test_a_kept_tangent_does_not_judge_itself(own, size, last, noise, verdict):
-    rate, known = np.array([0.1]), np.array([noise])
-    assert judge(3, 0, own, 0, size, last, 1.0, TOLERANCE, rate, known) == verdict
+    rate, known = np.array([0.1, 0.0]), np.array([noise])
+    assert check_convergence(3, 0, own, 0, size, last, 1.0, TOLERANCE, rate, known) == verdict
     assert known[0] == (2.0 * last if own and size == 5e-10 else noise)
 
 
 @pytest.mark.parametrize(("own", "far", "verdict"), [(0, 0, 1), (0, 1, 2), (1, 1, 1)])
 def test_a_tangent_from_far_away_does_not_judge_what_it_led_to(own, far, verdict):
     """A beam that creeps: from 38 m away it converged to 7e-5 m beside the equilibrium."""
-    assert judge(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0]), np.zeros(1)) == verdict
+    assert check_convergence(2, 0, own, far, 1e-15, 38.0, 38.0, TOLERANCE, np.array([1.0, 0.0]), np.zeros(1)) == verdict

@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from beamfem.element.coordinates import labels
-from beamfem.kernels.block import TURNED_GRADIENTS
+from beamfem.kernels.block import ROTATED_GRADIENTS
 from beamfem.model.mesh import BeamMesh
 
 Columns = list[tuple[str, np.ndarray, np.ndarray]]
@@ -38,6 +38,6 @@ def _columns_of(node_kinds: np.ndarray, dof: np.ndarray, vectors: tuple[str, ...
     for node_kind in np.unique(node_kinds).tolist():
         nodes = np.flatnonzero(node_kinds == node_kind)
         for column, label in enumerate(labels(node_kind, vectors)):
-            if node_kind != TURNED_GRADIENTS or not label.startswith("r_y"):
+            if node_kind != ROTATED_GRADIENTS or not label.startswith("r_y"):
                 result.append((label, nodes, dof[nodes, column]))
     return result

@@ -11,10 +11,10 @@ from beamfem.kernels.batch import rows_of
 from beamfem.kernels.block import (
     ELASTIC_LINE,
     GRADIENTS,
+    ROTATED_GRADIENTS,
     ROTATION,
     SHEAR_RIGID,
     STRETCH,
-    TURNED_GRADIENTS,
     Block,
     Layout,
     PointLoads,
@@ -61,7 +61,7 @@ class Structure:
 
     table: see `kernels.record`; kept: the arrays that it points to; turned, turning: numbers of components of nodal
     vectors that rotate, and of the coordinates that rotate them; constant: node data with the entries that never change
-    in any such group, None if there are none; turns (k,): nodes with `TURNED_GRADIENTS`, in storage order; used: rows
+    in any such group, None if there are none; turns (k,): nodes with `ROTATED_GRADIENTS`, in storage order; used: rows
     of workspace.
     """
 
@@ -177,7 +177,7 @@ def _structure(given: Numbers, sizes: Sizes) -> Structure:
     table[record.LOADS] = len(given.element)
     needs = _needs(kinds, sizes, bool(len(given.element)))
     chunks = -(-count // LANES), chunk_rows, ROW
-    turns, constant = np.flatnonzero(given.node_kind == TURNED_GRADIENTS), None
+    turns, constant = np.flatnonzero(given.node_kind == ROTATED_GRADIENTS), None
     if (turned and len(kinds) > 1) or len(turns):
         constant = _constant(given.node_kind, chunks, size, turned, turning)
     return Structure(table, tuple(kept), order, turned, turning, constant, turns, chunks, used, needs)
@@ -189,7 +189,7 @@ def _constant(node_kind: np.ndarray, shape: tuple[int, int, int], size: int, tur
     for part in range(turned):
         straight = node_kind == GRADIENTS
         if part < turned - 2:
-            straight |= (node_kind == ROTATION) | (node_kind == TURNED_GRADIENTS)
+            straight |= (node_kind == ROTATION) | (node_kind == ROTATED_GRADIENTS)
         nodes = np.flatnonzero(straight)
         chunks[nodes // LANES, 2 * size + part * turning + (part if part < turning else 0), nodes % LANES] = 1.0
     return chunks
@@ -220,7 +220,7 @@ def _table_rows(table: np.ndarray, slots: int, sizes: Sizes) -> int:
 def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
     """Return the parts of `Routines` that each task needs, and the kinds of nodes with an angle."""
     angles = tuple(kind - ROTATION for kind in kinds if kind in (ROTATION, STRETCH, SHEAR_RIGID))
-    rotated = ("rotated",) if TURNED_GRADIENTS in kinds else ()
+    rotated = ("rotated",) if ROTATED_GRADIENTS in kinds else ()
     turns = bool(angles or rotated)
     forces = ("forces", *(("angles",) if angles else ()), *rotated, *(("loads",) if loads else ()))
     forces += (*(("damping",) if sizes.damped else ()), *(("imposed",) if sizes.imposed else ()))

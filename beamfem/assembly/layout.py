@@ -73,28 +73,34 @@ def order_unknowns(
     joined: bool,
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
-    held: np.ndarray = _NONE,
+    constrained: np.ndarray = _NONE,
 ) -> Unknowns:
     """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
     coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
-    coordinates that come last, since they have no stiffness; held: those that supports prescribe, at which a band of
-    statics ends.
+    coordinates that come last, since they have no stiffness; constrained: those that supports prescribe, at which a
+    band of statics ends.
     """
     if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
-        return _cached_order(*numbers, size, prescribed.tobytes(), held.tobytes())
+        return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, coupled, multipliers, held)
+    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
 def _cached_order(
-    node: bytes, nodes: tuple[int, int], dof: bytes, dofs: tuple[int, int], size: int, prescribed: bytes, held: bytes
+    node: bytes,
+    nodes: tuple[int, int],
+    dof: bytes,
+    dofs: tuple[int, int],
+    size: int,
+    prescribed: bytes,
+    constrained: bytes,
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
-    known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, held))
+    known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
     return _order([Mesh(*whole)], size, known, False, (), (), supported)
 
 
@@ -105,7 +111,7 @@ def _order(
     joined: bool,
     coupled: Sequence[np.ndarray],
     multipliers: Sequence[int],
-    held: np.ndarray,
+    constrained: np.ndarray,
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
@@ -121,7 +127,7 @@ def _order(
     none = np.empty((0, 0, 0), dtype=np.int32)
     if half_width <= _WIDEST_BAND and not coupled:
         dofs = order[mask[order]]
-        turned = _to_support(blocks, order, mask, held)
+        turned = _to_support(blocks, order, mask, constrained)
         # joined nodes that share some coordinates only may be further apart then
         if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
             dofs = turned
@@ -196,18 +202,20 @@ def _narrow(blocks: Sequence[Mesh], size: int) -> np.ndarray:
     return np.lexsort((np.arange(size), rank[owner]))
 
 
-def _to_support(blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, held: np.ndarray) -> np.ndarray | None:
+def _to_support(
+    blocks: Sequence[Mesh], order: np.ndarray, unknown: np.ndarray, constrained: np.ndarray
+) -> np.ndarray | None:
     """Return the unknown coordinates with the nodes reversed if the order begins closer to a support than it ends.
 
     None if it does not. Elimination from a free end meets the stiffness of single elements only. In the other
     direction the last pivots are the stiffness of the whole cantilever, a difference of much larger numbers that has no
     digits in long ones. order (size,): all coordinates; unknown (size,): mask of the unknown ones.
     """
-    if not len(held):
+    if not len(constrained):
         return None
     owner = _owners(blocks, len(order))
     supported = np.zeros(len(order), dtype=bool)
-    supported[owner[held]] = True
+    supported[owner[constrained]] = True
     places = np.flatnonzero(supported[owner[order]])
     left = unknown[order]
     if np.count_nonzero(left[: places[0]]) >= np.count_nonzero(left[places[-1] + 1 :]):

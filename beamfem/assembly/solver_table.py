@@ -66,7 +66,7 @@ def _driver_routines(half_width: int, moving: bool, short: bool, in_two: bool) -
         record.BALANCE: model_passes.balance,
         record.PREDICT_RESULTANTS: model_passes.predict_resultants,
         record.SMALLEST_JACOBIAN: model_passes.smallest_jacobian,
-        record.HOLD_NORMALS: rollers.hold_normals,
+        record.CONSTRAIN_NORMALS: rollers.constrain_normals,
         record.ROTATE_IN: rollers.rotate_in,
         record.ROTATE_BACK: rollers.rotate_back,
     }

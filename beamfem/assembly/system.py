@@ -258,9 +258,9 @@ class System:
         connectors, joined = self.connectors, bool(self.model.joints)
         coupled = [item.all for item in connectors.items]
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
-        held = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
+        constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
         order = self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist()
-        return order_unknowns(*order, np.array(held, dtype=np.int64))
+        return order_unknowns(*order, np.array(constrained, dtype=np.int64))
 
     @cached_property
     def connectors(self) -> Connectors:

@@ -6,9 +6,9 @@ import numpy as np
 
 from beamfem.assembly.element_group import stored
 from beamfem.assembly.group_structure import storage_order
-from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS, Block
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, Block
 
-_GRADIENTS = (GRADIENTS, TURNED_GRADIENTS)
+_GRADIENTS = (GRADIENTS, ROTATED_GRADIENTS)
 # kinds of nodes that have r, r_x and r_y themselves as coordinates
 _TURNING = ((*_GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (*_GRADIENTS, ROTATION), _GRADIENTS)
 

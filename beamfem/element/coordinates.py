@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH
 from beamfem.physics import kinematics
 from beamfem.validation import flag
 
@@ -92,7 +92,7 @@ def nodal_vectors(node_kind: int, vectors: tuple[str, ...], p: np.ndarray, frame
         angle = np.cos(p[..., -1]), np.sin(p[..., -1])
         return _carried(kind, p, *_turned(*angle, frame), frame)
     result = p.reshape(*p.shape[:2], len(vectors), 2).copy()
-    if node_kind == TURNED_GRADIENTS:
+    if node_kind == ROTATED_GRADIENTS:
         result[:, :, -1] = np.stack(_turned(result[:, :, -1, 0], result[:, :, -1, 1], frame), axis=-1)
     return result
 

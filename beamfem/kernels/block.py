@@ -9,7 +9,7 @@ GRADIENTS = 0
 ROTATION = 1
 STRETCH = 2
 SHEAR_RIGID = 3
-TURNED_GRADIENTS = 4  # gradients, with r_y rotated by the reference angle of the node
+ROTATED_GRADIENTS = 4  # gradients, with r_y rotated by the reference angle of the node
 
 # Strain measures, see `physics.measures`.
 GREEN_LAGRANGE = 0
@@ -83,7 +83,7 @@ class Block(NamedTuple):
     length: np.ndarray  # (nc, nv) integral of N_r over the reference length [m]
     node: np.ndarray  # (ne, nn) nodes of an element
     beam: np.ndarray  # (ne,) beam that an element belongs to
-    node_kind: np.ndarray  # (N,) GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID or TURNED_GRADIENTS
+    node_kind: np.ndarray  # (N,) GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID or ROTATED_GRADIENTS
     frame: np.ndarray  # (N, 3) cosine and sine of the node's angle, and |r_x|, in the reference; see `coordinates`
     dof: np.ndarray  # (N, npn) coordinates of a node, -1 where it has fewer
     home: np.ndarray  # (N, 2) an element that contains the node, and the node's number in that element

@@ -9,9 +9,9 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 # them, or above which rate of convergence, the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 8, 3, 0.05
 
-_hold, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
+_constrain, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
 _stage, _in_two, _place = caller("iiii", "d"), caller("iiii", "d"), caller("iii")
-_judge = inlined(motion_steps.judge)
+_check_convergence = inlined(motion_steps.check_convergence)
 
 
 @inlined
@@ -128,7 +128,7 @@ def march(system, solver, calls):
             if renew:
                 if b[r.ROLLERS] > 0:
                     first_of, normal = wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL])
-                    _hold(call[r.HOLD_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
+                    _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, b[r.ROLLERS], rows, first_of, normal)
                 pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
                 statistics[3] = min(statistics[3], -pivots)
                 statistics[5] += 1.0
@@ -144,7 +144,9 @@ def march(system, solver, calls):
                 first_size = max(size, statistics[8])
                 far = 1 if size > motion_steps.FAR else 0
             new_tangent = 1 if renew else 0
-            done = _judge(iteration, full, new_tangent, far, size, last, first_size, limits[0], rate, at(statistics, 9))
+            done = _check_convergence(
+                iteration, full, new_tangent, far, size, last, first_size, limits[0], rate, at(statistics, 9)
+            )
             if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call, system):
                 done = -1
             fresh = done == 2

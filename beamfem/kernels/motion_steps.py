@@ -72,7 +72,7 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
 
 
 @routine("iiiiddddrr", "i")
-def judge(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
+def check_convergence(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
     """Return whether a step has converged after a correction: 1 yes, 0 not yet, -1 diverged, 2 needs a new tangent.
 
     full: whether every correction has a new tangent (Newton's method); own: whether this one has; far: whether the

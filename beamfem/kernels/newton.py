@@ -9,7 +9,7 @@ _FAST = {"contract", "reassoc", "nsz"}
 
 _balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
 _factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
-_hold, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
+_constrain, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
 @inlined
@@ -103,7 +103,7 @@ def iterate(system, solver, calls):
             for i in range(unknown):
                 right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
-            _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, first_of, normal)
+            _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, rollers, rows, first_of, normal)
             _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
         if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[3]:
             return 0
@@ -171,7 +171,15 @@ def count_after_step(system, solver, calls):
     s[r.TANGENT] = s[r.PREDICTED] = 1
     _balance(call[r.BALANCE], system)
     if rollers > 0:
-        _hold(call[r.HOLD_NORMALS], unknown, half, rollers, rows, wholes(b[r.ROLLER_FIRST]), reals(b[r.ROLLER_NORMAL]))
+        _constrain(
+            call[r.CONSTRAIN_NORMALS],
+            unknown,
+            half,
+            rollers,
+            rows,
+            wholes(b[r.ROLLER_FIRST]),
+            reals(b[r.ROLLER_NORMAL]),
+        )
     signs = reals(b[r.STEP])
     if not _factor(call[r.FACTOR], unknown, unknown, half, 0, reach, rows, right, signs) > limits[3]:
         return -1

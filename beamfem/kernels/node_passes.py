@@ -1,7 +1,7 @@
 """Loops over the nodes of a group: from coordinates to nodal vectors, and from nodal forces to the residual."""
 
 from beamfem.kernels import record as r
-from beamfem.kernels.block import GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH, TURNED_GRADIENTS
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, SHEAR_RIGID, STRETCH
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.nodes import put, take
@@ -65,7 +65,7 @@ def place_nodes(group, system, moving):
             take(first, count, linear, stride, source, p, last, chunk)
             if moving != 0:
                 take(first, count, linear, stride, source, a, last, at(chunk, b[r.ACCELERATION] * ROW))
-            if kind == TURNED_GRADIENTS:
+            if kind == ROTATED_GRADIENTS:
                 c, t = at(frame, first), at(frame, stride + first)
                 _rotate(call[r.ROTATE], count, c, t, at(chunk, (size - 2) * ROW))
                 if moving != 0:
@@ -155,7 +155,7 @@ def finish_nodes(group, system):
         return
     for run in range(b[r.RUN_COUNT]):
         kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
-        if kind in (GRADIENTS, TURNED_GRADIENTS):
+        if kind in (GRADIENTS, ROTATED_GRADIENTS):
             continue
         linear = size - 2 if kind == ROTATION else size - 4
         polar = 2 if kind == STRETCH else 1

@@ -5,7 +5,7 @@ from beamfem.kernels.pointers import at
 
 
 @routine("iiirnr")
-def hold_normals(n, half, rollers, rows, first, normal):
+def constrain_normals(n, half, rollers, rows, first, normal):
     """Rotate each pair of unknowns to (normal, tangent) in a band matrix, and constrain the normal one to zero change.
 
     rows (n, 2 half + 1): the matrix, changed in place; first (rollers,): number of the x of each pair among the

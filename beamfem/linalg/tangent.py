@@ -9,7 +9,7 @@ from scipy.sparse.linalg import SuperLU
 
 from beamfem.kernels.band import band
 from beamfem.kernels.compiling import Routine
-from beamfem.kernels.rollers import hold_normals, rotate_back, rotate_in
+from beamfem.kernels.rollers import constrain_normals, rotate_back, rotate_in
 from beamfem.linalg.lapack import LinAlgError, solve_banded
 from beamfem.linalg.superlu import superlu
 
@@ -109,7 +109,7 @@ class BandTangent:
 
     def factorised(self, rotated: Rotated) -> BandFactors:
         """Return the factors; pivoting is used only if the factorisation without it meets a tiny pivot."""
-        rows = _held(self.rows, rotated)
+        rows = _constrained(self.rows, rotated)
         lu = rows.copy()
         n, half = len(lu), lu.shape[1] // 2
         ratio = band(half).factor(n, n, half, 0, self.reach, lu, _NOTHING, np.empty(n))
@@ -121,7 +121,7 @@ class BandTangent:
 
     def sparse(self, rotated: Rotated) -> csr_array:
         """Return the matrix (n, n) with the normals of inclined rollers rotated to x and constrained there."""
-        rows = _held(self.rows, rotated)
+        rows = _constrained(self.rows, rotated)
         half = rows.shape[1] // 2
         return csr_array(dia_array((_diagonals(rows), np.arange(half, -half - 1, -1)), shape=(len(rows), len(rows))))
 
@@ -195,13 +195,13 @@ def _rotate(routine: Routine, x: np.ndarray, rotated: Rotated) -> None:
         routine(len(first), first, normal, x)
 
 
-def _held(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
+def _constrained(rows: np.ndarray, rotated: Rotated) -> np.ndarray:
     """Return a band matrix with the normals of inclined rollers constrained; without rollers it is the same array."""
     first, normal = rotated
     if not len(first):
         return rows
     result = rows.copy()
-    hold_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
+    constrain_normals(len(rows), rows.shape[1] // 2, len(first), result, first, normal)
     return result
 
 

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from beamfem.element.coordinates import labels
-from beamfem.kernels.block import GRADIENTS, ROTATION, STRETCH, TURNED_GRADIENTS
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS, ROTATION, STRETCH
 from beamfem.model.grid import Grid
 from beamfem.model.reference import reference_angle
 
@@ -113,7 +113,7 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
 
     leader_moves, leader_turns = first_of_group(moves), first_of_group(turns)
     turned = joined & all_plain & (leader_turns != np.arange(total))
-    node_kind = np.where(turned, TURNED_GRADIENTS, node_kind)
+    node_kind = np.where(turned, ROTATED_GRADIENTS, node_kind)
 
     owned, last, turn_size = _ownership(kinds, owner, node_kind)
     follower_moves, follower_turns = leader_moves != np.arange(total), leader_turns != np.arange(total)
@@ -133,7 +133,7 @@ def _number(kinds: Sequence[NodeKinds], angled: Pairs, moving: Pairs, turning: P
     parts = tuple((*ends, columns) for ends, columns in zip(pairwise(first.tolist()), widest, strict=True))
     for values in (node_kind, dof, leader_turns):
         values.setflags(write=False)  # models with the same numbering share them
-    turned_nodes = np.flatnonzero(node_kind == TURNED_GRADIENTS)
+    turned_nodes = np.flatnonzero(node_kind == ROTATED_GRADIENTS)
     return Numbered(node_kind, dof, leader_turns, turned_nodes, parts, int(owned.sum()))
 
 
@@ -163,7 +163,7 @@ def _ownership(
     last, turn_size = np.empty(len(owner), dtype=np.int64), np.empty(len(owner), dtype=np.int64)
     has_slope = np.array([len(kind.vectors) == 3 for kind in kinds])[owner]
     for slope, names in ((False, ("r", "r_y")), (True, ("r", "r_x", "r_y"))):
-        for code in range(TURNED_GRADIENTS + 1):
+        for code in range(ROTATED_GRADIENTS + 1):
             rows = (has_slope == slope) & (node_kind == code)
             if not rows.any():
                 continue

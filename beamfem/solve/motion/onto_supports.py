@@ -86,20 +86,20 @@ def _jumping(
     see `require_on_supports`.
     """
     metre, prescribed = system.model.unit("m"), support.prescribed()
-    held, there, hold, driven = [], [], [], False
+    imposed, there, hold, driven = [], [], [], False
     sizes = {metre: 0.0, "rad": 0.0}
     for direction, (name, dof) in dofs.items():
         unit = "rad" if direction == "rotation" else metre
         value = p[dof] - system.reference[dof]
         hold.append(f"{name} = {_number(system, dof, value, 12)}")
         if dof in jumps:
-            held.append(f"{name} = {_number(system, dof, value + jumps[dof])} {unit}")
+            imposed.append(f"{name} = {_number(system, dof, value + jumps[dof])} {unit}")
             there.append(f"{name} = {_number(system, dof, value)} {unit}")
             sizes[unit] = float(np.hypot(sizes[unit], jumps[dof]))
             driven = driven or callable(prescribed[direction])
     jump = " and ".join(f"{size:.4g} {unit}" for unit, size in sizes.items() if size > 0.0)
     message = (
-        f"{type(support).__name__} at {support.point}, prescribes {', '.join(held)} when the motion begins, but "
+        f"{type(support).__name__} at {support.point}, prescribes {', '.join(imposed)} when the motion begins, but "
         f"{'start' if given else 'the reference'} has {', '.join(there)} there: it would jump by {jump}. "
     )
     if not given:

@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
 from beamfem.kernels.extrapolation import complete, difference_rows, padded, predict
-from beamfem.kernels.motion_steps import FAR, correct, count_turns, judge
+from beamfem.kernels.motion_steps import FAR, check_convergence, correct, count_turns
 from beamfem.kernels.rollers import stay_on_planes
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
@@ -129,7 +129,7 @@ class SparseMotion:
             if iteration == 1:
                 first_size, far = max(size, statistics[8]), int(size > FAR)
             self._number[0] = rate
-            judged = judge(
+            outcome = check_convergence(
                 *(
                     iteration,
                     int(full),
@@ -144,13 +144,13 @@ class SparseMotion:
                 )
             )
             if (
-                judged == 1
+                outcome == 1
                 and (full or first_size > FAR)
                 and not self.system.assembler().smallest_jacobian(state[0]) > 0.0
             ):
-                judged = -1  # an element is inverted, which no motion can lead to
-            done, fresh, rate = judged == 1, judged == 2, float(self._number[0])
-            if not fresh and (judged < 0 or (not full and iteration > 1 and rate >= 0.5)):
+                outcome = -1  # an element is inverted, which no motion can lead to
+            done, fresh, rate = outcome == 1, outcome == 2, float(self._number[0])
+            if not fresh and (outcome < 0 or (not full and iteration > 1 and rate >= 0.5)):
                 break
         statistics[1] = max(statistics[1], iteration)
         statistics[4] = -1.0 if not done or iteration > _MANY or (iteration > 1 and rate > _SLOW) else rate

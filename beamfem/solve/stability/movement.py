@@ -3,7 +3,7 @@
 import numpy as np
 
 from beamfem.assembly.system import System
-from beamfem.kernels.block import GRADIENTS, TURNED_GRADIENTS
+from beamfem.kernels.block import GRADIENTS, ROTATED_GRADIENTS
 
 
 def size_of(system: System) -> float:
@@ -29,7 +29,7 @@ def largest_movement(system: System, change: np.ndarray) -> float:
     padded = np.append(change, 0.0)
     largest = largest_displacement(system, change) / size_of(system)
     for block in system.blocks:
-        plain = np.isin(block.node_kind, (GRADIENTS, TURNED_GRADIENTS))
+        plain = np.isin(block.node_kind, (GRADIENTS, ROTATED_GRADIENTS))
         rotations, gradients = block.dof[~plain, 2:], block.dof[plain, 2:].reshape(-1, 2)
         moved = np.hypot(*padded[gradients].T), np.abs(padded[rotations])
         largest = max(largest, *(float(values.max(initial=0.0)) for values in moved))

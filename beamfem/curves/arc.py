@@ -66,13 +66,13 @@ class Arc:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         angle = self._angle(arc_length)
         return np.array(self.center) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         angle = self._angle(arc_length)
         return self._sense * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
 

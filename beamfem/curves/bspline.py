@@ -78,12 +78,12 @@ class BSpline:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         return self.evaluate(self.parameter(arc_length))
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return unit(self.derivative(self.parameter(arc_length)))
 
     def parameter(self, arc_length: np.ndarray) -> np.ndarray:
@@ -129,7 +129,23 @@ class BSpline:
         return np.unique(inside)
 
     def multiplicity(self, knot: float) -> int:
-        """Return how many times a number `knot` occurs among the knots, 0 if it is not one of them."""
+        """Return how many times a number occurs among the knots.
+
+        Parameters
+        ----------
+        knot : float
+            The number.
+
+        Returns
+        -------
+        int
+            Its multiplicity, 0 if it is not a knot.
+
+        Examples
+        --------
+        >>> bf.BSpline(2, [0, 0, 0, 1, 1, 1], [(0, 0), (1, 1), (2, 0)]).multiplicity(1.0)
+        3
+        """
         return self.knots.count(float(knot))
 
     def evaluate(self, u: np.ndarray) -> np.ndarray:

@@ -51,12 +51,12 @@ class Line:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         fraction = arc_length[:, None] / self.length
         return (1.0 - fraction) * np.array(self.start) + fraction * np.array(self.end)
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         direction = (np.array(self.end) - np.array(self.start)) / self.length
         return np.broadcast_to(direction, (len(arc_length), 2)).copy()

@@ -54,7 +54,7 @@ class Polyline:
 
     @along
     def position(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start."""
+        """Return the positions (n, 2) [m] at arc lengths (n,) [m] from the start, see `Curve.position`."""
         piece = self._piece(arc_length)
         fraction = ((arc_length - self._ends[piece]) / np.diff(self._ends)[piece])[:, None]
         table = np.array(self.points)
@@ -62,7 +62,7 @@ class Polyline:
 
     @along
     def tangent(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m]; at a corner, the one after it."""
+        """Return the unit tangents (n, 2) [-] at arc lengths (n,) [m] from the start, see `Curve.tangent`."""
         return self._directions[self._piece(arc_length)]
 
     @cached_property

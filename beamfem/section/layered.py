@@ -110,9 +110,26 @@ class Layered:
         return float(self._edges[0]), float(self._edges[-1])
 
     def rigidity(self, material: Material | None = None) -> Rigidity:
-        """Return the stiffness of all layers together about the axis; the layers have their own materials.
+        """Return the stiffness of all layers together about the axis of the beam.
 
-        The coupling is -sum E S_i [N m], as a positive curvature compresses the side of positive y.
+        The coupling is C = -sum E S_i, as a positive curvature compresses the side of positive y.
+
+        Parameters
+        ----------
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        Rigidity
+            Axial stiffness sum E A_i [N], shear stiffness k_s sum G A_i [N], bending stiffness sum E I_i [N m^2] and
+            coupling C [N m].
+
+        Examples
+        --------
+        >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
+        >>> round(strip.rigidity().axial / 1e6, 3)  # MN
+        12.6
         """
         parts = self.moments(material)
         axial, first, bending = (sum(m.youngs_modulus * moments[n] for m, moments in parts) for n in range(3))
@@ -120,14 +137,42 @@ class Layered:
         return Rigidity(float(axial), float(shear), float(bending), -float(first))
 
     def inertia(self, material: Material | None = None) -> Inertia:
-        """Return mass [kg/m], its first moment [kg] and rotary inertia [kg m] of all layers together."""
+        """Return the inertia of all layers together about the axis of the beam.
+
+        Parameters
+        ----------
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        Inertia
+            Mass [kg/m], its first moment [kg] and rotary inertia [kg m] per length.
+
+        Examples
+        --------
+        >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
+        >>> round(strip.inertia().mass, 3)
+        0.471
+        """
         mass, first, rotary = (
             float(sum(m.density * moments[n] for m, moments in self.moments(material))) for n in range(3)
         )
         return Inertia(mass, first, rotary)
 
     def moments(self, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material of each layer with the integrals (5,) of 1, y, ..., y^4 [m^2 to m^6] over it."""
+        """Return the area moments of each layer about the axis of the beam.
+
+        Parameters
+        ----------
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        list of (Material, array), (5,)
+            The material of each layer with the integrals of 1, y, ..., y^4 [m^2 to m^6] over it.
+        """
         edges = self._edges
         return [
             (layer.material, self.width * np.array([(high**n - low**n) / n for n in range(1, 6)]))
@@ -135,15 +180,42 @@ class Layered:
         ]
 
     def materials_at(self, y: np.ndarray, material: Material | None = None) -> list[tuple[Material, np.ndarray]]:
-        """Return the material of each layer with a bool for each height of y [m]: whether it is in the layer.
+        """Return which layer, and so which material, is at given heights.
 
-        The face between two layers belongs to the upper one.
+        Parameters
+        ----------
+        y : array, [m], (n,)
+            Heights above the axis of the beam; those beyond a face count as in the layer next to it.
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        list of (Material, array of bool), (n,)
+            The material of each layer with a mask of the heights in it; a face between two layers is in the upper one.
+
+        Examples
+        --------
+        >>> strip = bf.Layered([bf.Layer(steel, 0.001), bf.Layer(steel, 0.002)], width=0.02)
+        >>> [inside.tolist() for _, inside in strip.materials_at(np.array([-0.001, 0.001]))]
+        [[True, False], [False, True]]
         """
         index = np.clip(np.searchsorted(self._edges, y, side="right") - 1, 0, len(self.layers) - 1)
         return [(layer.material, index == number) for number, layer in enumerate(self.layers)]
 
     def strips(self, material: Material | None = None) -> list[tuple[Material, np.ndarray, np.ndarray]]:
-        """Return the material of each layer with heights (n,) [m] and weights (n,) [m^2] of a quadrature rule."""
+        """Return a Gauss rule over the height of each layer.
+
+        Parameters
+        ----------
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        list of (Material, array, array), (n,)
+            The material of each layer with heights y [m] and weights [m^2] of the rule.
+        """
         result = []
         for layer, low, high in zip(self.layers, self._edges[:-1], self._edges[1:], strict=True):
             heights, weights = gauss_between(low, high, _STRIPS)
@@ -151,7 +223,18 @@ class Layered:
         return result
 
     def parts(self, material: Material | None = None) -> tuple[Part, ...]:
-        """Return each layer as a rectangle with its Young's modulus [Pa], from the bottom up."""
+        """Return each layer as a rectangle with its Young's modulus, from the bottom up.
+
+        Parameters
+        ----------
+        material : Material, optional
+            Not used, as the layers have their own materials.
+
+        Returns
+        -------
+        tuple of Part
+            One part per layer, with its Young's modulus [Pa] and its outline.
+        """
         edges = self._edges.tolist()
         return tuple(
             Part(layer.material.youngs_modulus, RectangleOutline(self.width, low, high))

@@ -50,17 +50,43 @@ class _Body:
         return (False,) * 6
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return the strain measures (..., 6): a, b [1/m], c [1/m^2], eyy, g0 and g1 [1/m].
+        """Return the Green-Lagrange strain of the body, as polynomials of the height y.
 
-        exx = a + b y + c y^2 and 2 exy = g0 + g1 y.
+        With the measures (a, b, c, eyy, g0, g1), exx = a + b y + c y^2 and 2 exy = g0 + g1 y; paper, section 3.3.
+
+        Parameters
+        ----------
+        at : Axis, (..., 2)
+            Axis at the points, in any configuration.
+
+        Returns
+        -------
+        array, (..., 6)
+            a [-], b [1/m], c [1/m^2], eyy [-], g0 [-] and g1 [1/m].
         """
         return evaluate(green_lagrange, at.r_s, at.d, at.d_s)
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the change of the strain measures by free strains (m, n, 4), see `Structural.imposed`.
+        """Return the change of the strain measures by free strains.
+
+        For factors f_i of the free strains, they are the sum of f_i first_i + f_i f_j second_ij over all i and j.
 
         The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
         are quadratic in these vectors, so complex steps give both parts without subtraction.
+
+        Parameters
+        ----------
+        free : array, (m, n, 4)
+            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-] of m free strains at n points.
+        reference : Axis, (n, 2)
+            Reference axis at the points.
+
+        Returns
+        -------
+        first : array, (m, n, 6)
+            Part linear in the free strains.
+        second : array, (m, m, n, 6)
+            Part quadratic in them.
         """
         along, across = section_frame(reference.d)
         stretch, shear, curvature, thickness = np.moveaxis(free, -1, 0)[..., None]
@@ -77,7 +103,22 @@ class _Body:
     def points(self, degree: int, director_degree: int) -> int:
         """Return the number of Gauss points that integrate the energy of a straight element exactly.
 
-        The energy is quartic in r0' and in d.
+        The energy is quartic in r0' and in d: 2 max(degree - 1, director_degree) + 1 points.
+
+        Parameters
+        ----------
+        degree, director_degree : int
+            Polynomial degrees of the centreline r0 and of the director d.
+
+        Returns
+        -------
+        int
+            Number of points.
+
+        Examples
+        --------
+        >>> bf.ContinuumMechanics().points(degree=3, director_degree=1)
+        5
         """
         return 2 * max(degree - 1, director_degree) + 1
 
@@ -112,7 +153,27 @@ class ContinuumMechanics(_Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 6, 6) at points of the reference axis, in the order of `strains`."""
+        """Return the section stiffness at points of the reference axis.
+
+        It is the integral of B^T D B over the section, where B(y) maps the measures to (exx, eyy, 2 exy), and D is the
+        stiffness of the material.
+
+        Parameters
+        ----------
+        section : CrossSection
+            The section.
+        material : Material or None
+            Material of the beam.
+        coordinates : Gradients, Rotation or ShearFree
+            Nodal coordinates of the element.
+        reference : Axis, (..., 2)
+            Reference axis at the points.
+
+        Returns
+        -------
+        array, (..., 6, 6)
+            Stiffness in the order of `strains`, [N] to [N m^4].
+        """
         return _over_section(section, material, reference, self._law)
 
     def _law(self, material: Material) -> np.ndarray:
@@ -120,7 +181,28 @@ class ContinuumMechanics(_Body):
         return np.array([[lam + 2.0 * mu, lam, 0.0], [lam, lam + 2.0 * mu, 0.0], [0.0, 0.0, mu]])
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return second Piola-Kirchhoff stress xx, yy, xy [Pa] of Green-Lagrange strain components [-]."""
+        """Return the second Piola-Kirchhoff stress of given Green-Lagrange strains.
+
+        S = lambda tr(E) 1 + 2 mu E (St. Venant-Kirchhoff).
+
+        Parameters
+        ----------
+        xx, yy, xy : array, [-]
+            Strain components of points of the body; xy is half the engineering shear strain.
+        material : Material
+            Material at the points.
+
+        Returns
+        -------
+        xx, yy, xy : array, [Pa]
+            Stress components.
+
+        Examples
+        --------
+        >>> strain = np.array([1e-3]), np.zeros(1), np.zeros(1)
+        >>> bf.ContinuumMechanics().stress(*strain, steel)[0].round(-6) / 1e6  # MPa
+        array([283.])
+        """
         mu = material.shear_modulus
         trace = material.lame_lambda(self.plane_stress) * (xx + yy)
         return trace + 2 * mu * xx, trace + 2 * mu * yy, 2 * mu * xy
@@ -144,7 +226,27 @@ class SplitContinuum(_Body):
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 6, 6) at points of the reference axis, in the order of `strains`."""
+        """Return the section stiffness at points of the reference axis.
+
+        Over the section the modulus of exx, eyy and 2 exy is E, E and k_s mu; with gradients, the centreline adds the
+        Poisson coupling of plane stress to a and eyy.
+
+        Parameters
+        ----------
+        section : CrossSection
+            The section.
+        material : Material or None
+            Material of the beam.
+        coordinates : Gradients, Rotation or ShearFree
+            Nodal coordinates of the element.
+        reference : Axis, (..., 2)
+            Reference axis at the points.
+
+        Returns
+        -------
+        array, (..., 6, 6)
+            Stiffness in the order of `strains`, [N] to [N m^4].
+        """
 
         def uncoupled(part: Material) -> np.ndarray:
             modulus = part.youngs_modulus
@@ -162,9 +264,21 @@ class SplitContinuum(_Body):
         return matrix
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return the stress components xx, yy, xy [Pa] of strain components [-] away from the centreline.
+        """Return the stress of given strains away from the centreline, where there is no Poisson coupling.
 
-        There is no Poisson coupling there.
+        The stress is E exx, E eyy and 2 mu exy.
+
+        Parameters
+        ----------
+        xx, yy, xy : array, [-]
+            Strain components of points of the body; xy is half the engineering shear strain.
+        material : Material
+            Material at the points.
+
+        Returns
+        -------
+        xx, yy, xy : array, [Pa]
+            Stress components.
         """
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy

@@ -32,16 +32,43 @@ class Structural:
     thickness_measures: ClassVar[tuple[bool, ...]] = (False, False, False, True)
 
     def strains(self, at: Axis) -> np.ndarray:
-        """Return the strain measures (..., 4): stretch [-], shear [-], curvature [1/m], thickness stretch [-]."""
+        """Return the strain measures of the section along t = d / |d| with the normal n.
+
+        They are r0'.n - 1, r0'.t, (d x d') / |d|^2 and |d| - 1; Reissner 1972, Simo and Vu-Quoc 1986.
+
+        Parameters
+        ----------
+        at : Axis, (..., 2)
+            Axis at the points, in any configuration.
+
+        Returns
+        -------
+        array, (..., 4)
+            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-].
+        """
         return evaluate(structural, at.r_s, at.d, at.d_s)
 
     def stiffness(
         self, section: CrossSection, material: Material | None, coordinates: Coordinates, reference: Axis
     ) -> np.ndarray:
-        """Return the section stiffness (..., 4, 4) at points of the reference axis, in the order of `strains`.
+        """Return the section stiffness at points of the reference axis.
 
-        The diagonal is E A [N], k_s G A [N], E I [N m^2] and E A [N], with the coupling of stretch and curvature [N m]
-        beside it; the last E A is zero if the nodes keep the length of d.
+        Parameters
+        ----------
+        section : CrossSection
+            The section.
+        material : Material or None
+            Material of the beam.
+        coordinates : Gradients, Rotation or ShearFree
+            Nodal coordinates of the element.
+        reference : Axis, (..., 2)
+            Reference axis at the points.
+
+        Returns
+        -------
+        array, (..., 4, 4)
+            Stiffness in the order of `strains`, with the diagonal E A [N], k_s G A [N], E I [N m^2] and E A [N], zero
+            if the nodes keep the length of d, and with the coupling of stretch and curvature [N m].
         """
         rigidity = section.rigidity(material)
         matrix = np.zeros((*reference.r_s.shape[:-1], 4, 4))
@@ -52,19 +79,72 @@ class Structural:
         return matrix
 
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
-        """Return the strain measures of free strains (m, n, 4): stretch, shear, curvature [1/m] and thickness stretch.
+        """Return the strain measures of free strains, which are these strains.
 
-        They are in two parts: (m, n, ns), linear in the free strains, and (m, m, n, ns), products of two of them.
+        For factors f_i of the free strains, they are the sum of f_i first_i + f_i f_j second_ij over all i and j.
+
+        Parameters
+        ----------
+        free : array, (m, n, 4)
+            Stretch [-], shear [-], curvature [1/m] and thickness stretch [-] of m free strains at n points.
+        reference : Axis, (n, 2)
+            Reference axis at the points.
+
+        Returns
+        -------
+        first : array, (m, n, 4)
+            Part linear in the free strains.
+        second : array, (m, m, n, 4)
+            Part quadratic in them, which is zero.
         """
         return free, np.zeros((len(free), *free.shape))
 
     def stress(self, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray, material: Material) -> tuple[np.ndarray, ...]:
-        """Return the stress components xx, yy, xy [Pa] of strain components [-], without Poisson coupling."""
+        """Return the stress of given strains, without Poisson coupling.
+
+        The stress is E exx, E eyy and 2 G exy.
+
+        Parameters
+        ----------
+        xx, yy, xy : array, [-]
+            Strain components of points of the body; xy is half the engineering shear strain.
+        material : Material
+            Material at the points.
+
+        Returns
+        -------
+        xx, yy, xy : array, [Pa]
+            Stress components.
+
+        Examples
+        --------
+        >>> strain = np.array([1e-3]), np.zeros(1), np.zeros(1)
+        >>> bf.Structural().stress(*strain, steel)[0] / 1e6  # MPa
+        array([210.])
+        """
         modulus = material.youngs_modulus
         return modulus * xx, modulus * yy, 2.0 * material.shear_modulus * xy
 
     def points(self, degree: int, director_degree: int) -> int:
-        """Return the number of Gauss points of full integration, the same as for the continuum."""
+        """Return the number of Gauss points of full integration.
+
+        The number is 2 max(degree - 1, director_degree) + 1, as for the continuum.
+
+        Parameters
+        ----------
+        degree, director_degree : int
+            Polynomial degrees of the centreline r0 and of the director d.
+
+        Returns
+        -------
+        int
+            Number of points.
+
+        Examples
+        --------
+        >>> bf.Structural().points(degree=3, director_degree=1)
+        5
+        """
         return 2 * max(degree - 1, director_degree) + 1
 
 

@@ -68,7 +68,7 @@ class Actuation(ImposedStrain):
         require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear [-], curvature [1/m] and thickness stretch [-] (n, 4) of the unconstrained beam."""
+        """Return the imposed strains (n, 4) at arc lengths (n,) [m], see `ImposedStrain.free_strain`."""
         columns = [self.values_of(name, arc_length) for name in ("stretch", "shear", "curvature")]
         return np.column_stack([*columns, np.zeros(len(arc_length))])
 
@@ -139,7 +139,7 @@ class Temperature(ImposedStrain):
         require_followed(self)
 
     def free_strain(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return stretch, shear [-], curvature [1/m] and thickness stretch [-] (n, 4) of the unconstrained beam."""
+        """Return the thermal strains (n, 4) at arc lengths (n,) [m], see `ImposedStrain.free_strain`."""
         beam, heat = self.beam, self.heat(arc_length)
         if beam.prismatic:
             unit = thermal_strain(beam.section_at(0.0), beam.material)[None]
@@ -149,7 +149,7 @@ class Temperature(ImposedStrain):
         return np.column_stack([stretch, np.zeros(len(arc_length)), curvature, thickness])
 
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the change of temperature [K] and its gradient [K/m] (n, 2) at arc lengths (n,) [m]."""
+        """Return the change of temperature [K] and its gradient [K/m] (n, 2), see `ImposedStrain.heat`."""
         return np.column_stack([self.values_of(name, arc_length) for name in self.along])
 
 

@@ -46,7 +46,20 @@ class Load(ABC):
 
     @abstractmethod
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
+        """Return the shapes to draw for the load in a state of the model.
+
+        Parameters
+        ----------
+        weight : float, [-]
+            Factor by which the size of the load is multiplied.
+        placed : Placed
+            The state, with the rotations and directions of the axis there.
+
+        Returns
+        -------
+        tuple of Force, Moment, ForcesAlong, Acceleration or Strains
+            The shapes, see `beamfem.model.shapes`.
+        """
 
 
 class BodyLoad(Load):
@@ -71,7 +84,7 @@ class BodyLoad(Load):
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
+        """Return the acceleration to draw, see `Load.shapes`."""
         return (Acceleration(weight * np.array(self.vector)),)
 
 
@@ -110,7 +123,7 @@ class PointLoad(Load):
         return not (self.follower and any(self.value[:2]))
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
+        """Return the force and the moment to draw, see `Load.shapes`."""
         force, moment = weight * np.array([self.value[:2]]), weight * self.value[2]
         if self.follower:
             force = rotated(force, np.array([placed.rotation(self.point)]))
@@ -195,7 +208,7 @@ class LineLoad(AlongBeam, Load):
         return self.axes == "plane"
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
+        """Return the forces along the beam to draw, see `Load.shapes`."""
         at = _arrows(self, placed)
         vectors, points = weight * forces_of(self, at), [self.beam.at(part) for part in at / self.beam.curve.length]
         if self.axes == "section":
@@ -292,7 +305,7 @@ class ImposedStrain(AlongBeam, Load):
         return True
 
     def shapes(self, weight: float, placed: Placed) -> tuple[LoadShape, ...]:
-        """Return the shapes to draw for a load of `weight` [-] times its size, in a state of the model."""
+        """Return the imposed strains to draw, see `Load.shapes`."""
         values: dict[str, tuple[float | None, str]] = {}
         for name, unit in zip(self.along, self.units, strict=True):
             value = getattr(self, name)

@@ -97,17 +97,39 @@ class DistributedLoad(LineLoad):
         return not callable(self.vector)
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m]. Raises InputError."""
+        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m], see `LineLoad.forces`.
+
+        Raises InputError if a function does not return two finite numbers.
+        """
         return self.values(arc_length)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m]. Raises InputError."""
+        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m], see `LineLoad.values_of`."""
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces (qx, qy) per length (n, 2) [N/m] at arc lengths (n,) [m].
+        """Return the forces per length at given arc lengths.
 
-        Raises InputError if a function does not return two finite numbers.
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, [N/m], (n, 2)
+            Forces (qx, qy) per reference length, without the factor of the load.
+
+        Raises
+        ------
+        InputError
+            If a function does not return two finite numbers.
+
+        Examples
+        --------
+        >>> bf.DistributedLoad(beam, lambda s: (0.0, -500.0 * s)).values(np.array([1.0, 2.0]))
+        array([[    0.,  -500.],
+               [    0., -1000.]])
         """
         if not callable(self.vector):
             return np.tile(self.vector, (len(arc_length), 1))
@@ -166,13 +188,31 @@ class Pressure(LineLoad):
         return not callable(self.value)
 
     def values_of(self, name: str, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure times width (n,) [N/m] at arc lengths (n,) [m]. Raises InputError."""
+        """Return the pressure times width (n,) [N/m] at arc lengths (n,) [m], see `LineLoad.values_of`."""
         return self.values(arc_length)
 
     def values(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the pressure times width (n,) [N/m] at arc lengths (n,) [m].
+        """Return the pressure times width at given arc lengths.
 
-        Raises InputError if a function does not return a finite number.
+        Parameters
+        ----------
+        arc_length : array, [m], (n,)
+            Arc lengths of the reference from the start.
+
+        Returns
+        -------
+        array, [N/m], (n,)
+            Pressure times width, without the factor of the load.
+
+        Raises
+        ------
+        InputError
+            If a function does not return a finite number.
+
+        Examples
+        --------
+        >>> bf.Pressure(beam, lambda s: -500.0 * s).values(np.array([1.0, 2.0]))
+        array([ -500., -1000.])
         """
         if not callable(self.value):
             return np.full(len(arc_length), self.value)
@@ -180,7 +220,7 @@ class Pressure(LineLoad):
         return np.array([finite(f"{name} at arc length {s:g}", called(name, function, s)) for s in arc_length.tolist()])
 
     def forces(self, arc_length: np.ndarray) -> np.ndarray:
-        """Return the forces (0, p) [N/m] along and across the deformed axis (n, 2) at arc lengths (n,) [m]."""
+        """Return the forces (0, p) [N/m] along and across the deformed axis (n, 2), see `LineLoad.forces`."""
         return np.column_stack([np.zeros(len(arc_length)), self.values(arc_length)])
 
 

@@ -152,9 +152,22 @@ class Model(ModelOutputs):
         return units_of(self.units)
 
     def unit(self, unit: str) -> str:
-        """Return the name of the model's unit for an SI unit, such as "MPa" for "Pa" in a model in N and mm.
+        """Return the name of the model's unit for an SI unit.
 
-        unit: SI unit, such as "Pa", "N m" or "kg"; a name that is no SI unit is returned as it is.
+        Parameters
+        ----------
+        unit : str
+            SI unit, such as "Pa", "N m" or "kg".
+
+        Returns
+        -------
+        str
+            The unit of the model; a name that is no SI unit is returned as it is.
+
+        Examples
+        --------
+        >>> bf.Model([beam], units="N, mm").unit("Pa")
+        'MPa'
         """
         return self._units.of(unit)
 
@@ -222,7 +235,27 @@ class Model(ModelOutputs):
     def number_of(self, beam: Beam) -> int:
         """Return the number of a beam, counted from 0.
 
-        Raises InputError for anything but a beam, UnknownPointError for a beam that is not in the model.
+        Parameters
+        ----------
+        beam : Beam
+            A beam of the model.
+
+        Returns
+        -------
+        int
+            Its place among `beams`.
+
+        Raises
+        ------
+        InputError
+            For anything but a beam.
+        UnknownPointError
+            For a beam that is not in the model.
+
+        Examples
+        --------
+        >>> model.number_of(beam)
+        0
         """
         if not isinstance(beam, Beam):
             raise InputError(f"a beam is asked for, one of the model's beams, got {shown(beam)}")
@@ -236,7 +269,27 @@ class Model(ModelOutputs):
     def mesh_of(self, point: Point) -> BeamMesh:
         """Return the mesh that a point lies on.
 
-        Raises InputError for anything but a point, UnknownPointError for one on a beam that is not in the model.
+        Parameters
+        ----------
+        point : Point
+            A point of a beam of the model.
+
+        Returns
+        -------
+        BeamMesh
+            The mesh of its beam.
+
+        Raises
+        ------
+        InputError
+            For anything but a point.
+        UnknownPointError
+            For a point on a beam that is not in the model.
+
+        Examples
+        --------
+        >>> model.mesh_of(beam.end).elements
+        4
         """
         if not isinstance(point, Point):
             raise InputError(f"a point is asked for, such as beam.end or beam.at(0.5), got {shown(point)}")

@@ -213,7 +213,23 @@ class Sweep:
         return plot_sweep(self, value, over, path)
 
     def to_csv(self, path: str | PathLike[str]) -> None:
-        """Write the table of all points with all digits, without solutions, to the file `path`. Raises FileError."""
+        """Write the table of all points with all digits, without solutions.
+
+        Parameters
+        ----------
+        path : path
+            File to write.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+
+        Examples
+        --------
+        >>> results = bf.sweep(lambda force, length: {"moment": force * length}, force=[1.0, 2.0], length=[3.0, 5.0])
+        >>> results.to_csv("sweep.csv")
+        """
         tabulate.write_csv(path, *self._rows())
 
 

@@ -69,7 +69,7 @@ class _Body:
     def imposed(self, free: np.ndarray, reference: Axis) -> tuple[np.ndarray, np.ndarray]:
         """Return the change of the strain measures by free strains.
 
-        For factors f_i of the free strains, they are the sum of f_i first_i + f_i f_j second_ij over all i and j.
+        For factors f_i of the free strains, it is the sum of f_i first_i + f_i f_j second_ij over all i and j.
 
         The free body has r0' + stretch n + shear t, d (1 + thickness), d' (1 + thickness) - curvature n. The measures
         are quadratic in these vectors, so complex steps give both parts without subtraction.

@@ -63,17 +63,29 @@ def test_beside_what_jumps_to_and_fro_smooth_coordinates_are_extrapolated_as_alo
     assert errors[0] < errors[1]
 
 
-@pytest.mark.parametrize("ratios", [(1e-3, 0.25), (0.25, 1e-3), (1e-2, 1e-2), (1e-4, 0.4)])
-@pytest.mark.parametrize("first", [1e-3, 1e-5, 3e-6])
-def test_what_is_left_of_the_error_is_small_where_ratios_of_corrections_take_turns(ratios, first):
-    """By the last ratio alone a step ended at 1.1e-11 with 4e-12 to come, where 1e-14 was meant."""
+def left_after_the_last_correction(first, ratios):
+    """Return the sum of the corrections, whose ratios are repeated, that come after the one which ends a step."""
     sizes = first * np.cumprod([1.0, *np.tile(ratios, 10)])
     rate, noise = np.array([0.1, 0.0]), np.zeros(1)
     for number, size in enumerate(sizes, start=1):
         last = sizes[number - 2] if number > 1 else 0.0
         if check_convergence(number, 0, 0, 0, size, last, 1.0, 1e-9, rate, noise) == 1:
-            break
-    assert sizes[number:].sum() < 1.1e-14
+            return sizes[number:].sum()
+    raise AssertionError("it does not end")
+
+
+@pytest.mark.parametrize("ratios", [(1e-3, 0.25), (0.25, 1e-3), (1e-2, 1e-2), (1e-4, 0.4)])
+@pytest.mark.parametrize("first", [1e-3, 1e-5, 3e-6])
+def test_what_is_left_of_the_error_is_small_where_ratios_of_corrections_take_turns(ratios, first):
+    """By the last ratio alone a step ended at 1.1e-11 with 4e-12 to come, where 1e-14 was meant."""
+    assert left_after_the_last_correction(first, ratios) < 1.1e-14
+
+
+@pytest.mark.parametrize("first", [1e-3, 4e-4, 1e-5, 1e-8])
+@pytest.mark.parametrize("ratios", [(4e-6, 0.4), (1e-8, 0.4), (5e-4, 0.25)])
+def test_a_single_small_ratio_does_not_end_a_step_with_much_left(first, ratios):
+    """The second correction of 2e-9, by a ratio of 4e-6, ended a step with 6e-10 to come."""
+    assert left_after_the_last_correction(first, ratios) < 1e-10 * ratios[1] * 1.1
 
 
 def test_coordinates_without_weight_do_not_choose_the_order():

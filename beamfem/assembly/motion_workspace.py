@@ -82,7 +82,7 @@ def _whole(system: System) -> np.ndarray:
 
 @contextmanager
 def motion_workspace(system: System) -> Iterator[MotionWorkspace]:
-    """Lend a workspace that no other motion uses; its contents are arbitrary."""
+    """Lend a workspace that no other motion uses; what motions write into it is arbitrary at first."""
     try:
         space = system.spare_motions.pop()
     except IndexError:

@@ -47,7 +47,7 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
     kept, mean, fraction = 1.0 / (1.0 - alpha_m), alpha_m / (1.0 - alpha_m), (1.0 - alpha_f) / (1.0 - alpha_m)
     length, lanes, now, then = padded(n), as_rows(differences), as_rows(state), as_rows(before)
     whole = first + (end - first) // WIDTH * WIDTH
-    alternating, tested, last = 0.0 <= order < MOST, length * min(int(order), 1), length * int(order)
+    alternating, last = 1.0 <= order < MOST, length * int(order)
     for i in range(first, whole, WIDTH):
         p, v, a, mean_a = now[i], now[n + i], now[2 * n + i], now[3 * n + i]
         then[i], then[n + i], then[2 * n + i], then[3 * n + i] = p, v, a, mean_a
@@ -55,7 +55,7 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         for k in range(int(order)):
             ahead += lanes[k * length + i]
         if alternating != 0:
-            test = alternates(lanes[tested + i], lanes[tested + length + i])
+            test = alternates(lanes[length + i], lanes[2 * length + i])
             ahead -= where_negative(test, lanes[last + i], 0.0)
         if order < 0.0:
             ahead = (-(v / h + (0.5 - beta) * mean_a) / beta - kept * a + mean * mean_a) / fraction
@@ -71,7 +71,7 @@ def predict_part(first, end, n, prescribed, order, state, before, differences, d
         for k in range(int(order)):
             change += differences[k * length + i]
         if alternating != 0:
-            sign = alternates(differences[tested + i], differences[tested + length + i])
+            sign = alternates(differences[length + i], differences[2 * length + i])
             change -= where_negative(sign, differences[last + i], 0.0)
         if order < 0.0:
             change = (-(last_v / h + (0.5 - beta) * last_mean) / beta - kept * last_a + mean * last_mean) / fraction
@@ -91,8 +91,8 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
 
     The acceleration is extrapolated by a polynomial through the last steps: order 0 keeps it constant, order 1 is
     linear, and so on; order -1 keeps p constant instead, which adds no strain if stiff parts oscillate within a step.
-    Where the error of the last polynomials changed its sign from step to step, as that of parts does whose period is
-    shorter than a few steps, it is expected to change it again.
+    Where the second difference changed its sign in the last step, as that of parts does whose period is shorter than a
+    few steps, the error of orders 1 and 2 is expected to change its sign again.
     values (3, prescribed): of p, p' and p''; differences: see `difference_rows`, at least `order` of them known, the
     others zero; rule: step, alpha_m, alpha_f, gamma, beta.
     """
@@ -100,13 +100,12 @@ def predict(n, prescribed, order, state, before, differences, dofs, values, rule
 
 
 @inlined
-def errors_of_orders(first, second, third, before, second_before, third_before):
-    """Return the errors of the accelerations that orders 0 to 3 predicted, from differences now and a step before."""
-    low, high = alternates(before, second_before), alternates(second_before, third_before)
+def errors_of_orders(second, third, second_before, third_before):
+    """Return the errors of the accelerations that orders 1 to 3 predicted, from differences now and a step before."""
+    test = alternates(second_before, third_before)
     return (
-        first + where_negative(low, before, 0.0),
-        second + where_negative(high, second_before, 0.0),
-        third + where_negative(high, third_before, 0.0),
+        second + where_negative(test, second_before, 0.0),
+        third + where_negative(test, third_before, 0.0),
         third - third_before,
     )
 
@@ -132,9 +131,9 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
         largest_change = larger(largest_change, change * factor)
         one, two, three = lanes[i], lanes[length + i], lanes[2 * length + i]
         second, third = change - one, change - one - two
-        by_0, by_1, by_2, by_3 = errors_of_orders(change, second, third, one, two, three)
+        by_1, by_2, by_3 = errors_of_orders(second, third, two, three)
         lanes[i], lanes[length + i], lanes[2 * length + i] = change, has_second * second, has_third * third
-        by_0, by_1, by_2, by_3 = factor * by_0, factor * by_1, factor * by_2, factor * by_3
+        by_0, by_1, by_2, by_3 = factor * change, factor * by_1, factor * by_2, factor * by_3
         sum_0, sum_1, sum_2, sum_3 = sum_0 + by_0 * by_0, sum_1 + by_1 * by_1, sum_2 + by_2 * by_2, sum_3 + by_3 * by_3
     lanes[errors], lanes[errors + WIDTH], lanes[errors + 2 * WIDTH], lanes[errors + 3 * WIDTH] = (
         sum_0,
@@ -149,11 +148,9 @@ def complete_part(part, first, end, n, prescribed, state, before, differences, i
         d_1, d_2, d_3 = differences[i], differences[length + i], differences[2 * length + i]
         differences[i], differences[length + i] = difference, has_second * (difference - d_1)
         differences[2 * length + i] = has_third * (difference - d_1 - d_2)
-        error_0, error_1, error_2, error_3 = errors_of_orders(
-            difference, difference - d_1, difference - d_1 - d_2, d_1, d_2, d_3
-        )
+        error_1, error_2, error_3 = errors_of_orders(difference - d_1, difference - d_1 - d_2, d_2, d_3)
         own = at(differences, errors + i - whole)
-        own[0] += (inverse_scale[i] * error_0) ** 2
+        own[0] += (inverse_scale[i] * difference) ** 2
         own[WIDTH] += (inverse_scale[i] * error_1) ** 2
         own[2 * WIDTH] += (inverse_scale[i] * error_2) ** 2
         own[3 * WIDTH] += (inverse_scale[i] * error_3) ** 2

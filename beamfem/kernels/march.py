@@ -119,7 +119,7 @@ def march(system, solver, calls):
         size, first_size, iteration, far = 0.0, 0.0, 0, 0
         full, fresh, done = 0, statistics[4] < 0.0, 0
         rate = at(space, n)
-        rate[0] = max(statistics[4], 1e-4) ** 0.8 if not fresh else 1.0
+        rate[0] = max(statistics[4], motion_steps.SMALLEST_RATE) ** 0.8 if not fresh else 1.0
         while iteration < limits[1]:
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0

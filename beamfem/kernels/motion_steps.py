@@ -14,6 +14,9 @@ _REMAINDER = 1e-5
 # is of the size of the time integration error. Errors left in every step add up, and those of p' are larger by 1 / h,
 # so they must decrease with the step as well.
 _NEGLECTED = 1e-8
+# ratio of corrections that is expected at least where it is not known: one that is smaller is chance, as the next one
+# may belong to directions of which it says nothing
+SMALLEST_RATE = 1e-4
 FAR = 0.01  # of the model: after a larger correction, elements are checked for inversion
 _LARGEST = 1e3  # of the model: a larger correction means divergence
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
@@ -93,7 +96,7 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
                 return 1 if size <= noise[0] else 2
-        rate[1] = rate[0] if iteration > 2 else 0.0
+        rate[1] = rate[0] if iteration > 2 else SMALLEST_RATE
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
         if size <= tolerance:

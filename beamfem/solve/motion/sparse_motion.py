@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
 from beamfem.kernels.extrapolation import complete, difference_rows, padded, predict
-from beamfem.kernels.motion_steps import FAR, check_convergence, correct, count_turns
+from beamfem.kernels.motion_steps import FAR, SMALLEST_RATE, check_convergence, correct, count_turns
 from beamfem.kernels.rollers import stay_on_planes
 from beamfem.linalg.tangent import Factorised
 from beamfem.solve.motion.band_motion import Saving
@@ -97,7 +97,7 @@ class SparseMotion:
         """
         statistics, most = self.statistics, self.iterations if full else min(_MOST, self.iterations)
         free = self.system.free_dofs
-        rate = 1.0 if fresh else max(statistics[4], 1e-4) ** 0.8
+        rate = 1.0 if fresh else max(statistics[4], SMALLEST_RATE) ** 0.8
         size, first_size, done, iteration, far = 0.0, 0.0, False, 0, 0
         stresses: tuple[np.ndarray, ...] | None = None
         state[:] = before

@@ -1,7 +1,7 @@
 """A model as plain numbers, lists and names for JSON, and back."""
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import MISSING, fields, replace
 from typing import Any
 
 import numpy as np
@@ -204,4 +204,16 @@ def _read(value: Any, beams: list[Beam], functions: list[Sampled]) -> Any:
     if name not in _CLASSES and ":" not in name:
         raise InputError(f"this version of beamfem knows no {name}; a newer one may")
     members = {key: _read(item, beams, functions) for key, item in value.items() if key != "class"}
-    return made(name, members) if ":" in name else _CLASSES[name](**members)
+    return made(name, members) if ":" in name else _of_package(name, members)
+
+
+def _of_package(name: str, members: dict[str, Any]) -> Any:
+    """Return a part of the package. Raises InputError if its class had other members in the version that saved it."""
+    own = fields(_CLASSES[name])
+    unknown = set(members).difference(field.name for field in own)
+    if unknown:
+        raise InputError(f"another version of beamfem saved it: a {name} has no {min(unknown)!r} in this version")
+    for field in own:
+        if field.name not in members and field.default is MISSING and field.default_factory is MISSING:
+            raise InputError(f"another version of beamfem saved it: a {name} had no {field.name!r} in that version")
+    return _CLASSES[name](**members)

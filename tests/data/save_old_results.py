@@ -4,8 +4,8 @@
     cd /tmp/old_version && PYTHONPATH=. python .../tests/data/save_old_results.py before_rooms OUT
 
 The files beside this script, compressed with gzip, are from two commits: `before_rooms` from f90d608, shortly before
-the package was divided into rooms; `first` from 610b2c2, the first that could save. A cantilever and a motion of 9373791 loaded as well. These
-versions need numba; it was 0.68.1, with NumPy 2.4.6, SciPy 1.17.1 and h5py 3.16.0.
+the package was divided into rooms; `first` from 610b2c2, the first that could save. A cantilever and a motion of
+9373791 loaded as well. These versions need numba; it was 0.68.1, with NumPy 2.4.6, SciPy 1.17.1 and h5py 3.16.0.
 """
 
 import json

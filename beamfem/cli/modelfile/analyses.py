@@ -19,7 +19,7 @@ from beamfem.model.model import Model
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.motion.dynamics import simulate
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme
-from beamfem.solve.motion.own_steps import Integrator
+from beamfem.solve.motion.own_step import Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.stability.buckling import solve_buckling
 from beamfem.solve.statics.load_steps import SAME, Snap

@@ -8,10 +8,11 @@ from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.tangent import SMALLEST_PIVOT
+from beamfem.solve.motion.limits import not_converged
+from beamfem.solve.motion.saving import Saving
 from beamfem.solve.motion.second_thread import routines
 
 _INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
-Saving = tuple[np.ndarray, int, int, np.ndarray, np.ndarray, np.ndarray]
 
 
 class BandMotion:
@@ -32,6 +33,11 @@ class BandMotion:
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
 
+    @property
+    def why(self) -> str:
+        """Why a step has failed."""
+        return not_converged(self._statistics)
+
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
@@ -39,7 +45,6 @@ class BandMotion:
         (steps, 3, n), number of the first step, and number of steps per row; then x and y (m, 2) of vectors whose
         rotation is counted, their rotation (m,) [rad] and that of the rows (steps, m).
         """
-        saved, first, every, counted, turned_by, saved_turns = saving
         space = self._space
         body, values, imposing = _sample_loads(self._system, times)
         if space.loads is not None:
@@ -54,10 +59,10 @@ class BandMotion:
         assembler.place_at(states, space.residual, space.rows, space.arrays[record.ROWS].size)
         arrays = {
             record.PRESCRIBED_VALUES: prescribed,
-            record.SAVED: saved,
-            record.TURN_TABLE: counted,
-            record.TURNED_BY: turned_by,
-            record.SAVED_TURNS: saved_turns,
+            record.SAVED: saving.states,
+            record.TURN_TABLE: saving.pairs,
+            record.TURNED_BY: saving.turned,
+            record.SAVED_TURNS: saving.rows_turned,
             record.LOAD_VALUES: load_addresses,
             record.NATURALS: natural,
         }
@@ -70,9 +75,9 @@ class BandMotion:
             record.LOADS_VARY: int(varying),
             record.NATURALS_VARY: int(varying),
             record.STEPS: len(prescribed),
-            record.FIRST_STEP: first,
-            record.EVERY: every,
-            record.TURN_COUNT: len(counted),
+            record.FIRST_STEP: saving.first,
+            record.EVERY: saving.every,
+            record.TURN_COUNT: len(saving.pairs),
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value

@@ -20,7 +20,7 @@ from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
-from beamfem.solve.motion.own_steps import Integrator, refuse_what_own_steps_lack
+from beamfem.solve.motion.own_step import Integrator, refuse_what_own_steps_lack
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import name_unresolved

@@ -19,12 +19,13 @@ from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.integrators import Scheme
-from beamfem.solve.motion.own_steps import Integrator, OwnSteps
-from beamfem.solve.motion.sparse_motion import SparseMotion
+from beamfem.solve.motion.limits import ITERATIONS, TOLERANCE
+from beamfem.solve.motion.own_step import Integrator, OwnStep
+from beamfem.solve.motion.saving import Saving
+from beamfem.solve.motion.single_steps import SingleSteps
+from beamfem.solve.motion.sparse_step import SparseStep
 from beamfem.solve.motion.time_steps import Stretch
 
-ITERATIONS = 25
-_TOLERANCE = 1e-9
 _CHUNK_SECONDS = 0.25
 _FIRST_CHUNK = 200_000  # coordinates times steps
 
@@ -114,15 +115,14 @@ def march(
                     chunk = min(size, steps - begun) if part.whole else steps
                     rows = slice(begun, begun + chunk)
                     which = (done + 1, record.every) if part.whole else (1, steps + 1)
-                    saving = (record.states, *which, *counting)
+                    saving = Saving(record.states, *which, *counting)
                     started = clock.perf_counter()
                     completed = motion.advance(state, prescribed[row + 1 : row + chunk + 1], load_times[rows], saving)
                     spent = clock.perf_counter() - started
                     row, begun = row + completed, begun + completed
                     done += completed if part.whole else 0
                     if completed < chunk:
-                        why = motion.why if isinstance(motion, OwnSteps) else _why(statistics)
-                        failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), why)
+                        failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), motion.why)
                     if part.whole and completed:
                         last.reach(done, state[:3], turned)
                         report(float(part.times[begun]))
@@ -146,25 +146,18 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 @contextmanager
 def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
-) -> Iterator[BandMotion | SparseMotion | OwnSteps]:
+) -> Iterator[BandMotion | SingleSteps]:
     """Provide the object that takes the steps of a stretch."""
     if not isinstance(integrator, Scheme):
-        yield OwnSteps(system, integrator, part.loads_from, statistics)
+        yield SingleSteps(system, OwnStep(system, integrator, part.loads_from, statistics))
         return
-    rule, limits = integrator.rule(part.step), np.array([_TOLERANCE, ITERATIONS])
+    rule, limits = integrator.rule(part.step), np.array([TOLERANCE, ITERATIONS])
     # many steps in one compiled call commit no history in between
     if system.unknowns.pattern is None and not len(system.history.numbers):
         with motion_workspace(system) as space:
             yield BandMotion(system, space, rule, limits, statistics)
     else:
-        yield SparseMotion(system, rule, limits, statistics)
-
-
-def _why(statistics: np.ndarray) -> str:
-    return (
-        f"the last correction was {statistics[2]:.2e} of the model after {ITERATIONS} iterations at most. "
-        "A smaller step may help"
-    )
+        yield SingleSteps(system, SparseStep(system, rule, limits, statistics))
 
 
 def _keeps_rates(scheme: Scheme) -> bool:

@@ -12,12 +12,10 @@ from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
-from beamfem.kernels.motion_steps import count_turns
 from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, turning
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.solve.motion.band_motion import Saving
 from beamfem.validation import shown
 
 
@@ -181,50 +179,41 @@ class Integrator(Protocol):
         ...
 
 
-class OwnSteps:
-    """Marches with a user-defined integrator; why: the reason of a failure."""
+class OwnStep:
+    """A step of a user-defined integrator; why: the reason of a failure."""
+
+    dt = 0.0
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
         self.system, self.integrator, self.time = system, integrator, begin
         self.motion, self.why = EquationsOfMotion(system, statistics[:1]), ""
 
-    def _begin(self, state: np.ndarray) -> State:
-        p, v, a, _ = state.copy()
-        return State(p, v, a, self.time, self.system.model)
-
-    def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
-        """March p, p', p'' (4, n) in place; return how many steps were completed; see `BandMotion.advance`."""
-        saved, first, every, counted, turned, saved_turns = saving
-        for step, time in enumerate(times.tolist()):
-            before = state.copy()
-            try:
-                reached = self.integrator.step(self.motion, self._begin(before), time)
-            except (ConvergenceError, LinAlgError) as error:
-                self.why = str(error)
-                return step
-            except Exception as error:
-                error.add_note(f"raised by step of {type(self.integrator).__name__}, in the step to {time:.6g} s")
-                raise
-            if not isinstance(reached, State) or reached.model is not self.system.model:
-                raise InputError(
-                    f"step of {type(self.integrator).__name__} must return a State of the model, such as "
-                    f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
-                )
-            values = np.array([reached.p, reached.v, reached.a])
-            if not np.isfinite(values).all():
-                self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
-                return step
-            state[:3] = values
-            state[:3, self.system.prescribed_dofs] = prescribed[step]
-            state[3] = state[2]
-            self.time = time
-            motion = state[0], state[1], state[2]
-            state[0] = self.system.history.committed(motion, time, self.system.imposing(time))
-            count_turns(len(counted), counted, before, state, turned)
-            if (first + step) % every == 0:
-                saved[(first + step) // every] = state[:3]
-                saved_turns[(first + step) // every] = turned
-        return len(times)
+    def take(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
+        """See `single_steps.Step`."""
+        p, v, a, _ = before.copy()
+        begin = State(p, v, a, self.time, self.system.model)
+        try:
+            reached = self.integrator.step(self.motion, begin, time)
+        except (ConvergenceError, LinAlgError) as error:
+            self.why = str(error)
+            return False
+        except Exception as error:
+            error.add_note(f"raised by step of {type(self.integrator).__name__}, in the step to {time:.6g} s")
+            raise
+        if not isinstance(reached, State) or reached.model is not self.system.model:
+            raise InputError(
+                f"step of {type(self.integrator).__name__} must return a State of the model, such as "
+                f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
+            )
+        values = np.array([reached.p, reached.v, reached.a])
+        if not np.isfinite(values).all():
+            self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
+            return False
+        state[:3] = values
+        state[:3, self.system.prescribed_dofs] = prescribed
+        state[3] = state[2]
+        self.time = time
+        return True
 
 
 def refuse_what_own_steps_lack(system: System) -> None:

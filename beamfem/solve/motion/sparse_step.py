@@ -9,18 +9,18 @@ from scipy.linalg import LinAlgError
 from beamfem.assembly.equations import linearise, predicted_stresses, residual
 from beamfem.assembly.system import System
 from beamfem.kernels.extrapolation import complete, difference_rows, padded, predict
-from beamfem.kernels.motion_steps import FAR, SMALLEST_RATE, check_convergence, correct, count_turns
+from beamfem.kernels.motion_steps import FAR, SMALLEST_RATE, check_convergence, correct
 from beamfem.kernels.rollers import stay_on_planes
 from beamfem.linalg.tangent import Factorised
-from beamfem.solve.motion.band_motion import Saving
+from beamfem.solve.motion.limits import not_converged
 
 # Simplified Newton iterations: the number after which a step starts again with the full Newton method; the number, and
 # the rate of convergence, above which the next step gets a new tangent.
 _MOST, _MANY, _SLOW = 24, 16, 0.5
 
 
-class SparseMotion:
-    """Marches through time steps; keeps the factors of its tangent between calls.
+class SparseStep:
+    """A step of the generalized-alpha method with a sparse tangent, whose factors it keeps for the next one.
 
     rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction relative to the scale of a
     coordinate, largest number of iterations; statistics (10,): see `kernels.march.march`.
@@ -37,33 +37,23 @@ class SparseMotion:
         self._inverse_scale[system.free_dofs] = 1.0 / system.scale[system.free_dofs]
         self._differences, self._size, self._number = np.zeros(difference_rows(size)), size, np.zeros(2)
         self._change = np.zeros(padded(size))
-        self._multipliers, self._history, self._dt = system.connectors.multipliers, system.history, float(h)
+        self._multipliers, self.dt = system.connectors.multipliers, float(h)
         self._factors: Factorised | None = None
 
-    def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
-        """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
+    @property
+    def why(self) -> str:
+        """Why a step has failed."""
+        return not_converged(self.statistics)
 
-        prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s]; saving: see
-        `BandMotion.advance`.
-        """
-        saved, first, every, counted, turned, saved_turns = saving
+    def take(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
+        """See `single_steps.Step`."""
+        if not self._solve(state, before, prescribed, time):
+            return False
         dofs, statistics = self.system.prescribed_dofs, self.statistics
-        for step, time in enumerate(times):
-            before = state.copy()
-            if not self._solve(state, before, prescribed[step], float(time)):
-                state[:] = before
-                return step
-            differences, scale, order = self._differences, self._inverse_scale, statistics[6:8]
-            change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, order)
-            statistics[8] = change / self.coefficients[2]
-            state[0] = self._history.committed(
-                (state[0], state[1], state[2]), float(time), self.system.imposing(float(time)), self._dt
-            )
-            count_turns(len(counted), counted, before, state, turned)
-            if (first + step) % every == 0:
-                saved[(first + step) // every] = state[:3]
-                saved_turns[(first + step) // every] = turned
-        return len(times)
+        differences, scale, order = self._differences, self._inverse_scale, statistics[6:8]
+        change = complete(self._size, len(dofs), state, before, differences, scale, dofs, self.rule, order)
+        statistics[8] = change / self.coefficients[2]
+        return True
 
     def _solve(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
         """Iterate for the end of a step: with the last tangent, with a new one, and then with one for each iterate.
@@ -116,7 +106,7 @@ class SparseMotion:
                 self._change[free] = right
                 rates = state[1], self.coefficients
                 step = self._change[: self._size]
-                stresses = predicted_stresses(self.system, state[0], step, time, rates=rates, dt=self._dt)
+                stresses = predicted_stresses(self.system, state[0], step, time, rates=rates, dt=self.dt)
             scale = self._inverse_scale
             last, size = (
                 size,
@@ -166,9 +156,9 @@ class SparseMotion:
         p, v, a, _ = state
         if renew or self._factors is None:
             self._factors = None  # frees memory before the new factorisation
-            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self._dt)
+            unbalanced, tangent = linearise(self.system, p, v, a, time, self.coefficients, stresses, None, self.dt)
             self._factors = tangent.factorised(self.system.rotated)
             self.statistics[5] += 1
         else:
-            unbalanced = residual(self.system, p, v, a, time, self._dt)
+            unbalanced = residual(self.system, p, v, a, time, self.dt)
         return self._factors.solve(-unbalanced[self.system.free_dofs])

@@ -14,22 +14,12 @@ from beamfem.element.field_checks import require_field
 from beamfem.element.fields import Cubic, Field, Lagrange
 from beamfem.element.forces import ElasticLine, Forces
 from beamfem.errors import InputError
-from beamfem.kernels.block import (
-    ELASTIC_LINE,
-    GRADIENTS,
-    GREEN_LAGRANGE,
-    ROTATION,
-    SHEAR_RIGID,
-    STRETCH,
-    STRUCTURAL,
-)
+from beamfem.kernels import block
 from beamfem.quadrature import gauss
 from beamfem.validation import one_of, optional, shown, text
 
 Integration = Literal["full", "reduced", "lobatto"]
 _Value = TypeVar("_Value")
-# codes of nodal coordinates and of strain measures
-_NODES, _MEASURES = (GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID), (GREEN_LAGRANGE, STRUCTURAL, ELASTIC_LINE)
 _LASTING = frozenset((Cubic, Lagrange, *get_args(Coordinates), *get_args(Forces)))
 
 
@@ -75,7 +65,10 @@ class Element:
     def __post_init__(self) -> None:
         one_of("integration", self.integration, ("full", "reduced", "lobatto", None))
         optional(text)("label of an element", self.label)
-        for name, kind, codes in (("coordinates", Coordinates, _NODES), ("forces", Forces, _MEASURES)):
+        for name, kind, codes in (
+            ("coordinates", Coordinates, block.COORDINATES),
+            ("forces", Forces, block.MEASURES),
+        ):
             part = getattr(self, name)
             if not isinstance(part, kind):
                 raise InputError(f"{name} of an element must be one of {kind}, got {shown(part)}")

@@ -10,11 +10,13 @@ ROTATION = 1
 STRETCH = 2
 SHEAR_RIGID = 3
 ROTATED_GRADIENTS = 4  # gradients, with r_y rotated by the reference angle of the node
+COORDINATES = (GRADIENTS, ROTATION, STRETCH, SHEAR_RIGID)  # those of elements
 
 # Strain measures, see `physics.measures`.
 GREEN_LAGRANGE = 0
 STRUCTURAL = 1
 ELASTIC_LINE = 2
+MEASURES = (GREEN_LAGRANGE, STRUCTURAL, ELASTIC_LINE)
 
 
 NO_HISTORY = np.empty((0, 0, 0), dtype=np.int64)

@@ -6,7 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.axis import Axis, dot
+from beamfem.element.axis import Axis
+from beamfem.element.body import strain_of_measures
 from beamfem.element.coordinates import Coordinates, Gradients
 from beamfem.element.structural import section_frame
 from beamfem.kernels.block import GREEN_LAGRANGE
@@ -288,7 +289,7 @@ def _over_section(section: CrossSection, material: Material | None, reference: A
     """Integrate a law over the section: stiffness (..., 6, 6) of (a, b, c, eyy, g0, g1).
 
     For a straight reference, the moments of the section are used; for a curved one, strips of the section and the
-    metric of the curved body, E = J^-T (E_convected) J^-1 with J = (r0' + y d', d).
+    metric of the curved body, see `body.in_section_frame`.
     """
     low, high = section.bounds
     if np.abs(reference.d_s).max(initial=0.0) * (high - low) < _STRAIGHT:
@@ -298,46 +299,18 @@ def _over_section(section: CrossSection, material: Material | None, reference: A
         return np.broadcast_to(total, (*reference.r_s.shape[:-1], 6, 6))
     result = np.zeros((*reference.r_s.shape[:-1], 6, 6))
     for part, heights, weights in section.strips(material):
-        stiffness = law(part)
-        for y, weight in zip(heights, weights, strict=True):
-            to_strain, volume = _cartesian(reference, y)
-            strain = to_strain @ sum(y**n * table for n, table in _POWERS.items())
-            result += weight * volume[..., None, None] * np.swapaxes(strain, -1, -2) @ stiffness @ strain
+        strain, volume = strain_of_measures(reference, np.asarray(heights))
+        each = np.swapaxes(strain, -1, -2) @ law(part) @ strain
+        result += ((weights * volume)[..., None, None] * each).sum(axis=-3)
     return result
 
 
 _STRAIGHT = 1e-13  # curvature times height below which a reference is straight to round-off
 
 
-def _table(places: list[tuple[int, int]]) -> np.ndarray:
-    table = np.zeros((3, 6))
-    for row, column in places:
-        table[row, column] = 1.0
-    return table
-
-
-# (exx, eyy, 2 exy) = sum over n of y^n times a table (3, 6) of (a, b, c, eyy, g0, g1)
-_POWERS = {0: _table([(0, 0), (1, 3), (2, 4)]), 1: _table([(0, 1), (2, 5)]), 2: _table([(0, 2)])}
 # each of (a, b, c, eyy, g0, g1) is one of (exx, eyy, 2 exy), with one power of y; moments for products of two of them
 _COMPONENT = np.array([0, 0, 0, 1, 2, 2])
 _MOMENT = np.add.outer((0, 1, 2, 0, 0, 1), (0, 1, 2, 0, 0, 1))
-
-
-def _cartesian(reference: Axis, y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the map (..., 3, 3) from convected strain (exx, eyy, 2 exy) to the section frame, and det J (...)."""
-    along, across = section_frame(reference.d)
-    first = reference.r_s + y * reference.d_s
-    j11, j21, j22 = dot(first, along), dot(first, across), np.linalg.norm(reference.d, axis=-1)
-    # d defines the second axis, so J = [[j11, 0], [j21, j22]]
-    k11, k22 = 1.0 / j11, 1.0 / j22
-    k21 = -j21 * k11 * k22
-    zero = np.zeros_like(k11)
-    rows = (
-        np.stack([k11**2, k21**2, k11 * k21], axis=-1),
-        np.stack([zero, k22**2, zero], axis=-1),
-        np.stack([zero, 2.0 * k21 * k22, k11 * k22], axis=-1),
-    )
-    return np.stack(rows, axis=-2), j11 * j22
 
 
 def _slope(at: Sequence[np.ndarray], change: Sequence[np.ndarray]) -> np.ndarray:

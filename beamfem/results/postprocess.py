@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from beamfem.brief import brief
-from beamfem.element import coordinates
+from beamfem.element import body, coordinates
 from beamfem.element.axis import Axis, cross, dot
 from beamfem.element.structural import section_frame
 from beamfem.model.distributions import distributions
@@ -244,22 +244,9 @@ def strain_at_axis(mesh: BeamMesh, now: Axis, element: np.ndarray, xi: np.ndarra
 
 
 def green_strain(now: Axis, reference: Axis, y: np.ndarray) -> Components:
-    """Return the Green-Lagrange strain (..., heights) at heights y (..., heights) [m] in the frame of the reference.
-
-    E = J^-T (F^T F - J^T J) J^-1 / 2 with F = (r0' + y d', d) and J the same of the reference.
-    """
-    first = reference.r_s[..., None, :] + y[..., None] * reference.d_s[..., None, :]
-    along, across = section_frame(reference.d)
-    j11, j21 = dot(first, along[..., None, :]), dot(first, across[..., None, :])
-    j22 = np.linalg.norm(reference.d, axis=-1)[..., None]
-    k11, k22 = 1.0 / j11, 1.0 / j22
-    k21 = -j21 * k11 * k22
-    r_x = now.r_s[..., None, :] + y[..., None] * now.d_s[..., None, :]
-    d, d0 = now.d[..., None, :], reference.d[..., None, :]
-    xx = 0.5 * (dot(r_x, r_x) - dot(first, first))
-    yy = np.broadcast_to(0.5 * (dot(d, d) - dot(d0, d0)), xx.shape)
-    xy = 0.5 * (dot(r_x, d) - dot(first, d0))
-    return Components(k11**2 * xx + 2.0 * k11 * k21 * xy + k21**2 * yy, k22**2 * yy, k22 * (k11 * xy + k21 * yy))
+    """Return the Green-Lagrange strain (..., heights) at heights y (heights,) [m] in the frame of the reference."""
+    xx, yy, xy = body.green_strain(now, reference, y)
+    return Components(xx, yy, 0.5 * xy)
 
 
 def strain_energy(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float = 0.0) -> np.ndarray:

@@ -1,6 +1,6 @@
 """User-defined methods of the generalized-alpha family, whose steps are compiled."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -79,6 +79,30 @@ def test_moving_supports_and_frames_are_taken():
     one, other = (bf.simulate(model, 0.1, 1e-3, scheme) for scheme in (Newmark(), bf.GeneralizedAlpha(1.0)))
     np.testing.assert_allclose(one.p, other.p, rtol=0.0, atol=1e-9)
     assert np.ptp(one.displacement(tie.end)[:, 0]) > 1e-3
+
+
+@pytest.mark.parametrize("scheme", [HHT(0.1), HHT(0.3), bf.GeneralizedAlpha(0.5)], ids=repr)
+def test_momentum_is_the_impulse_of_a_load_whose_kinks_lie_within_steps(scheme):
+    """Each kink begins a new stretch of steps."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(2), SECTION, RUBBER)
+    times, factors = [0.0, 0.0103, 0.0217, 0.0351], [0.0, 1.0, 0.4, 0.0]
+    pulse = bf.Interpolated(list(zip(times, factors, strict=True)))
+    model = bf.Model([beam], loads=[bf.PointForce(beam.at(0.5), (0.0, 2.0), amplitude=pulse)])
+    motion = bf.simulate(model, 0.05, 1e-3, scheme)
+    impulse = 2.0 * np.trapezoid(factors, times)
+    assert motion.linear_momentum()[-1, 1] == pytest.approx(impulse, rel=1e-9)
+
+
+def test_an_integrator_with_a_step_of_its_own_takes_it_whatever_its_rule_is():
+    @dataclass(frozen=True)
+    class Resting:
+        rule: object = (0.5, 0.5)
+
+        def step(self, motion, begin, end):
+            return replace(begin, at=end)
+
+    moved = bf.simulate(pendulum(), 0.01, 1e-3, Resting())
+    np.testing.assert_array_equal(moved.p, np.broadcast_to(moved.p[0], moved.p.shape))
 
 
 @pytest.mark.parametrize(

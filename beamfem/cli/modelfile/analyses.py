@@ -18,7 +18,7 @@ from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.motion.dynamics import simulate
-from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme
+from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme
 from beamfem.solve.motion.own_step import Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.stability.buckling import solve_buckling
@@ -140,7 +140,7 @@ class Dynamics:
         if self.integrator is not None:
             if self.rho_inf is not None:
                 raise InputError("integrator and rho_inf are given; rho_inf is that of the generalized-alpha method")
-            if not isinstance(self.integrator, Scheme) and not callable(getattr(self.integrator, "step", None)):
+            if not is_scheme(self.integrator) and not callable(getattr(self.integrator, "step", None)):
                 raise InputError(
                     "integrator must have step(motion, begin, end), as bf.Integrator describes it, or rule(step) as "
                     "bf.Scheme does"

@@ -17,7 +17,7 @@ from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
 from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
-from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, require_rule
+from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
 from beamfem.solve.motion.own_step import Integrator, refuse_what_own_steps_lack
@@ -89,14 +89,14 @@ def simulate(
     if step > duration:
         raise InputError(f"step ({step:g}) must not exceed duration ({duration:g})")
     integrator = GeneralizedAlpha() if integrator is None else integrator
-    user_defined = not isinstance(integrator, Scheme)
+    user_defined = not is_scheme(integrator)
     if isinstance(integrator, type) or (user_defined and not callable(getattr(integrator, "step", None))):
         raise InputError(
             "integrator must be a GeneralizedAlpha(rho_inf=...), an object with rule(step) as it has, or one with "
             f"step(motion, begin, end) as bf.Integrator describes it, got {shown(integrator)}"
         )
     system = system_to_solve(model, static=False)
-    if isinstance(integrator, Scheme):
+    if is_scheme(integrator):
         require_rule(integrator, step)
     else:
         refuse_what_own_steps_lack(system)

@@ -1,7 +1,7 @@
 """Time integrators."""
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeGuard
 
 import numpy as np
 
@@ -9,7 +9,6 @@ from beamfem.errors import InputError
 from beamfem.validation import convert, finite, shown
 
 
-@runtime_checkable
 class Scheme(Protocol):
     """A time integration method of the generalized-alpha family, such as Newmark's method or HHT-alpha.
 
@@ -32,6 +31,11 @@ class Scheme(Protocol):
             Time step [s], alpha_m and alpha_f below 1, gamma and beta above 0 [-].
         """
         ...
+
+
+def is_scheme(integrator: object) -> TypeGuard[Scheme]:
+    """Return whether an integrator is a rule; one with a step of its own is not, whatever its rule is."""
+    return callable(getattr(integrator, "rule", None)) and not callable(getattr(integrator, "step", None))
 
 
 def require_rule(scheme: Scheme, step: float) -> None:

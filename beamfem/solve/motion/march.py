@@ -4,6 +4,7 @@ import time as clock
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -18,7 +19,7 @@ from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.band_motion import BandMotion, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
-from beamfem.solve.motion.integrators import Scheme
+from beamfem.solve.motion.integrators import Scheme, is_scheme
 from beamfem.solve.motion.limits import ITERATIONS, TOLERANCE
 from beamfem.solve.motion.own_step import Integrator, OwnStep
 from beamfem.solve.motion.saving import Saving
@@ -92,17 +93,15 @@ def march(
     done, row, failed = 0, 0, None
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
-    relaxed = isinstance(integrator, Scheme) and (
-        bool(system.history.laws) or (damped and not _keeps_rates(integrator))
-    )
+    relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
-    size = max(_FIRST_CHUNK // system.model.size, 1) if isinstance(integrator, Scheme) else 1
+    size = max(_FIRST_CHUNK // system.model.size, 1) if is_scheme(integrator) else 1
     turned = record.turned[0].copy()
     counting = record.pairs, turned, record.turned
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             if number > 0:
-                if isinstance(integrator, Scheme):
+                if is_scheme(integrator):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
                 statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
@@ -126,7 +125,7 @@ def march(
                     if part.whole and completed:
                         last.reach(done, state[:3], turned)
                         report(float(part.times[begun]))
-                    if part.whole and spent < _CHUNK_SECONDS and isinstance(integrator, Scheme):
+                    if part.whole and spent < _CHUNK_SECONDS and is_scheme(integrator):
                         size *= 4
             if failed is not None:
                 break
@@ -148,8 +147,8 @@ def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
 ) -> Iterator[BandMotion | SingleSteps]:
     """Provide the object that takes the steps of a stretch."""
-    if not isinstance(integrator, Scheme):
-        yield SingleSteps(system, OwnStep(system, integrator, part.loads_from, statistics))
+    if not is_scheme(integrator):
+        yield SingleSteps(system, OwnStep(system, cast("Integrator", integrator), part.loads_from, statistics))
         return
     rule, limits = integrator.rule(part.step), np.array([TOLERANCE, ITERATIONS])
     # many steps in one compiled call commit no history in between
@@ -169,10 +168,11 @@ def _keeps_rates(scheme: Scheme) -> bool:
 def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
     """Add to p' the remaining contribution of the auxiliary acceleration a at the end of a stretch; rule: of its steps.
 
-    Over equal steps p' + h (1/2 - alpha_f) (a - p'') changes by h times the mean of p'' at both ends. With this
-    correction the same holds across stretches, and momentum is conserved.
+    Over equal steps p' + h (1 - alpha_m - gamma) (a - p'') changes by h times a mean of p'' at both ends, the
+    arithmetic one in methods of second order. With this correction the same holds across stretches, and momentum is
+    conserved.
     """
-    state[1] += rule[0] * (0.5 - rule[2]) * (state[3] - state[2])
+    state[1] += rule[0] * (1.0 - rule[1] - rule[3]) * (state[3] - state[2])
 
 
 def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:

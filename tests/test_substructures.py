@@ -9,8 +9,8 @@ import beamfem as bf
 from beamfem.assembly.system import system_of
 from beamfem.solve.newton import cut_chain, newton
 from beamfem.solve.newton.banded import BandProblem
+from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.newton.loop import iterate
 from beamfem.solve.newton.pivoted import PivotedProblem
 from beamfem.solve.newton.prescribed_step import PrescribedStep
 from beamfem.solve.newton.substructured import SubstructuredProblem
@@ -75,7 +75,9 @@ def both(model, settings=None):
     used = settings or Newton()
     given = system, system.reference, 1.0, used, PrescribedStep(system, system.reference, 1.0)
     with ThreadPoolExecutor(1) as pool:
-        return iterate(BandProblem(*given, None), used), iterate(SubstructuredProblem(*given, pool), used)
+        return find_equilibrium(BandProblem(*given, None), used), find_equilibrium(
+            SubstructuredProblem(*given, pool), used
+        )
 
 
 def assert_alike(model, settings=None):
@@ -196,7 +198,7 @@ def test_pivots_cost_no_iteration(monkeypatch):
         system, settings = system_of(model, static=True), bf.Newton()
         given = system, system.reference, 1.0, settings, PrescribedStep(system, system.reference, 1.0)
         compiled, general = (
-            iterate(problem, settings, 0) for problem in (BandProblem(*given, 0), PivotedProblem(*given))
+            find_equilibrium(problem, settings, 0) for problem in (BandProblem(*given, 0), PivotedProblem(*given))
         )
         assert general.first == pytest.approx(compiled.first, rel=1e-6)
         assert general.iterations == compiled.iterations

@@ -147,10 +147,14 @@ def march(system, solver, calls):
             done = _check_convergence(
                 iteration, full, new_tangent, far, size, last, first_size, limits[0], rate, at(statistics, 9)
             )
-            if done == 1 and (full != 0 or first_size > motion_steps.FAR) and _is_inside_out(s, call, system):
-                done = -1
-            fresh = done == 2
-            if done == 1:
+            if (
+                done == motion_steps.CONVERGED
+                and (full != 0 or first_size > motion_steps.FAR)
+                and _is_inside_out(s, call, system)
+            ):
+                done = motion_steps.DIVERGED
+            fresh = done == motion_steps.RENEW
+            if done == motion_steps.CONVERGED:
                 break
             if fresh:
                 done = 0

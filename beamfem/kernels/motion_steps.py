@@ -19,6 +19,8 @@ _NEGLECTED = 1e-8
 SMALLEST_RATE = 1e-4
 FAR = 0.01  # of the model: after a larger correction, elements are checked for inversion
 _LARGEST = 1e3  # of the model: a larger correction means divergence
+# how an iteration goes on: it has converged or diverged, or needs a new tangent
+CONVERGED, DIVERGED, RENEW = 1, -1, 2
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
@@ -76,7 +78,7 @@ def correct(n, unknown, first_free, state, right, free, inverse_scale, coefficie
 
 @routine("iiiiddddrr", "i")
 def check_convergence(iteration, full, own, far, size, last, changed, tolerance, rate, noise):
-    """Return whether a step has converged after a correction: 1 yes, 0 not yet, -1 diverged, 2 needs a new tangent.
+    """Return whether a step has converged after a correction: `CONVERGED`, `DIVERGED`, `RENEW`, or 0 to go on.
 
     full: whether every correction has a new tangent (Newton's method); own: whether this one has; far: whether the
     first correction was larger than `FAR`, so that its tangent says little about the state reached; size, last: sizes
@@ -86,26 +88,26 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
     size up to which corrections have been found, with a new tangent, to be round-off. Hairer and Wanner 1996, IV.8.
     """
     if not size < _LARGEST:
-        return -1
+        return DIVERGED
     if iteration > 1:
         if last <= tolerance and size <= tolerance:
             if own != 0:
                 if 0.5 * last < size <= 2.0 * last:
                     noise[0] = 2.0 * last
-                return 1
+                return CONVERGED
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
-                return 1 if size <= noise[0] else 2
+                return CONVERGED if size <= noise[0] else RENEW
         rate[1] = rate[0] if iteration > 2 else SMALLEST_RATE
         rate[0] = size / last if last > 0.0 else 0.0
     if full != 0:
         if size <= tolerance:
-            return 1
-        return -1 if iteration > 2 and size > _GROWTH * last else 0
+            return CONVERGED
+        return DIVERGED if iteration > 2 and size > _GROWTH * last else 0
     worst = rate[0] if iteration == 1 else max(rate[0], rate[1])
     small = worst * size <= (1.0 - worst) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
     if worst < 1.0 and small:
-        return 2 if far != 0 and own == 0 else 1
+        return RENEW if far != 0 and own == 0 else CONVERGED
     return 0
 
 

@@ -14,8 +14,8 @@ from beamfem.errors import ConvergenceError, InputError
 from beamfem.linalg.tangent import Factorised
 from beamfem.once import cached_property
 from beamfem.solve.newton.convergence import Balance, Correction, balance_of
+from beamfem.solve.newton.equilibrium import find_equilibrium
 from beamfem.solve.newton.iteration import Newton, Termination
-from beamfem.solve.newton.loop import iterate
 from beamfem.solve.start.functions_of_time import FunctionOfTime, functions_of_time
 
 _SLOPE_WIDTH = 1e-4  # of the load scale: differences of loads keep digits, and prescribed motions are smooth over it
@@ -156,7 +156,7 @@ class Continuation:
         which the iteration is given up; counted: whether to count the negative pivots of all iterations.
         """
         problem = _InPlane(self, start, stresses, normal, farthest, counted)
-        result = iterate(problem, self.newton)
+        result = find_equilibrium(problem, self.newton)
         return Corrected(problem.state, result.iterations, result.ended, problem.counts)
 
     def linearised(self, y: np.ndarray, like: np.ndarray) -> PathPoint:

@@ -14,7 +14,7 @@ from beamfem.solve.newton.prescribed_step import PrescribedStep
 
 
 class BandProblem:
-    """The equilibrium at a load factor, from the state `start` (n,); keep: see `loop.iterate`."""
+    """The equilibrium at a load factor, from the state `start` (n,); keep: see `find_equilibrium`."""
 
     counts_digits = True
 

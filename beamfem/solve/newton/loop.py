@@ -1,74 +1,43 @@
 """Newton's iteration, the same for every problem: linearise, correct, check."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-import numpy as np
 from scipy.linalg import LinAlgError
 
-from beamfem.assembly.system import System
-from beamfem.solve.newton.convergence import Balance, Correction, check_convergence
-from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
+from beamfem.solve.newton.convergence import Correction
+from beamfem.solve.newton.iteration import Termination
 
 
 class Problem(Protocol):
-    """Equations in a state, and the solution of their linearisation there."""
-
-    system: System
-    start: np.ndarray
-    counts_digits: bool  # whether the balance gives the number of reliable digits of the forces
-
-    @property
-    def state(self) -> np.ndarray:
-        """The state reached."""
-        ...
+    """Equations in a state: an equilibrium, a point of a path, the end of a time step."""
 
     def correct(self) -> Correction:
-        """Take the next correction, or several until one is small. Raises LinAlgError."""
+        """Linearise and take the next correction, or several until one is small. Raises LinAlgError."""
         ...
 
-    def balance(self) -> Balance:
-        """Return the balance of forces in the state reached."""
-        ...
-
-    def after_first(self) -> tuple[float, int]:
-        """Return the size of the first correction and the negative pivots of the second tangent."""
-        ...
-
-    def count_after_linear(self) -> int:
-        """Return the negative pivots of the tangent at the start with the stress resultants of a linear step.
-
-        -1 if it is singular. It is called at most once, if the second tangent has another count.
-        """
+    def check(self, correction: Correction) -> Termination | None:
+        """Return why the iteration ends after a correction, None if it goes on."""
         ...
 
 
-def iterate(problem: Problem, newton: Newton, keep: int | None = None) -> NewtonResult:
-    """Iterate and return the result.
+class Iterated(NamedTuple):
+    """Why an iteration ended, after how many corrections, and the negative pivots of the last tangent."""
 
-    keep: the count of negative pivots to keep; the iteration stops if the tangent has another one from the third
-    iteration on. The second tangent uses the stresses of a linear step, and the result only reports its count.
-    """
-    number = 0
-    while number < newton.iterations:
+    ended: Termination
+    iterations: int
+    negative_pivots: int
+
+
+def iterate(problem: Problem, most: int) -> Iterated:
+    """Correct the state of a problem until it says why to end, or `most` times."""
+    number = negative = 0
+    while number < most:
         try:
             correction = problem.correct()
         except LinAlgError:
-            return NewtonResult(problem.start, number + 1, Termination.SINGULAR)
+            return Iterated(Termination.SINGULAR, number + 1, negative)
         number, negative = correction.number, correction.negative_pivots
-        lost = keep not in (None, negative)
-        if number > 2 and lost:
-            return NewtonResult(problem.start, number, Termination.LOST, negative)
-        if correction.diverges:
-            return NewtonResult(problem.start, number, Termination.DIVERGED, negative)
-        if correction.is_small(newton):
-            balance = problem.balance()
-            ended = check_convergence(problem.system, balance, newton, correction)
-            if ended is not None and lost:
-                return NewtonResult(problem.start, number, Termination.LOST, negative)
-            if ended is not None:
-                first, second = problem.after_first()
-                state = problem.state if ended.good else problem.start
-                linear = problem.count_after_linear() if number > 1 and keep not in (None, second) else None
-                digits = balance.digits if problem.counts_digits else np.nan
-                return NewtonResult(state, number, ended, negative, digits, first, linear)
-    return NewtonResult(problem.state, number, Termination.EXHAUSTED)
+        ended = problem.check(correction)
+        if ended is not None:
+            return Iterated(ended, number, negative)
+    return Iterated(Termination.EXHAUSTED, number, negative)

@@ -9,9 +9,10 @@ import numpy as np
 
 from beamfem.assembly.equations import INERTIA, linearise, residual
 from beamfem.assembly.system import System
-from beamfem.linalg.lapack import LinAlgError
 from beamfem.linalg.tangent import UNROTATED
+from beamfem.solve.newton.convergence import Correction
 from beamfem.solve.newton.iteration import Newton, NewtonResult, Termination
+from beamfem.solve.newton.loop import iterate
 from beamfem.solve.newton.newton import solve_equilibrium
 
 _STEPS = 2000
@@ -82,30 +83,44 @@ def same_point(system: System, one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def _step(system: System, p: np.ndarray, load_factor: float, time: float) -> tuple[np.ndarray | None, int]:
-    """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations.
+    """Return the state after an implicit Euler step, None if Newton's method fails; and the iterations."""
+    step = _EulerStep(system, p, load_factor, time)
+    stepped = iterate(step, _ITERATIONS)
+    return step.state if stepped.ended.good else None, stepped.iterations
 
-    It also fails if the step is so long that several states are possible at its end, some in other potential wells.
+
+class _EulerStep:
+    """An implicit Euler step from a state p (n,).
+
+    It fails if it is so long that several states are possible at its end, some in other potential wells.
     """
-    free, moved, zeros = system.free_dofs, p.copy(), np.zeros(len(p))
-    mass = _mass(system, p, load_factor)
-    for iteration in range(1, _ITERATIONS + 1):
-        unbalanced, tangent = linearise(system, moved, zeros, zeros, load_factor, (1.0, 0.0, 1.0 / time))
-        right = -unbalanced[free] - mass @ (moved - p)[free] / time
-        try:
-            factors = tangent.factorised(system.rotated)
-            if iteration == 1 and system.symmetric and factors.negative_pivots > 0:
-                return None, iteration
-            change = factors.solve(right)
-        except LinAlgError:
-            return None, iteration
-        moved[free] += change
-        size = float(np.max(np.abs(change) / system.scale[free]))
-        if not size < 1e3:
-            return None, iteration
-        if size <= _CLOSE + 1e-3 * _size(system, moved - p) * (iteration > 1):
-            left = iteration > 1 and system.symmetric and factors.negative_pivots > 0
-            return None if left else moved, iteration
-    return None, _ITERATIONS
+
+    def __init__(self, system: System, p: np.ndarray, load_factor: float, time: float) -> None:
+        self.system, self.before, self.state, self.load_factor, self.time = system, p, p.copy(), load_factor, time
+        self.mass = _mass(system, p, load_factor)
+        self.number, self.size = 0, np.inf
+
+    def correct(self) -> Correction:
+        """Take the next correction. Raises LinAlgError."""
+        system, p, free, zeros = self.system, self.state, self.system.free_dofs, np.zeros(len(self.state))
+        unbalanced, tangent = linearise(system, p, zeros, zeros, self.load_factor, (1.0, 0.0, 1.0 / self.time))
+        factors = tangent.factorised(system.rotated)
+        change = factors.solve(-unbalanced[free] - self.mass @ (p - self.before)[free] / self.time)
+        p[free] += change
+        before, self.size = self.size, float(np.max(np.abs(change) / system.scale[free]))
+        self.number += 1
+        return Correction(self.number, self.size, before, factors.negative_pivots)
+
+    def check(self, correction: Correction) -> Termination | None:
+        """See `loop.Problem`."""
+        if correction.diverges:
+            return Termination.DIVERGED
+        unstable = self.system.symmetric and correction.negative_pivots > 0
+        moved = _size(self.system, self.state - self.before)
+        small = correction.size <= _CLOSE + (1e-3 * moved if correction.number > 1 else 0.0)
+        if unstable and (small or correction.number == 1):
+            return Termination.LOST
+        return Termination.CONVERGED if small else None
 
 
 def _mass(system: System, p: np.ndarray, load_factor: float) -> np.ndarray:

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamfem.model.load import factor
+from beamfem.model.model import Model
+from beamfem.model.returned import forces_of
 from beamfem.once import cached_property
 
 
@@ -36,3 +39,14 @@ class LoadsAt:
     def any(self) -> bool:
         """Whether any load is not zero."""
         return any(bool(array.any()) for array in self.arrays)
+
+
+def body_loads(model: Model, time: float, static: bool) -> np.ndarray:
+    """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
+    result = np.zeros((len(model.beams), 4))
+    for load in model.gravity:
+        result[:, :2] += np.array(load.vector) * factor(load, time, static)
+    for line in model.line_loads:
+        if line.uniform and line.axes == "plane":
+            result[model.number_of(line.beam), 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, static)
+    return result

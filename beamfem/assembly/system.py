@@ -14,7 +14,7 @@ from beamfem.assembly.element_group import make_group
 from beamfem.assembly.grounded_springs import grounded_springs
 from beamfem.assembly.history import History
 from beamfem.assembly.layout import Unknowns, order_unknowns
-from beamfem.assembly.loads_at import LoadsAt
+from beamfem.assembly.loads_at import LoadsAt, body_loads
 from beamfem.assembly.prescribed import PrescribedCoordinate, inclined_rollers, prescribed_coordinates
 from beamfem.assembly.pressures import pressures_have_potential
 from beamfem.assembly.row_errors import residual_errors, stress_errors
@@ -26,7 +26,6 @@ from beamfem.errors import InputError
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.model.load import factor
 from beamfem.model.model import Model
-from beamfem.model.returned import forces_of
 from beamfem.once import cached_property, shared_property
 from beamfem.validation import shown
 
@@ -40,11 +39,13 @@ class System:
     """All data of a model that solvers need; `system_of` creates it once.
 
     Systems of models that are alike but for the size of their loads share what does not depend on it.
-    proven: names of properties that have been checked; known_loads: loads at recent load factors.
+    released: whether the coordinates that supports move count as unknown; proven: names of properties that have been
+    checked; known_loads: loads at recent load factors.
     """
 
     model: Model
     static: bool
+    released: bool = False
     proven: set[str] = field(default_factory=set)
     known_loads: dict[float, LoadsAt] = field(default_factory=dict)
 
@@ -55,7 +56,7 @@ class System:
     @cached_property
     def alike(self) -> dict[Any, Any]:
         """What the systems of models that are alike have in common, by name."""
-        shared: dict[Any, Any] = self.model.alike.setdefault(self.static, {})
+        shared: dict[Any, Any] = self.model.alike.setdefault((self.static, self.released), {})
         return shared
 
     @shared_property
@@ -195,14 +196,7 @@ class System:
 
     def body(self, time: float) -> np.ndarray:
         """Return acceleration [m/s^2] and load per length [N/m] of each beam (beams, 4) at a time."""
-        result = np.zeros((len(self.model.beams), 4))
-        for load in self.model.gravity:
-            result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
-        for line in self.model.line_loads:
-            if line.uniform and line.axes == "plane":
-                row = self.model.number_of(line.beam)
-                result[row, 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, self.static)
-        return result
+        return body_loads(self.model, time, self.static)
 
     @shared_property
     def symmetric(self) -> bool:
@@ -215,7 +209,14 @@ class System:
     @cached_property
     def prescribed(self) -> tuple[PrescribedCoordinate, ...]:
         """Prescribed coordinates, ordered by number. Raises InputError if two supports prescribe the same one."""
-        return prescribed_coordinates(self.model)
+        found = prescribed_coordinates(self.model)
+        return tuple(item for item in found if not callable(item.value)) if self.released else found
+
+    @cached_property
+    def driven(self) -> tuple[PrescribedCoordinate, ...]:
+        """The coordinates that supports move, if they count as unknown."""
+        found = prescribed_coordinates(self.model) if self.released else ()
+        return tuple(item for item in found if callable(item.value))
 
     @shared_property
     def prescribed_dofs(self) -> np.ndarray:

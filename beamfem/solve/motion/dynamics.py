@@ -20,7 +20,7 @@ from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
-from beamfem.solve.motion.own_step import Integrator, refuse_what_own_steps_lack
+from beamfem.solve.motion.own_step import Integrator
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import name_unresolved
@@ -98,8 +98,6 @@ def simulate(
     system = system_to_solve(model, static=False)
     if is_scheme(integrator):
         require_rule(integrator, step)
-    else:
-        refuse_what_own_steps_lack(system)
     tell_of_compilation()
     require_memory(model.size, duration, step, save_every)
     times = step * np.arange(int(np.ceil(duration / step - 1e-9)) + 1)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.sparse import block_array, block_diag, csc_array, csr_array
+from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_array
 
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
@@ -24,7 +24,9 @@ class EquationsOfMotion:
     """M(p) p'' + inertia of first order + elastic forces - loads = 0, for the unknown coordinates.
 
     An `Integrator` receives it; `free` (unknown,) are the numbers of the unknown coordinates among all coordinates, and
-    `scale` (unknown,) the values relative to which their corrections are measured.
+    `scale` (unknown,) the values relative to which their corrections are measured. Among the unknowns are the
+    multipliers of constraints, whose equations are the conditions, and the coordinates that supports move, whose
+    equations are p - u(t) = 0: both hold at every time at which an integrator satisfies the equations.
 
     Parameters
     ----------
@@ -32,10 +34,13 @@ class EquationsOfMotion:
         The assembled model.
     counted : array of int, (1,)
         Number of calls of `solve`, the iterations of the motion.
+    begin : float, [s]
+        Time at the start of the step, of the committed history.
     """
 
     system: System
     counted: np.ndarray
+    begin: float = 0.0
 
     __repr__ = brief
 
@@ -65,9 +70,12 @@ class EquationsOfMotion:
         Returns
         -------
         array, [N, N m], (unknown,)
-            The residual.
+            The residual; of a condition its own unit, and of a coordinate that a support moves [m, rad].
         """
-        return residual(self.system, p, v, a, time)[self.free]
+        unbalanced = residual(self.system, p, v, a, time, time - self.begin)
+        dofs, values = _driven(self.system, time)
+        unbalanced[dofs] = p[dofs] - values
+        return unbalanced[self.free]
 
     def tangent(
         self,
@@ -93,7 +101,13 @@ class EquationsOfMotion:
         csr_array, (unknown, unknown)
             The derivative.
         """
-        return linearise(self.system, p, v, a, time, weights, moving=True)[1].sparse(UNROTATED)
+        elapsed = time - self.begin
+        whole = linearise(self.system, p, v, a, time, weights, dt=elapsed, moving=True)[1].sparse(UNROTATED)
+        if not self.system.driven:
+            return whole
+        driven = np.isin(self.free, [item.dof for item in self.system.driven])
+        keep, own = (dia_array((mask[None], [0]), shape=whole.shape) for mask in (1.0 * ~driven, weights[0] * driven))
+        return csr_array(keep @ whole + own)
 
     def energy(self, p: np.ndarray, time: float) -> float:
         """Return the strain energy and the potential of loads, springs and foundations, see `results.energies`.
@@ -155,7 +169,7 @@ class Integrator(Protocol):
     """A user-defined time integrator, such as one with stages, or with forces between two states."""
 
     def step(self, motion: EquationsOfMotion, begin: State, end: float) -> State:
-        """Return the state after a step; prescribed coordinates are at rest.
+        """Return the state after a step.
 
         Parameters
         ----------
@@ -180,20 +194,21 @@ class Integrator(Protocol):
 
 
 class OwnStep:
-    """A step of a user-defined integrator; why: the reason of a failure."""
-
-    dt = 0.0
+    """A step of a user-defined integrator; why: the reason of a failure; dt [s]: duration of the last step."""
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
-        self.system, self.integrator, self.time = system, integrator, begin
-        self.motion, self.why = EquationsOfMotion(system, statistics[:1]), ""
+        self.system, self.integrator, self.time, self.counted = system, integrator, begin, statistics[:1]
+        moved = any(callable(item.value) for item in system.prescribed)
+        self.solved = System(system.model, static=False, released=True) if moved else system
+        self.dt, self.why = 0.0, ""
 
     def take(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
         """See `single_steps.Step`."""
         p, v, a, _ = before.copy()
         begin = State(p, v, a, self.time, self.system.model)
+        motion = EquationsOfMotion(self.solved, self.counted, self.time)
         try:
-            reached = self.integrator.step(self.motion, begin, time)
+            reached = self.integrator.step(motion, begin, time)
         except (ConvergenceError, LinAlgError) as error:
             self.why = str(error)
             return False
@@ -205,32 +220,24 @@ class OwnStep:
                 f"step of {type(self.integrator).__name__} must return a State of the model, such as "
                 f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
             )
-        values = np.array([reached.p, reached.v, reached.a])
-        if not np.isfinite(values).all():
+        found = np.array([reached.p, reached.v, reached.a])
+        if not np.isfinite(found).all():
             self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
             return False
-        state[:3] = values
-        state[:3, self.system.prescribed_dofs] = prescribed
+        at_rest = self.solved.prescribed_dofs
+        history, multipliers = self.system.history.numbers, self.system.connectors.multipliers
+        state[:3] = found
+        state[:3, at_rest] = prescribed[:, np.isin(self.system.prescribed_dofs, at_rest)]
+        dofs, values = _driven(self.solved, time)
+        state[0, dofs] = values
+        state[0, history] = before[0, history]
+        state[1:3, multipliers] = 0.0  # multipliers have no rates
         state[3] = state[2]
-        self.time = time
+        self.dt, self.time = time - self.time, time
         return True
 
 
-def refuse_what_own_steps_lack(system: System) -> None:
-    """Raise InputError for models that user-defined integrators do not support."""
-    moved = [item for item in system.prescribed if callable(item.value)]
-    if moved:
-        raise InputError(
-            f"{moved[0].point} is moved, which user-defined integrators do not support: use GeneralizedAlpha, or let "
-            "supports rest"
-        )
-    for law, _ in system.history.laws:
-        raise InputError(
-            f"the section law {law.name} has history, which user-defined integrators do not support: use "
-            "GeneralizedAlpha"
-        )
-    if len(system.connectors.multipliers):
-        raise InputError(
-            "the model has connectors with unknowns of their own, which user-defined integrators do not support: use "
-            "GeneralizedAlpha"
-        )
+def _driven(system: System, time: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers and values (m,) of the coordinates that supports move, if they count as unknown."""
+    dofs = np.array([item.dof for item in system.driven], dtype=np.int64)
+    return dofs, system.reference[dofs] + np.array([item.change(time, False) for item in system.driven], dtype=float)

@@ -5,9 +5,6 @@ import pytest
 from conftest import beam
 
 import beamfem as bf
-from beamfem.solve.motion import march
-from beamfem.solve.motion.single_steps import SingleSteps
-from beamfem.solve.motion.sparse_step import SparseStep
 
 SECTION = bf.Section(area=1.6e-3, second_moment=8.533e-6)
 RUBBER = bf.Material(0.7e6, 0.3, 5540.0)
@@ -160,15 +157,14 @@ def test_the_drift_of_a_spinning_beam_falls_with_the_square_of_small_steps(eleme
 
 
 @pytest.mark.parametrize("kind", ["band", "sparse"])
-def test_parts_that_ring_within_a_step_do_not_end_it(kind, monkeypatch):
+def test_parts_that_ring_within_a_step_do_not_end_it(kind, widest_band):
     """A sudden tip moment, 0.05 E I / L, on few elements of high order turns the tip by 0.04: a tenth of it, a tenth.
 
     The accelerations of before, far above those of bending, put a step far off its end; not those of a tenth. What
     is not linear in the moment is of the size of the rotation squared.
     """
     if kind == "sparse":
-        sparse = lambda system, space, *rest: SingleSteps(system, SparseStep(system, *rest))  # noqa: E731
-        monkeypatch.setattr(march, "BandMotion", sparse)
+        widest_band(-1)
     bar = bf.Beam(bf.Line((0, 0), (1, 0)), 2, bf.CRBF(4), bf.Rectangle(0.02, 0.0625), bf.Material(1e9, 0.3, 1000.0))
     tips = []
     for moment in (-20.345, -2.0345):

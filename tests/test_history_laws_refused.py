@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from history_laws import SECTION, YIELDING, Plastic, arm
-from integrators import Radau
 from section_laws import LinearLaw
 
 import beamfem as bf
@@ -16,8 +15,6 @@ def test_what_remembers_is_refused_where_it_cannot_be_taken():
     for solve in (bf.solve_buckling, bf.trace_equilibrium):
         with pytest.raises(bf.InputError, match="does not support section laws with history, such as Plastic"):
             solve(model)
-    with pytest.raises(bf.InputError, match="the section law Plastic has history, which user-defined integrators"):
-        bf.simulate(model, 0.1, 1e-3, Radau())
 
 
 def test_steps_that_fail_are_named_where_the_past_counts():

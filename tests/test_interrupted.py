@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import beamfem as bf
 from beamfem.cli.app import app
-from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.compiled_steps import CompiledSteps
 
 ROOT = Path(__file__).parents[1]
 BEAM = bf.Beam(bf.Line((0, 0), (1, 0)), 4, bf.CRBF(1), bf.Rectangle(0.1, 0.1), bf.Material(2e11, 0.3, 7800.0))
@@ -22,7 +22,7 @@ MODEL = bf.Model([BEAM], [bf.Clamp(BEAM.start)], [bf.PointForce(BEAM.end, (0.0, 
 @pytest.fixture
 def third_time(monkeypatch):
     """Send this process Ctrl-C in the third stretch of steps of a motion; whoever runs the tests may ignore it."""
-    advance, calls = BandMotion.advance, []
+    advance, calls = CompiledSteps.advance, []
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def interrupted(self, *arguments):
@@ -32,7 +32,7 @@ def third_time(monkeypatch):
             os.kill(os.getpid(), signal.SIGINT)
         return done
 
-    monkeypatch.setattr(BandMotion, "advance", interrupted)
+    monkeypatch.setattr(CompiledSteps, "advance", interrupted)
     monkeypatch.setattr("beamfem.solve.motion.march._FIRST_CHUNK", 1000)
     yield
     signal.signal(signal.SIGINT, handler)

@@ -15,7 +15,7 @@ from beamfem.assembly.system import system_of
 from beamfem.kernels import record, two_threads
 from beamfem.kernels.band import KNOWN
 from beamfem.solve.motion import second_thread
-from beamfem.solve.motion.band_motion import BandMotion
+from beamfem.solve.motion.compiled_steps import CompiledSteps
 from beamfem.solve.motion.march import initial_acceleration
 from beamfem.solve.newton import cut_chain
 
@@ -191,7 +191,7 @@ def test_a_motion_that_fails_keeps_its_states_and_leaves_no_thread(long, monkeyp
 
 def test_an_interrupted_motion_keeps_its_states_and_leaves_no_thread(long, monkeypatch):
     """Ctrl-C comes while compiled code is at work."""
-    model, advance = pendulum(ELEMENTS[0]), BandMotion.advance
+    model, advance = pendulum(ELEMENTS[0]), CompiledSteps.advance
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def interrupted(self, *arguments):
@@ -202,14 +202,14 @@ def test_an_interrupted_motion_keeps_its_states_and_leaves_no_thread(long, monke
         finally:
             timer.join()
 
-    monkeypatch.setattr(BandMotion, "advance", interrupted)
+    monkeypatch.setattr(CompiledSteps, "advance", interrupted)
     monkeypatch.setattr("beamfem.solve.motion.march._FIRST_CHUNK", 40 * model.size)
     try:
         with pytest.raises(KeyboardInterrupt) as caught:
             moved(model, 2, monkeypatch, steps=4000)
     finally:
         signal.signal(signal.SIGINT, handler)
-        monkeypatch.setattr(BandMotion, "advance", advance)
+        monkeypatch.setattr(CompiledSteps, "advance", advance)
     assert not helpers()
     found = caught.value.solution
     assert found.status.name == "STOPPED"

@@ -198,6 +198,12 @@ class Assembler:
         moving, rated = moving or coefficients[2] != 0.0, coefficients[1] != 0.0
         self.table[record.MOVING], self.table[record.RATED] = int(moving), int(moving or rated)
 
+    @property
+    def weights(self) -> tuple[float, float, float]:
+        """Weights ck, cv, ca of p, p', p'' in the tangent."""
+        ck, cv, ca = self._factors[:3].tolist()
+        return ck, cv, ca
+
     def require(self, *tasks: str) -> None:
         """Compile the routines that compiled drivers will call: forces always; tasks: also "tangent", "prediction"."""
         moving = self.table[record.MOVING] != 0 and "tangent" in tasks

@@ -78,8 +78,8 @@ def linearise(
     if borrowed:
         _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
-    _add_connectors(system, matrix, (p, v, a), time, coefficients)
-    tangent = _tangent(system, matrix)
+    add_connectors(system, matrix, (p, v, a), time, coefficients)
+    tangent = tangent_of(system, matrix)
     if MIXED in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
@@ -96,11 +96,11 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
     _give_back(system, assembler)
-    _add_connectors(system, matrix, (p, zeros, zeros), time, STATICS)
-    return _tangent(system, matrix)
+    add_connectors(system, matrix, (p, zeros, zeros), time, STATICS)
+    return tangent_of(system, matrix)
 
 
-def _add_connectors(
+def add_connectors(
     system: System,
     matrix: np.ndarray,
     state: tuple[np.ndarray, np.ndarray, np.ndarray],
@@ -120,7 +120,8 @@ def _entries(system: System) -> np.ndarray:
     return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
 
 
-def _tangent(system: System, matrix: np.ndarray) -> Tangent:
+def tangent_of(system: System, matrix: np.ndarray) -> Tangent:
+    """Return the tangent with the entries of a matrix, flat as compiled code fills them."""
     pattern = system.unknowns.pattern
     if pattern is None:
         rows = matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1)

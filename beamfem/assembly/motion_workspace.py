@@ -1,4 +1,4 @@
-"""Workspace of compiled time steps with a band matrix, reused by the next motion of the same model."""
+"""Workspace of compiled time steps, reused by the next motion of the same model."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ _NONE = np.empty(0, dtype=np.int64)
 
 
 class MotionWorkspace:
-    """Workspace for one motion with a band matrix, and the tables that describe it to compiled code.
+    """Workspace for one motion, and the tables that describe it to compiled code.
 
     arrays: by their fields in the table of the solver; residual, rows: addresses of the residual and of the matrix;
     in_two: whether the stages of a step are computed for two halves separately; loads: indices of the loads of each
@@ -27,7 +27,7 @@ class MotionWorkspace:
 
     def __init__(self, system: System) -> None:
         size, unknown, half = system.model.size, len(system.free_dofs), system.layouts[0].half_width
-        tiles = tiles_of(system)
+        pattern, tiles = system.unknowns.pattern, tiles_of(system)
         self.assembler = system.assembler() if tiles is None else tiles.assembler
         self.loads = None if tiles is None else tiles.loads
         self.in_two = tiles is not None
@@ -41,7 +41,7 @@ class MotionWorkspace:
         room = Arena(
             {
                 "residual": (size,),
-                record.ROWS: (unknown, 2 * half + 1),
+                record.ROWS: (unknown, 2 * half + 1) if pattern is None else (len(pattern.data),),
                 **({} if in_place else {record.RIGHT: (unknown,)}),
                 record.STEP: (max(size, unknown) + 2,),
                 record.CHANGE: (padded(size),),
@@ -51,7 +51,7 @@ class MotionWorkspace:
                 record.KEPT: (2, nodes),
                 record.TURNS: (2, nodes),
                 record.RULE: (6,),
-                record.LIMITS: (2,),
+                record.LIMITS: (5,),
             }
         )
         self.arrays, addresses = room.arrays, room.addresses

@@ -5,10 +5,6 @@ from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 
-# Simplified Newton iterations: how many a step may take before Newton's own method starts it anew, after how many of
-# them, or above which rate of convergence, the next step gets a new tangent.
-_MOST, _MANY, _SLOW = 8, 3, 0.05
-
 _constrain, _predict, _jacobian, _count = caller("iiirnr"), caller("iii"), caller("i", "d"), caller("inrrr")
 _stage, _in_two, _place = caller("iiii", "d"), caller("iiii", "d"), caller("iii")
 _check_convergence = inlined(motion_steps.check_convergence)
@@ -68,11 +64,10 @@ def march(system, solver, calls):
     """March through `STEPS` steps; return how many were completed.
 
     `STATE`: p, p', p'', auxiliary acceleration (4, n), advanced in place. `RULE`: step, alpha_m, alpha_f, gamma, beta,
-    and the order of this step's extrapolation.
-    `LIMITS`: tolerance of the correction relative to the scale, largest number of iterations. `ROWS`: factors of the
-    last tangent. `STATISTICS` (10,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
-    convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation,
-    how many differences it has, what the last change of p'' changed in p, and the size of corrections that are noise.
+    and the order of this step's extrapolation. `LIMITS`: see `solve.motion.limits`. `ROWS`: the last tangent, or its
+    factors. `STATISTICS` (10,): iterations, most iterations in a step, last correction, worst pivot ratio, rate of
+    convergence of the last step (negative: its tangent is of no use), number of tangents, order of extrapolation, how
+    many differences it has, what the last change of p'' changed in p, and the size of corrections that are noise.
 
     Chung and Hulbert 1993; in the form of Arnold and Bruels 2007 the equations hold at the end of each step. Iterations
     keep the tangent, over steps as well, rotated with the sections, and end when the estimated error is small (Hairer
@@ -113,6 +108,7 @@ def march(system, solver, calls):
                 record = wholes(groups[group])
                 strains = record[r.ELEMENTS] * record[r.POINTS] * record[r.MEASURES]
                 record[r.NATURAL] = naturals[group] + 8 * step * strains
+        b[r.NOW] = step
         b[r.PRESCRIBED_NOW] = b[r.PRESCRIBED_VALUES] + 24 * fixed * step
         rule[5] = statistics[6]
         _run(call[r.PREDICT], system, solver, calls, b, call)
@@ -160,7 +156,7 @@ def march(system, solver, calls):
                 done = 0
                 continue
             if full == 0:
-                fails = done < 0 or not (iteration < _MOST and (iteration < 2 or rate[0] < 0.5))
+                fails = done < 0 or not (iteration < limits[2] and (iteration < 2 or rate[0] < 0.5))
             else:
                 fails = done < 0 or not iteration < limits[1]
             if fails and full == 2:
@@ -173,7 +169,7 @@ def march(system, solver, calls):
                 _run(call[r.PREDICT], system, solver, calls, b, call)
                 full, iteration = full + 1, 0
         statistics[1] = max(statistics[1], iteration)
-        statistics[4] = -1.0 if iteration > _MANY or (iteration > 1 and rate[0] > _SLOW) else rate[0]
+        statistics[4] = -1.0 if iteration > limits[3] or (iteration > 1 and rate[0] > limits[4]) else rate[0]
         if done <= 0:
             for i in range(4 * n):
                 state[i] = before[i]

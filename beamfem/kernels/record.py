@@ -211,7 +211,8 @@ TILES = 49  # address (tiles, tile fields)
 ROWS_DOWN = 50  # rows eliminated downwards from the top, see `band_halves`
 STEP_WANTED = 51  # whether corrections are needed before they are added to the state
 NODE_STRIDE = 52
-SOLVER_FIELDS = 53
+NOW = 53  # number of the step that is taken, of those of this call
+SOLVER_FIELDS = 54
 
 FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
 FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them

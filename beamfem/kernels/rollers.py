@@ -32,6 +32,11 @@ def constrain_normals(n, half, rollers, rows, first, normal):
         upper[i] = size if size > 0.0 else 1.0
 
 
+@routine("iiirnr")
+def constrain_nothing(n, half, rollers, rows, first, normal):
+    """Leave a matrix as it is: the one who factorises it constrains the normals."""
+
+
 @routine("iinrnrr")
 def stay_on_planes(n, rollers, first, normal, free, state, before):
     """Remove what p, p' and p'' (3, n) of a predicted state have along normals beyond p of the state before.

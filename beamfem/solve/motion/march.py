@@ -17,14 +17,12 @@ from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
-from beamfem.solve.motion.band_motion import BandMotion, acceleration
+from beamfem.solve.motion.compiled_steps import CompiledSteps, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
 from beamfem.solve.motion.integrators import Scheme, is_scheme
-from beamfem.solve.motion.limits import ITERATIONS, TOLERANCE
 from beamfem.solve.motion.own_step import Integrator, OwnStep
 from beamfem.solve.motion.saving import Saving
 from beamfem.solve.motion.single_steps import SingleSteps
-from beamfem.solve.motion.sparse_step import SparseStep
 from beamfem.solve.motion.time_steps import Stretch
 
 _CHUNK_SECONDS = 0.25
@@ -145,18 +143,13 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 @contextmanager
 def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
-) -> Iterator[BandMotion | SingleSteps]:
+) -> Iterator[CompiledSteps | SingleSteps]:
     """Provide the object that takes the steps of a stretch."""
     if not is_scheme(integrator):
         yield SingleSteps(system, OwnStep(system, cast("Integrator", integrator), part.loads_from, statistics))
         return
-    rule, limits = integrator.rule(part.step), np.array([TOLERANCE, ITERATIONS])
-    # many steps in one compiled call commit no history in between
-    if system.unknowns.pattern is None and not len(system.history.numbers):
-        with motion_workspace(system) as space:
-            yield BandMotion(system, space, rule, limits, statistics)
-    else:
-        yield SingleSteps(system, SparseStep(system, rule, limits, statistics))
+    with motion_workspace(system) as space:
+        yield CompiledSteps(system, space, integrator.rule(part.step), statistics)
 
 
 def _keeps_rates(scheme: Scheme) -> bool:

@@ -25,6 +25,14 @@ class Saving(NamedTuple):
     def keep(self, step: int, before: np.ndarray, state: np.ndarray) -> None:
         """Count the rotations of a step from one state (4, n) to the next, and keep this one if it has a row."""
         count_turns(len(self.pairs), self.pairs, before, state, self.turned)
+        self.keep_state(step, state)
+
+    def keep_state(self, step: int, state: np.ndarray) -> None:
+        """Keep the state (4, n) at the end of a step if it has a row."""
         row, rest = divmod(self.first + step, self.every)
         if rest == 0:
             self.states[row], self.rows_turned[row] = state[:3], self.turned
+
+    def after(self, steps: int) -> "Saving":
+        """Return the same for what follows some steps."""
+        return self._replace(first=self.first + steps)

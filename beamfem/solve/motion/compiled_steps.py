@@ -1,4 +1,4 @@
-"""Time steps of models whose tangent is a narrow band; one compiled call takes many steps."""
+"""Time steps of the generalized-alpha family; one compiled call takes many steps."""
 
 import numpy as np
 
@@ -8,43 +8,55 @@ from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.tangent import SMALLEST_PIVOT
-from beamfem.solve.motion.limits import not_converged
+from beamfem.solve.motion.limits import BAND, SPARSE, not_converged
 from beamfem.solve.motion.saving import Saving
 from beamfem.solve.motion.second_thread import routines
+from beamfem.solve.motion.sparse_solver import SparseSolver
 
 _INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 
 
-class BandMotion:
+class CompiledSteps:
     """Marches through time steps; keeps tangent and differences of the acceleration between calls.
 
-    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; limits: tolerance of the correction
-    relative to the scale of a coordinate, largest number of iterations; statistics (10,): see `kernels.march.march`.
+    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics (10,): see `kernels.march.march`.
     """
 
-    def __init__(
-        self, system: System, space: MotionWorkspace, rule: np.ndarray, limits: np.ndarray, statistics: np.ndarray
-    ) -> None:
-        self._system, self._space, self._statistics = system, space, statistics
+    def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
+        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[0])
+        sparse = system.unknowns.pattern is not None
+        self._limits = SPARSE if sparse else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, limits
+        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, self._limits
         space.arrays[record.DIFFERENCES][:] = 0.0
-        space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))))
+        space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
+        self._sparse = SparseSolver(system, space) if sparse else None
 
     @property
     def why(self) -> str:
         """Why a step has failed."""
-        return not_converged(self._statistics)
+        return not_converged(self._statistics, self._limits)
 
     def advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
         """March p, p', p'' and the auxiliary acceleration (4, n) in place; return how many steps were completed.
 
-        prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s]; saving: rows
-        (steps, 3, n), number of the first step, and number of steps per row; then x and y (m, 2) of vectors whose
-        rotation is counted, their rotation (m,) [rad] and that of the rows (steps, m).
+        prescribed (steps, 3, nh): prescribed coordinates and their rates at the times (steps,) [s].
         """
+        history = self._system.history
+        if not len(history.numbers):
+            return self._advance(state, prescribed, times, saving)
+        for number, time in enumerate(times.tolist()):
+            step, here = slice(number, number + 1), saving.after(number)
+            if not self._advance(state, prescribed[step], times[step], here):
+                return number
+            state[0] = history.committed((state[0], state[1], state[2]), time, self._system.imposing(time), self._step)
+            here.keep_state(0, state)
+        return len(times)
+
+    def _advance(self, state: np.ndarray, prescribed: np.ndarray, times: np.ndarray, saving: Saving) -> int:
+        """Do what `advance` does in one compiled call."""
         space = self._space
         body, values, imposing = _sample_loads(self._system, times)
         if space.loads is not None:
@@ -81,8 +93,13 @@ class BandMotion:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
-        with routines(self._system, space.in_two) as calls:
-            completed = int(march(assembler.address, solver, calls))
+        if self._sparse is not None:
+            self._sparse.state, self._sparse.times = state, times
+            completed = int(march(assembler.address, solver, self._sparse.routines))
+            self._sparse.raise_error()
+        else:
+            with routines(self._system, space.in_two) as calls:
+                completed = int(march(assembler.address, solver, calls))
         assembler.raise_errors()
         return completed
 

@@ -73,6 +73,25 @@ def test_a_linear_law_is_the_linear_section_on_a_curved_beam(element):
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-11)
 
 
+@every
+def test_a_warm_and_damped_linear_law_is_the_linear_section(element):
+    """Heat expands the thickness as well, which gradients resist linearly; damping has the stiffness at zero strain."""
+    values = COUPLED if element.integration == LOBATTO else SECTION
+    lossy = bf.Material(1.0, 0.3, 1.0, retardation_time=0.01, thermal_expansion=1e-5)
+    stiff = element.coordinates == bf.ShearFree(stretchable=False)
+    found = []
+    for kind in (StiffnessSection, LinearLaw):
+        beam = bf.Beam(LINE, 4, element, kind(**values), lossy)
+        loads = [bf.PointForce(beam.end, (0.0, 50.0)), *(() if stiff else (bf.Temperature(beam, 100.0),))]
+        model = bf.Model([beam], [bf.Clamp(beam.start)], loads)
+        bent, swung = bf.solve_static(model), bf.simulate(model, 0.01, 1e-3)
+        found.append([*bent.p[-1], *swung.p[-1], bent.energy().total[-1]])
+    assert found[1] == pytest.approx(found[0], rel=1e-10, abs=1e-12)
+    if element.coordinates == bf.Gradients():
+        thickness = np.linalg.norm(bent.fields(beam.end).r_y[-1])
+        assert thickness == pytest.approx(1.0 + 1e-3, rel=1e-5)
+
+
 @pytest.mark.parametrize("element", [own for own in NEW if own.integration == LOBATTO], **ids)
 def test_a_linear_law_converges_to_the_linear_section_where_its_rule_is_another(element):
     """Curvature at Lobatto in place of Gauss points: of fourth order, as the elements."""

@@ -15,22 +15,24 @@ _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only
 _THICKNESS = 3
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
-_LAST_RESULTANT, _LAST_STIFFNESS = RESULTANT + _THICKNESS, STIFFNESS + len(_PAIRS[0]) - 1
+_ENTRIES = len(_PAIRS[0])
 _Pass = CFUNCTYPE(None, *(c_int64,) * 6, *(c_void_p,) * 4)
 _Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step since then [s]
 _NOTHING: _Past = (np.empty((0, 0)), 0.0)
 
 
 class LawPass:
-    """A section law that compiled code calls by its address; points: number of points of an element where it acts.
+    """A section law that compiled code calls by its address.
 
-    Thickness stretch, which laws do not have, is linear, with the stiffness in the tables of the compiled code.
+    points: number of points of an element where it acts; thickness: whether thickness stretch, which laws do not have,
+    is resisted, by the linear stiffness in the tables of the compiled code.
+
     An error in a user's function cannot propagate through compiled code: it is stored, the resultants become nan, which
     stops any iteration, and `raise_error` raises it.
     """
 
-    def __init__(self, law: ConstitutiveLaw, points: int) -> None:
-        self._law, self._points = law, points
+    def __init__(self, law: ConstitutiveLaw, points: int, thickness: bool) -> None:
+        self._law, self._points, self._thickness = law, points, thickness
         self._errors: list[BaseException] = []
         self._pass = _Pass(self._fill)
         self.address = int(cast(self._pass, c_void_p).value or 0)
@@ -70,23 +72,28 @@ class LawPass:
         x: int,
     ) -> None:
         try:
-            point_rows = _rows(x, POINT_ROWS)[:, :count]
+            own = _rows(x, POINT_ROWS)[:, :count]
             try:
-                past, weights = _NOTHING, _rows(weight, 1)[0, :count]
-                strain = point_rows[STRAIN : STRAIN + _MEASURES] - _rows(reference, _MEASURES)[:, :count]
-                stiffness = weights * _rows(c, len(_PAIRS[0]))[-1, :count]
-                _fill_thickness(point_rows, stiffness, strain[_THICKNESS], tangent != 0)
+                weights, natural = _rows(weight, 1)[0, :count], _rows(reference, _MEASURES)[:, :count]
+                own[RESULTANT : RESULTANT + _MEASURES] = 0.0
+                if tangent:
+                    own[STIFFNESS : STIFFNESS + _ENTRIES] = 0.0
+                if self._thickness:
+                    stiffness = weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count]
+                    _fill_thickness(own, stiffness, natural[_THICKNESS], tangent != 0)
                 if number < self._points:
+                    past = _NOTHING
                     if self._law.remembers:
                         past = _past(group, system, slice(first, first + count), number, self._points)
-                    self._fill_rows(point_rows, weights, np.ascontiguousarray(strain[:3].T), past, tangent != 0)
+                    self._fill_rows(own, weights, natural[:3], past, tangent != 0)
             except BaseException:
-                point_rows[RESULTANT : RESULTANT + _MEASURES] = np.nan
+                own[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise
         except BaseException as error:
             self._errors.append(error)
 
-    def _fill_rows(self, own: np.ndarray, weight: np.ndarray, strain: np.ndarray, past: _Past, tangent: bool) -> None:
+    def _fill_rows(self, own: np.ndarray, weight: np.ndarray, natural: np.ndarray, past: _Past, tangent: bool) -> None:
+        strain = np.ascontiguousarray((own[STRAIN : STRAIN + 3] - natural).T)
         if not tangent:
             own[RESULTANT : RESULTANT + 3] = weight * self._law.resultants(strain, *past).T
             return
@@ -95,13 +102,11 @@ class LawPass:
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 
 
-def _fill_thickness(own: np.ndarray, stiffness: np.ndarray, strain: np.ndarray, tangent: bool) -> None:
-    """Fill the rows of a point where no strain but the thickness stretch (count,) has a stiffness (count,)."""
-    own[RESULTANT:_LAST_RESULTANT] = 0.0
-    own[_LAST_RESULTANT] = stiffness * strain
+def _fill_thickness(own: np.ndarray, stiffness: np.ndarray, natural: np.ndarray, tangent: bool) -> None:
+    """Fill the rows of the thickness stretch; natural (count,): where its stress is zero."""
+    own[RESULTANT + _THICKNESS] = stiffness * (own[STRAIN + _THICKNESS] - natural)
     if tangent:
-        own[STIFFNESS:_LAST_STIFFNESS] = 0.0
-        own[_LAST_STIFFNESS] = stiffness
+        own[STIFFNESS + _ENTRIES - 1] = stiffness
 
 
 def _past(group: int, system: int, elements: slice, number: int, points: int) -> _Past:

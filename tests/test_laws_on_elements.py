@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from fields import Equidistant, Quintic
 from law_elements import LINE, LOBATTO, NEW, REFUSED, SHEARING, TAKEN, arm, at_tip, ids
 from section_laws import LinearLaw, RambergOsgood, Softening
 
@@ -64,6 +65,33 @@ def test_a_linear_law_is_the_linear_section(element, values):
     if shares_rule(element, values):
         expected, found = (results(kind, element, values) for kind in (StiffnessSection, LinearLaw))
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-11)
+
+
+@pytest.mark.parametrize("field", [Equidistant(), Quintic()], ids=["equidistant", "quintic"])
+@pytest.mark.parametrize("coordinates", [bf.Gradients(), bf.Rotation()], ids=["gradients", "rotation"])
+def test_a_linear_law_is_the_linear_section_on_fields_of_users(field, coordinates):
+    element = bf.Element(field, coordinates, bf.Structural(), "reduced")
+    expected, found = (results(kind, element, COUPLED) for kind in (StiffnessSection, LinearLaw))
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-11)
+
+
+@new
+def test_a_linear_law_is_the_linear_section_in_a_frame(element):
+    """Of straight and curved beams with a rigid joint and a hinge, where gradients are rotated, by a sparse matrix."""
+    found = []
+    for kind in (StiffnessSection, LinearLaw):
+        left = bf.Beam(bf.Line((0, 0), (0, 1)), 3, element, kind(**COUPLED))
+        arch = bf.Beam(bf.Arc((1, 1), 1.0, np.pi, 0.0), 6, element, kind(**COUPLED))
+        right = bf.Beam(bf.Line((2, 1), (2, 0)), 3, element, kind(**COUPLED))
+        supports = [bf.Clamp(left.start), bf.Clamp(right.end)]
+        joints = [bf.Rigid(left.end, arch.start), bf.Hinge(arch.end, right.start)]
+        loads = [bf.PointForce(arch.at(0.4), (20.0, -80.0)), bf.Pressure(left, 30.0)]
+        model = bf.Model([left, arch, right], supports, loads, joints)
+        bent = bf.solve_static(model)
+        modes = bf.solve_modes(model, count=4, about=bent).frequencies
+        swung = bf.simulate(model, 0.005, 1e-3).displacement(arch.at(0.5))[-1]
+        found.append([*bent.displacement(arch.at(0.5))[-1], *bent.section_forces(arch).moment[-1], *modes, *swung])
+    assert found[1] == pytest.approx(found[0], rel=1e-7, abs=1e-9)
 
 
 @new

@@ -224,8 +224,9 @@ def test_a_law_with_a_mistake_is_refused(mistake, said):
 @pytest.mark.parametrize(
     ("element", "said"),
     [
-        (bf.ANCF(bf.Structural()), "takes some of them at other points"),
-        (bf.ANCFCRBF(bf.Structural()), "takes some of them at other points"),
+        (bf.ShearRigid(), "takes some of them at other points or scales them, since its nodes do not shear"),
+        (bf.ShearRigid(integration="reduced"), 'integration="reduced" takes some of them at other points'),
+        (bf.ShearRigid(stretchable=False), r"use CRBF\(order=3\), ANCF\(Structural\(\)\), ANCFCRBF"),
         (bf.CRBF(order=2, forces=bf.SplitContinuum()), "needs Structural forces"),
         (bf.ANCFCRBF(bf.ElasticLine()), "needs Structural forces"),
     ],

@@ -8,7 +8,9 @@ import numpy as np
 
 from beamfem.assembly.imposed import imposed_on
 from beamfem.assembly.law_pass import LawPass
+from beamfem.element.coordinates import Gradients
 from beamfem.element.element import Element, kept_with_elements
+from beamfem.element.law_points import law_points
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
 from beamfem.model.load import ImposedStrain
@@ -50,7 +52,7 @@ def build_block(
     return Block(
         measures=element.forces.code,
         director=_director(element),
-        law=None if law is None else LawPass(law),
+        law=None if law is None else LawPass(law, law_points(element), isinstance(element.coordinates, Gradients)),
         imposed=imposed_on(meshes, imposing) if imposing else None,
         history=_joined([mesh.history for mesh in beam_meshes]) if beam_meshes[0].history.size else NO_HISTORY,
         **joined,

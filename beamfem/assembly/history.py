@@ -56,7 +56,8 @@ class History:
         result[self.connectors.memory] = self.connectors.remember(motion, time)
         for (law, block), group in zip(self.laws, self.strains, strict=True):
             strain = resultants(group, np.ascontiguousarray(p), [np.zeros(len(p))], imposing)[0]
-            flat, past = strain[..., :3].reshape(-1, 3), p[block.history]
+            past = p[block.history]
+            flat = strain[:, : past.shape[1], :3].reshape(-1, 3)
             result[block.history] = law.remember(flat, past.reshape(len(flat), -1), dt).reshape(past.shape)
         return result
 

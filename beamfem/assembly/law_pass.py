@@ -12,8 +12,10 @@ from beamfem.kernels.record import ROW
 from beamfem.section.law import ConstitutiveLaw
 
 _MEASURES = 4  # stretch, shear, curvature and thickness stretch; a law has only the first three
+_THICKNESS = 3
 _PAIRS = np.array([(i, j) for i in range(_MEASURES) for j in range(i, _MEASURES)]).T
 _KNOWN = np.flatnonzero((_PAIRS < 3).all(axis=0))
+_ENTRIES = len(_PAIRS[0])
 _Pass = CFUNCTYPE(None, *(c_int64,) * 6, *(c_void_p,) * 4)
 _Past = tuple[np.ndarray, float]  # committed history variables (count, k), and the time step since then [s]
 _NOTHING: _Past = (np.empty((0, 0)), 0.0)
@@ -22,23 +24,32 @@ _NOTHING: _Past = (np.empty((0, 0)), 0.0)
 class LawPass:
     """A section law that compiled code calls by its address.
 
+    points: number of points of an element where it acts; thickness: whether thickness stretch, which laws do not have,
+    is resisted, by the linear stiffness in the tables of the compiled code.
+
     An error in a user's function cannot propagate through compiled code: it is stored, the resultants become nan, which
     stops any iteration, and `raise_error` raises it.
     """
 
-    def __init__(self, law: ConstitutiveLaw) -> None:
-        self._law = law
+    def __init__(self, law: ConstitutiveLaw, points: int, thickness: bool) -> None:
+        self._law, self._points, self._thickness = law, points, thickness
         self._errors: list[BaseException] = []
         self._pass = _Pass(self._fill)
         self.address = int(cast(self._pass, c_void_p).value or 0)
 
-    def linearised(self, strain: np.ndarray, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (..., 4) and their derivatives (..., 4, 4) at strains (..., 4) and history (..., k)."""
-        shape, flat = strain.shape[:-1], strain[..., :3].reshape(-1, 3)
+    def linearised(
+        self, strain: np.ndarray, history: np.ndarray, stiffness: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (ne, nq, 4) and their derivatives (ne, nq, 4, 4), see `kernels.block.Law`."""
+        acting = strain[:, : self._points, :3]
+        shape, flat = acting.shape, acting.reshape(-1, 3)
         resultants, slope = self._law.linearised(flat, history.reshape(len(flat), -1))
-        result, stiffness = np.zeros((*shape, _MEASURES)), np.zeros((*shape, _MEASURES, _MEASURES))
-        result[..., :3], stiffness[..., :3, :3] = resultants.reshape(*shape, 3), slope.reshape(*shape, 3, 3)
-        return result, stiffness
+        result, slopes = np.zeros(strain.shape), np.zeros(stiffness.shape)
+        slopes[..., _THICKNESS, _THICKNESS] = stiffness[..., _THICKNESS, _THICKNESS]
+        result[..., _THICKNESS] = slopes[..., _THICKNESS, _THICKNESS] * strain[..., _THICKNESS]
+        result[:, : self._points, :3] = resultants.reshape(shape)
+        slopes[:, : self._points, :3, :3] = slope.reshape(*shape, 3)
+        return result, slopes
 
     def raise_error(self) -> None:
         """Raise the first error since the last call, if there is one."""
@@ -61,37 +72,47 @@ class LawPass:
         x: int,
     ) -> None:
         try:
-            point_rows = _rows(x, POINT_ROWS)[:, :count]
+            own = _rows(x, POINT_ROWS)[:, :count]
             try:
-                past = _NOTHING
-                if self._law.remembers:
-                    past = _past(group, system, slice(first, first + count), number)
-                rows = _rows(weight, 1)[0, :count], _rows(reference, 3)[:, :count]
-                self._fill_rows(point_rows, *rows, past, tangent != 0)
+                weights, natural = _rows(weight, 1)[0, :count], _rows(reference, _MEASURES)[:, :count]
+                own[RESULTANT : RESULTANT + _MEASURES] = 0.0
+                if tangent:
+                    own[STIFFNESS : STIFFNESS + _ENTRIES] = 0.0
+                if self._thickness:
+                    stiffness = weights * _rows(c, _ENTRIES)[_ENTRIES - 1, :count]
+                    _fill_thickness(own, stiffness, natural[_THICKNESS], tangent != 0)
+                if number < self._points:
+                    past = _NOTHING
+                    if self._law.remembers:
+                        past = _past(group, system, slice(first, first + count), number, self._points)
+                    self._fill_rows(own, weights, natural[:3], past, tangent != 0)
             except BaseException:
-                point_rows[RESULTANT : RESULTANT + _MEASURES] = np.nan
+                own[RESULTANT : RESULTANT + _MEASURES] = np.nan
                 raise
         except BaseException as error:
             self._errors.append(error)
 
-    def _fill_rows(
-        self, own: np.ndarray, weight: np.ndarray, reference: np.ndarray, past: _Past, tangent: bool
-    ) -> None:
-        strain = np.ascontiguousarray((own[STRAIN : STRAIN + 3] - reference).T)
-        own[RESULTANT + 3] = 0.0
+    def _fill_rows(self, own: np.ndarray, weight: np.ndarray, natural: np.ndarray, past: _Past, tangent: bool) -> None:
+        strain = np.ascontiguousarray((own[STRAIN : STRAIN + 3] - natural).T)
         if not tangent:
             own[RESULTANT : RESULTANT + 3] = weight * self._law.resultants(strain, *past).T
             return
         resultants, slope = self._law.linearised(strain, *past)
         own[RESULTANT : RESULTANT + 3] = weight * resultants.T
-        own[STIFFNESS : STIFFNESS + len(_PAIRS[0])] = 0.0
         own[STIFFNESS + _KNOWN] = weight * slope[:, _PAIRS[0, _KNOWN], _PAIRS[1, _KNOWN]].T
 
 
-def _past(group: int, system: int, elements: slice, number: int) -> _Past:
-    """Return the committed history at a quadrature point of some elements, and the time step since then."""
+def _fill_thickness(own: np.ndarray, stiffness: np.ndarray, natural: np.ndarray, tangent: bool) -> None:
+    """Fill the rows of the thickness stretch; natural (count,): where its stress is zero."""
+    own[RESULTANT + _THICKNESS] = stiffness * (own[STRAIN + _THICKNESS] - natural)
+    if tangent:
+        own[STIFFNESS + _ENTRIES - 1] = stiffness
+
+
+def _past(group: int, system: int, elements: slice, number: int, points: int) -> _Past:
+    """Return the committed history at a point of some elements where the law acts, and the time step since then."""
     b, s = _wholes(group, record.BLOCK_FIELDS).tolist(), _wholes(system, record.SYSTEM_FIELDS).tolist()
-    table = _wholes(b[record.HISTORY], b[record.ELEMENTS], b[record.POINTS], b[record.VARIABLES])
+    table = _wholes(b[record.HISTORY], b[record.ELEMENTS], points, b[record.VARIABLES])
     state, factors = _reals(s[record.COORDINATES_P], s[record.SIZE]), _reals(s[record.FACTORS], record.FACTOR_COUNT)
     return state[table[elements, number]], float(factors[-1])
 

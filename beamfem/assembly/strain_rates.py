@@ -7,7 +7,7 @@ import numpy as np
 
 from beamfem.assembly.element_group import ElementGroup
 from beamfem.assembly.points import free_group, resultants
-from beamfem.kernels.block import Block, Law
+from beamfem.kernels.block import Block
 
 
 class StrainsAt(NamedTuple):
@@ -27,7 +27,7 @@ class StrainRates:
     resists: the measures that have a stiffness at some point; loose (ne, nq, nr): mask of points without a stiffness
     for such a measure; place, point: positions of the derivatives by unknowns among those by all coordinates
     (coordinates, m); column: their unknowns; weight (m,): quadrature weights; flexibility: rows, columns and values of
-    weights times inverse stiffness, at zero strain for a section law; history: see `kernels.block.Block`.
+    weights times inverse stiffness, at zero strain for a section law; block: the block in the model.
     """
 
     group: ElementGroup
@@ -40,8 +40,7 @@ class StrainRates:
     column: np.ndarray
     weight: np.ndarray
     flexibility: tuple[np.ndarray, np.ndarray, np.ndarray]
-    law: Law | None
-    history: np.ndarray
+    block: Block
 
     def at(self, p: np.ndarray, imposing: np.ndarray) -> "StrainsAt":
         """Return strains and derivatives in a state p (n,).
@@ -56,10 +55,12 @@ class StrainRates:
         strain = np.where(self.loose, 0.0, zeros[:, :, self.resists]).ravel()
         moved = np.where(self.loose, 0.0, np.array(measured)[:, :, :, self.resists]).reshape(len(measured), -1)
         rates = moved[self.place, self.point] - strain[self.point]
-        if self.law is None:
+        block = self.block
+        if block.law is None:
             return StrainsAt(rates, strain, self.flexibility[2], len(strain))
-        stress, slope = self.law.linearised(zeros, p[self.history])
+        stress, slope = block.law.linearised(zeros, p[block.history], block.stiffness[block.kind])
         stiffness = slope[:, :, self.resists[:, None], self.resists]
+        stiffness = stiffness + self.loose[..., None] * np.eye(len(self.resists))
         inverse = np.linalg.inv(stiffness)
         # strains for which a linear law with the stiffness of this state has the same resultants
         strain = (inverse @ stress[:, :, self.resists, None]).ravel()
@@ -107,8 +108,7 @@ def strain_rates(block: Block, free: np.ndarray) -> StrainRates:
         point=point,
         column=np.repeat(column[place, element], count),
         weight=weight[block.kind].ravel(),
-        law=block.law,
-        history=block.history,
+        block=block,
         flexibility=(
             np.broadcast_to(number[..., :, None], shape).ravel(),
             np.broadcast_to(number[..., None, :], shape).ravel(),

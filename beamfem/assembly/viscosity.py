@@ -18,12 +18,16 @@ def viscous_tangent(system: System, p: np.ndarray, v: np.ndarray, time: float, s
     for (law, block), group in zip(system.history.laws, system.history.strains, strict=True):
         (strain,) = resultants(group, p, [step * v], imposing)
         past = p[block.history]
-        stiffness = viscous_stiffness(law, strain[..., :3].reshape(-1, 3), past.reshape(-1, past.shape[-1]), step)
+        elements, points, variables = past.shape
+        acting = strain[:, :points, :3].reshape(-1, 3)
+        stiffness = viscous_stiffness(law, acting, past.reshape(-1, variables), step)
         if not stiffness.any():
             continue
         measures = strain.shape[-1]
-        entries = np.zeros((len(stiffness), measures, measures))
-        entries[:, :3, :3] = step**2 * block.weight[block.kind].reshape(-1, 1, 1) * stiffness
+        entries = np.zeros((*strain.shape, measures))
+        weight = block.weight[block.kind][:, :points, None, None]
+        entries[:, :points, :3, :3] = step**2 * weight * stiffness.reshape(elements, points, 3, 3)
+        entries = entries.reshape(-1, measures, measures)
         weights = bsr_array((entries, np.arange(len(entries)), np.arange(len(entries) + 1)))
         unit = np.broadcast_to(np.eye(measures), block.stiffness.shape)
         table = strain_rates(block.resisting(unit), system.unknowns.free)

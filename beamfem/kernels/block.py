@@ -23,7 +23,10 @@ NO_HISTORY = np.empty((0, 0, 0), dtype=np.int64)
 
 
 class Law(Protocol):
-    """A nonlinear section law that replaces the linear one of a block, see `kernels.linear_law`."""
+    """A nonlinear section law that replaces the linear one of a block, see `kernels.linear_law`.
+
+    It acts at the first nl of the quadrature points; thickness stretch is linear.
+    """
 
     @property
     def address(self) -> int:
@@ -34,10 +37,13 @@ class Law(Protocol):
         """Raise the error that occurred in a call from compiled code, which cannot raise it, if there was one."""
         ...
 
-    def linearised(self, strain: np.ndarray, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return resultants (..., ns) and their derivatives (..., ns, ns) with respect to the strains.
+    def linearised(
+        self, strain: np.ndarray, history: np.ndarray, stiffness: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return resultants (ne, nq, ns) and their derivatives (ne, nq, ns, ns) with respect to the strains.
 
-        strain (..., ns): difference from the stress-free strains; history (..., k): committed history variables.
+        strain (ne, nq, ns): difference from the stress-free strains; history (ne, nl, k): committed history variables;
+        stiffness (ne, nq, ns, ns): at zero strain.
         """
         ...
 
@@ -92,7 +98,7 @@ class Block(NamedTuple):
     damping: np.ndarray  # (nc,) retardation time [s]: resultants of strain rates = this time x stiffness x rates
     law: Law | None = None  # replaces the linear law
     imposed: Imposed | None = None  # stress-free strains imposed by loads, added to `reference`
-    history: np.ndarray = NO_HISTORY  # (ne, nq, k) numbers of the coordinates that store history variables of the law
+    history: np.ndarray = NO_HISTORY  # (ne, nl, k) numbers of the coordinates that store history variables of the law
 
     def history_of(self, elements: slice | np.ndarray) -> np.ndarray:
         """Return the numbers of the history variables of some elements."""
@@ -107,7 +113,8 @@ class Block(NamedTuple):
 
         strain (ne, nq, ns): difference from the stress-free strains; p (n,): coordinates, which include the history.
         """
-        return self.stiffness[self.kind] if self.law is None else self.law.linearised(strain, p[self.history])[1]
+        linear = self.stiffness[self.kind]
+        return linear if self.law is None else self.law.linearised(strain, p[self.history], linear)[1]
 
 
 class PointLoads(NamedTuple):

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from beamfem.element.coordinates import ShearFree
+from beamfem.element.law_points import law_points
 from beamfem.element.structural import Structural
 from beamfem.errors import InputError
 from beamfem.section.law import SectionLaw
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 def require_law_fits(beam: "Beam") -> None:
     """Raise InputError if the section has a law but the element assumes a linear one, or if the law is inconsistent.
 
-    A law is a function of all strains at one point. Elements that evaluate some strains at other points, or replace
-    them by assumed strains, are defined for quadratic energies only.
+    A law is a function of all strains at one point. Elements that evaluate some strains at other points, or scale them
+    there, are defined for quadratic energies only. A shear that is zero at the nodes, for example, is 3/2 of its mean
+    at the midpoint: no factor and weight give a law both this mean and the stretch and curvature of the point.
     """
     if not beam.prismatic:
         section = beam.section_at(0.0)
@@ -33,18 +34,19 @@ def require_law_fits(beam: "Beam") -> None:
         _require_whole(beam.section)
         return
     name = type(beam.section).__name__
-    if not isinstance(beam.element.forces, Structural):
+    element = beam.element
+    if not isinstance(element.forces, Structural):
         raise InputError(
             f"{name} has a law of its own, of stretch, shear and curvature: it needs Structural forces, such as "
-            f"CRBF(order=2), but the element {beam.element.name} has {type(beam.element.forces).__name__}"
+            f"CRBF(order=2) or ANCF(Structural()), but the element {element.name} has {type(element.forces).__name__}"
         )
-    whole = np.ones((1, len(beam.element.energy_points()[0]), 4, 4))
-    whole[..., 3, :] = whole[..., :, 3] = 0.0  # laws have no thickness stretch
-    counted = beam.element.energy_stiffness(whole, np.ones(whole.shape[:2]))
-    if not np.array_equal(counted, whole):
+    if not law_points(element):
+        why = ", since its nodes do not shear" if isinstance(element.coordinates, ShearFree) else ""
         raise InputError(
-            f"{name} has a law of its own, for all strains at a point; the element {beam.element.name} takes some of "
-            f"them at other points: use CRBF(order=2) or another order"
+            f"{name} has a law of its own, for stretch, shear and curvature at one point; the element {element.name} "
+            f'with integration="{element.integration}" takes some of them at other points or scales them{why}: use '
+            "CRBF(order=3), ANCF(Structural()), ANCFCRBF(Structural()) or, without shear at the nodes, "
+            'ShearRigid(stretchable=False, integration="reduced")'
         )
     require_law(beam.law)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from beamfem.element.law_points import law_points
 from beamfem.kernels.block import NO_HISTORY
 from beamfem.model.beam import Point
 from beamfem.model.body import require_body
@@ -90,11 +91,11 @@ def _places(model: "Model", grids: Sequence[Grid], points: Sequence[Point]) -> n
 
 
 def _history(grid: Grid, first: int) -> np.ndarray:
-    """Return the numbers (ne, nq, k) of the history variables at the quadrature points of a beam."""
+    """Return the numbers (ne, nl, k) of the history variables at the points of a beam where its law acts."""
     law = grid.beam.law
     if law is None or not law.remembers:
         return NO_HISTORY
-    shape = grid.elements, len(grid.beam.element.energy_points()[0]), len(law.start)
+    shape = grid.elements, law_points(grid.beam.element), len(law.start)
     return np.arange(first, first + prod(shape), dtype=np.int64).reshape(shape)
 
 

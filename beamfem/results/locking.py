@@ -16,6 +16,7 @@ from beamfem.assembly.equations import STATICS, linearise, predicted_stresses, r
 from beamfem.assembly.round_off import row_floors
 from beamfem.assembly.system import System, system_of
 from beamfem.element.element import Element, has_stations
+from beamfem.element.law_points import law_points
 from beamfem.kernels.block import Block
 from beamfem.model.model import Model
 from beamfem.results import postprocess
@@ -32,7 +33,7 @@ _ROWS = 32  # rows of a solution among which the most strained is assessed
 
 def locking_warnings(solution: "Solution") -> tuple[str, ...]:
     """Return a warning if locking changes the displacements by more than 1e-3 of the largest."""
-    if not _locking_elements(solution.model):
+    if not _unlocked(solution.model):
         return ()
     rows = np.unique(np.linspace(0, len(solution) - 1, _ROWS).astype(int))
     energy = sum(
@@ -49,7 +50,7 @@ def frequency_warnings(state: "State", shapes: np.ndarray) -> tuple[str, ...]:
 
     state: the state about which the modes were found; shapes (m, n): over all coordinates.
     """
-    if not _locking_elements(state.model):
+    if not _unlocked(state.model):
         return ()
     system = system_of(state.model, static=True)
     zeros, free = np.zeros(len(state.p)), system.free_dofs
@@ -92,35 +93,33 @@ def _change(state: "State", span: float | None) -> float:
     return float(np.linalg.norm(step[nodes], axis=1).max()) / moved
 
 
-def _unlocked(element: Element) -> Element:
-    """Return the element with an integration rule that avoids locking."""
-    return replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
-
-
-def _locking_elements(model: Model) -> tuple[Element, ...]:
-    # the history at the points of another rule is not known
-    remembering = {mesh.block for mesh in model.meshes if mesh.history.size}
-    others = (element for number, element in enumerate(model.groups) if number not in remembering)
-    return tuple(element for element in others if _unlocked(element) != element)
+def _unlocked(model: Model) -> dict[int, Element]:
+    """Return the element of each block that may lock, by its number, with an integration rule that avoids locking."""
+    result, first = {}, {mesh.block: mesh for mesh in reversed(model.meshes)}
+    for number, element in enumerate(model.groups):
+        other = replace(element, integration="lobatto" if has_stations(element.field) else "reduced")
+        # the history at the points of another rule is not known
+        compared = first[number].beam.law is None or (law_points(other) > 0 and not first[number].history.size)
+        if other != element and compared:
+            result[number] = other
+    return result
 
 
 def _unlocked_blocks(system: System) -> tuple[Block, ...]:
-    blocks = []
-    for number, element in enumerate(system.model.groups):
-        other = _unlocked(element)
+    blocks = list(system.blocks)
+    for number, other in _unlocked(system.model).items():
         meshes = [(i, mesh) for i, mesh in enumerate(system.model.meshes) if mesh.block == number]
         changed = [(i, replace(mesh, beam=replace(mesh.beam, element=other))) for i, mesh in meshes]
-        unchanged = other == element or system.blocks[number].history.size
-        blocks.append(system.blocks[number] if unchanged else build_block(other, changed, system.model.imposing))
+        blocks[number] = build_block(other, changed, system.model.imposing)
     return tuple(blocks)
 
 
 def _sentences(model: Model, change: float, what: str) -> tuple[str, ...]:
     if change <= _TOLD:
         return ()
-    elements = _locking_elements(model)
+    elements = _unlocked(model).values()
     names = ", ".join(dict.fromkeys(f"{element.name} ({element.forces.name} forces)" for element in elements))
-    cures = " or ".join(dict.fromkeys(f'integration="{_unlocked(element).integration}"' for element in elements))
+    cures = " or ".join(dict.fromkeys(f'integration="{element.integration}"' for element in elements))
     size = f"about {100.0 * change:.2g} %" if change < 1.0 else "more than 100 %"
     return (
         f"elements lock: {names}; without locking {what} would change by {size} on this mesh. Use {cures}, or more "

@@ -8,6 +8,7 @@ import numpy as np
 from beamfem.brief import brief
 from beamfem.element import body, coordinates
 from beamfem.element.axis import Axis, cross, dot
+from beamfem.element.law_points import law_points
 from beamfem.element.structural import section_frame
 from beamfem.model.distributions import distributions
 from beamfem.model.mesh import BeamMesh
@@ -21,6 +22,7 @@ from beamfem.model.reference import (
 )
 from beamfem.registry import offered
 from beamfem.results.nodal import axis, axis_at, has_angles, nodal_angles, nodal_vectors, nodal_velocities
+from beamfem.section.law import ConstitutiveLaw
 from beamfem.units import Units
 
 
@@ -264,12 +266,26 @@ def strain_energies(mesh: BeamMesh, p: np.ndarray, imposed: np.ndarray | float =
     stiffness, reference = energy_stiffness_at(mesh, element, xi)
     strains = mesh.beam.element.forces.strains(now) - reference - imposed
     if mesh.beam.law is not None:
-        rows, points = strains.shape[:2]
-        history = p[:, mesh.history].reshape(rows * points, mesh.history.shape[-1])
-        energies = mesh.beam.law.energy(strains[..., :3].reshape(-1, 3), history)
-        return np.einsum("sqi,q->si", energies.reshape(rows, points, 2), weight)
+        result = _energies_of_law(mesh, mesh.beam.law, p, strains, weight)
+        result[:, 0] += 0.5 * strains[..., 3] ** 2 @ (stiffness[:, 3, 3] * weight)
+        return result
     stored = 0.5 * np.einsum("sqi,qij,sqj->sq", strains, stiffness, strains) @ weight
     return np.stack([stored, np.zeros(len(p))], axis=-1)
+
+
+def _energies_of_law(
+    mesh: BeamMesh, law: ConstitutiveLaw, p: np.ndarray, strains: np.ndarray, weight: np.ndarray
+) -> np.ndarray:
+    """Return the energy that a section law has stored and dissipated (steps, 2) [J], without thickness stretch.
+
+    strains (steps, points, 4): from the stress-free state; weight (points,) [m].
+    """
+    rows, points = len(strains), law_points(mesh.beam.element)
+    acting = strains.reshape(rows, mesh.elements, -1, strains.shape[-1])[:, :, :points, :3]
+    weights = weight.reshape(mesh.elements, -1)[:, :points].ravel()
+    history = p[:, mesh.history].reshape(rows * len(weights), mesh.history.shape[-1])
+    energies = law.energy(acting.reshape(-1, 3), history)
+    return np.einsum("sqi,q->si", energies.reshape(rows, len(weights), 2), weights)
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,11 @@ if TYPE_CHECKING:
 
 
 def is_chain(system: "System") -> bool:
-    """Return whether a model is a single beam with a band matrix, without joints, inclined rollers or history."""
+    """Return whether a model is a single beam with a band matrix, without joints, inclined rollers,
+    connectors or history."""
     model = system.model
     single = len(model.beams) == 1 and not model.joints and not system.inclined and not len(system.history.numbers)
-    return single and system.unknowns.pattern is None
+    return single and system.unknowns.pattern is None and not system.connectors.items
 
 
 def block_of(whole: Block, elements: slice, first_dof: int = 0) -> Block:

@@ -1,5 +1,7 @@
 """Residual and tangent of a system in a state: the interface between solvers and kernels."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.sparse import csc_array
 
@@ -7,6 +9,7 @@ from beamfem.assembly.assembler import Assembler, Equations
 from beamfem.assembly.differences import differentiated
 from beamfem.assembly.mixed_tangent import MixedTangent, mixed
 from beamfem.assembly.system import System
+from beamfem.linalg.bordered import BorderedTangent, border_of
 from beamfem.linalg.saddle import SaddleTangent
 from beamfem.linalg.tangent import BandTangent, SparseTangent, Tangent
 from beamfem.once import kept_with
@@ -78,8 +81,7 @@ def linearise(
     if borrowed:
         _give_back(system, assembler)
     system.connectors.add_forces(result, (p, v, a), time)
-    add_connectors(system, matrix, (p, v, a), time, coefficients)
-    tangent = tangent_of(system, matrix)
+    tangent = tangent_of(system, matrix, system.connectors.tangents((p, v, a), time, coefficients))
     if MIXED in system.proven and coefficients[0] != 0.0 and equations is None:
         tangent = with_stresses(system, (p, v, a), time, coefficients, stresses, tangent)
     return result, tangent
@@ -96,22 +98,7 @@ def linearise_after(system: System, p: np.ndarray, step: np.ndarray, time: float
     assembler.predict(p, step)
     assembler.balance(p, zeros, zeros, np.empty(len(p)), matrix, True)
     _give_back(system, assembler)
-    add_connectors(system, matrix, (p, zeros, zeros), time, STATICS)
-    return tangent_of(system, matrix)
-
-
-def add_connectors(
-    system: System,
-    matrix: np.ndarray,
-    state: tuple[np.ndarray, np.ndarray, np.ndarray],
-    time: float,
-    coefficients: tuple[float, float, float],
-) -> None:
-    """Add the tangents of connectors to the entries of a sparse matrix."""
-    tangents = system.connectors.tangents(state, time, coefficients)
-    for positions, tangent in zip(system.unknowns.coupled, tangents, strict=True):
-        mask = positions >= 0
-        np.add.at(matrix, positions[mask], tangent[mask])
+    return tangent_of(system, matrix, system.connectors.tangents((p, zeros, zeros), time, STATICS))
 
 
 def _entries(system: System) -> np.ndarray:
@@ -120,14 +107,23 @@ def _entries(system: System) -> np.ndarray:
     return np.empty(unknown * (2 * system.layouts[0].half_width + 1) if pattern is None else len(pattern.data))
 
 
-def tangent_of(system: System, matrix: np.ndarray) -> Tangent:
-    """Return the tangent with the entries of a matrix, flat as compiled code fills them."""
-    pattern = system.unknowns.pattern
+def tangent_of(system: System, matrix: np.ndarray, coupled: Sequence[np.ndarray]) -> Tangent:
+    """Return the tangent with the entries of a matrix, flat as compiled code fills them.
+
+    coupled: tangent (k, k) of each connector; added to the entries of a sparse matrix in place.
+    """
+    unknowns, multipliers = system.unknowns, len(system.connectors.multipliers)
+    pattern = unknowns.pattern
     if pattern is None:
-        rows = matrix.reshape(len(system.unknowns.dofs), 2 * system.layouts[0].half_width + 1)
-        return BandTangent(rows, system.unknowns.reach[0])
+        rows = matrix.reshape(-1, 2 * system.layouts[0].half_width + 1)[: unknowns.banded]
+        band = BandTangent(rows, unknowns.reach[0])
+        if not coupled:
+            return band
+        return BorderedTangent(band, border_of(unknowns.banded, multipliers, unknowns.border, coupled))
+    for positions, tangent in zip(unknowns.coupled, coupled, strict=True):
+        mask = positions >= 0
+        np.add.at(matrix, positions[mask], tangent[mask])
     whole = csc_array((matrix, pattern.indices, pattern.indptr), shape=pattern.shape)
-    multipliers = len(system.connectors.multipliers)
     return SaddleTangent(SparseTangent(whole), multipliers) if multipliers else SparseTangent(whole)
 
 

@@ -19,6 +19,7 @@ from beamfem.once import cached_property
 _FEW = 20_000  # coordinates; the order of larger models is not cached
 _NONE = np.empty(0, dtype=np.int64)
 _WIDEST_BAND = 64  # half width; wider models are solved faster by a sparse factorisation
+_WIDEST_BORDER = 48  # unknowns coupled beyond a band; for each of them, its factors are used once more
 
 
 class Mesh(NamedTuple):
@@ -35,7 +36,8 @@ class Unknowns:
     free (n,): equation number of each coordinate, -1 if it is prescribed; dofs (unknown,): the coordinates in the
     order of the equations; layouts: one per block; pattern: the sparse matrix with room for its data, None for a band;
     coupled: positions of the entries (k, k) of each coupling that is not an element, -1 for entries without one;
-    reach (2, unknown): see `reaches`, empty for a sparse matrix.
+    border: equation numbers (k,) of each of them if they border a band; reach (2, banded): see `reaches`, empty for a
+    sparse matrix.
     """
 
     free: np.ndarray
@@ -43,7 +45,13 @@ class Unknowns:
     layouts: tuple[Layout, ...]
     pattern: csc_array | None
     coupled: tuple[np.ndarray, ...] = ()
+    border: tuple[np.ndarray, ...] = ()
     reach: np.ndarray = field(default_factory=lambda: np.empty((2, 0), dtype=np.int32))
+
+    @property
+    def banded(self) -> int:
+        """Number of the equations of a band; those of multipliers follow."""
+        return self.reach.shape[1]
 
     @cached_property
     def first(self) -> int:
@@ -74,19 +82,21 @@ def order_unknowns(
     coupled: Sequence[np.ndarray] = (),
     multipliers: Sequence[int] = (),
     constrained: np.ndarray = _NONE,
+    bordered: bool = False,
 ) -> Unknowns:
     """Return the order of the unknown coordinates: that of the nodes for a single chain, renumbered for joined beams.
 
-    coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix; multipliers:
-    coordinates that come last, since they have no stiffness; constrained: those that supports prescribe, at which a
-    band of statics ends.
+    coupled: coordinates (k,) of each coupling that is not an element, which requires a sparse matrix unless they may
+    border a band (bordered); multipliers: coordinates that come last, since they have no stiffness; constrained: those
+    that supports prescribe, at which a band of statics ends.
     """
     if len(blocks) == 1 and not joined and not coupled and size <= _FEW:
         node, dof = blocks[0].node, blocks[0].dof
         numbers = node.tobytes(), node.shape, dof.tobytes(), dof.shape
         return _cached_order(*numbers, size, prescribed.tobytes(), constrained.tobytes())
     mesh = [Mesh(block.node, block.dof) for block in blocks]
-    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained)
+    narrow = bordered and len(np.unique(np.concatenate([_NONE, *coupled]))) <= _WIDEST_BORDER
+    return _order(mesh, size, prescribed, joined, coupled, multipliers, constrained, narrow or not coupled)
 
 
 @lru_cache(maxsize=64)  # studies repeatedly make models with the same numbering
@@ -101,7 +111,7 @@ def _cached_order(
 ) -> Unknowns:
     whole = np.frombuffer(node, dtype=np.int64).reshape(nodes), np.frombuffer(dof, dtype=np.int64).reshape(dofs)
     known, supported = (np.frombuffer(each, dtype=np.int64) for each in (prescribed, constrained))
-    return _order([Mesh(*whole)], size, known, False, (), (), supported)
+    return _order([Mesh(*whole)], size, known, False, (), (), supported, True)
 
 
 def _order(
@@ -112,6 +122,7 @@ def _order(
     coupled: Sequence[np.ndarray],
     multipliers: Sequence[int],
     constrained: np.ndarray,
+    banded: bool,
 ) -> Unknowns:
     mask = np.ones(size, dtype=bool)
     mask[prescribed] = False
@@ -125,24 +136,28 @@ def _order(
         # short beams get the band width of long ones, for which there is compiled code
         half_width = max(half_width, *(int((block.dof[block.node[0]] >= 0).sum()) - 1 for block in blocks))
     none = np.empty((0, 0, 0), dtype=np.int32)
-    if half_width <= _WIDEST_BAND and not coupled:
-        dofs = order[mask[order]]
+    if half_width <= _WIDEST_BAND and banded:
+        dofs = _multipliers_last(order[mask[order]], multipliers)
         turned = _to_support(blocks, order, mask, constrained)
         # joined nodes that share some coordinates only may be further apart then
         if turned is not None and _half_width(blocks, _numbers(turned, size)) <= half_width:
             dofs = turned
         free = _numbers(dofs, size)
         layouts = tuple(Layout(free, half_width, none) for _ in blocks)
-        return Unknowns(free, dofs, layouts, None, reach=reaches(blocks, free, len(dofs)))
+        reach = reaches(blocks, free, len(dofs) - len(multipliers))
+        return Unknowns(free, dofs, layouts, None, (), tuple(free[coordinates] for coordinates in coupled), reach)
     dofs = _scattered(blocks, size, coupled)
-    dofs = dofs[mask[dofs]]
-    last = np.isin(dofs, multipliers)
-    dofs = np.concatenate([dofs[~last], dofs[last]])
+    dofs = _multipliers_last(dofs[mask[dofs]], multipliers)
     free = _numbers(dofs, size)
     numbers = [*(_numbers_of(block, free) for block in blocks), *(free[coordinates][None] for coordinates in coupled)]
     pattern, slots = _pattern(numbers, len(dofs))
     layouts = tuple(Layout(free, -1, slot) for slot in slots[: len(blocks)])
     return Unknowns(free, dofs, layouts, pattern, tuple(slot[0] for slot in slots[len(blocks) :]))
+
+
+def _multipliers_last(dofs: np.ndarray, multipliers: Sequence[int]) -> np.ndarray:
+    last = np.isin(dofs, multipliers)
+    return np.concatenate([dofs[~last], dofs[last]])
 
 
 def _numbers(dofs: np.ndarray, size: int) -> np.ndarray:

@@ -261,7 +261,8 @@ class System:
         known = np.concatenate((self.prescribed_dofs, self.history.numbers))
         constrained = [*self.prescribed_dofs.tolist(), *(dof for dof, _ in self.inclined)] if self.static else []
         order = self.blocks, self.model.size, known, joined, coupled, connectors.multipliers.tolist()
-        return order_unknowns(*order, np.array(constrained, dtype=np.int64))
+        bordered = not self.static and not self.inclined
+        return order_unknowns(*order, np.array(constrained, dtype=np.int64), bordered)
 
     @cached_property
     def connectors(self) -> Connectors:

@@ -8,10 +8,10 @@ from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.tangent import SMALLEST_PIVOT
-from beamfem.solve.motion.limits import BAND, SPARSE, not_converged
+from beamfem.solve.motion.coupled_stages import CoupledStages
+from beamfem.solve.motion.limits import BAND, BORDERED, SPARSE, not_converged
 from beamfem.solve.motion.saving import Saving
 from beamfem.solve.motion.second_thread import routines
-from beamfem.solve.motion.sparse_solver import SparseSolver
 
 _INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 
@@ -24,15 +24,15 @@ class CompiledSteps:
 
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
         self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[0])
-        sparse = system.unknowns.pattern is not None
-        self._limits = SPARSE if sparse else BAND
+        sparse, connected = system.unknowns.pattern is not None, bool(system.connectors.items)
+        self._limits = SPARSE if sparse else BORDERED if connected else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
         space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, self._limits
         space.arrays[record.DIFFERENCES][:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")
         space.solver[record.STATISTICS] = address_of(statistics)
-        self._sparse = SparseSolver(system, space) if sparse else None
+        self._coupled = CoupledStages(system, space) if sparse or connected else None
 
     @property
     def why(self) -> str:
@@ -93,10 +93,10 @@ class CompiledSteps:
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value
-        if self._sparse is not None:
-            self._sparse.state, self._sparse.times = state, times
-            completed = int(march(assembler.address, solver, self._sparse.routines))
-            self._sparse.raise_error()
+        if self._coupled is not None:
+            self._coupled.state, self._coupled.times = state, times
+            completed = int(march(assembler.address, solver, self._coupled.routines))
+            self._coupled.raise_error()
         else:
             with routines(self._system, space.in_two) as calls:
                 completed = int(march(assembler.address, solver, calls))

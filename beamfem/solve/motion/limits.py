@@ -22,6 +22,7 @@ class Limits(NamedTuple):
 
 BAND = Limits()
 SPARSE = Limits(most=24, many=16, slow=0.5)  # a factorisation costs as much as ten iterations
+BORDERED = Limits(most=12, many=6, slow=0.2)  # with the tangents of connectors, as much as four
 
 
 def not_converged(statistics: np.ndarray, limits: Limits) -> str:

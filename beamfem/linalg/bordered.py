@@ -1,0 +1,101 @@
+"""Band matrices with a border: a few unknowns that are coupled beyond the band, and Lagrange multipliers."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.sparse import coo_array, csc_array, csr_array
+
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.saddle import SaddleTangent
+from beamfem.linalg.tangent import UNROTATED, BandTangent, Factorised, Rotated, SparseTangent
+
+
+class Border(NamedTuple):
+    """Entries of a matrix beside those of a band (n, n).
+
+    numbers (t,): unknowns of the band that they couple; multipliers: number k of unknowns that follow those of the
+    band; entries (t + k, t + k): of the coupled unknowns and the multipliers.
+    """
+
+    numbers: np.ndarray
+    multipliers: int
+    entries: np.ndarray
+
+
+def border_of(size: int, multipliers: int, coupled: Sequence[np.ndarray], matrices: Sequence[np.ndarray]) -> Border:
+    """Return the border of a band (size, size).
+
+    coupled: equation numbers (m,) of each matrix (m, m), -1 for what is no unknown.
+    """
+    everything = np.concatenate([*coupled, np.arange(size, size + multipliers)])
+    numbers = np.unique(everything[everything >= 0])
+    entries = np.zeros((len(numbers), len(numbers)))
+    for own, matrix in zip(coupled, matrices, strict=True):
+        mask = own >= 0
+        place = np.searchsorted(numbers, own[mask])
+        entries[np.ix_(place, place)] += matrix[np.ix_(mask, mask)]
+    return Border(numbers[numbers < size], multipliers, entries)
+
+
+class BorderedFactors:
+    """Factors of a band matrix B with a border: x + B^-1 E (D x_t + G^T l) = B^-1 r for the coupled unknowns x_t.
+
+    solve: replaces a right-hand side (n,) by the solution with B. Raises LinAlgError if the matrix is singular.
+    """
+
+    def __init__(self, size: int, border: Border, solve: Callable[[np.ndarray], None]) -> None:
+        self._border, self._solve, self._size = border, solve, size
+        count, entries = len(border.numbers), border.entries
+        self._columns = np.zeros((count, size))
+        self._columns[np.arange(count), border.numbers] = 1.0
+        for column in self._columns:
+            solve(column)
+        small = entries.copy()
+        small[:count] = self._columns[:, border.numbers].T @ entries[:count]
+        small[:count, :count] += np.eye(count)
+        self._factors, self._exchanged, singular = dgetrf(small, overwrite_a=True)
+        if singular or not np.isfinite(self._factors).all():
+            raise LinAlgError("the tangent is singular")
+        self._coupling = entries[:count]
+
+    def solve(self, right: np.ndarray) -> None:
+        """Replace a right-hand side (n + k,) by the solution."""
+        numbers, x, rest = self._border.numbers, right[: self._size], right[self._size :]
+        self._solve(x)
+        coupled, _ = dgetrs(self._factors, self._exchanged, np.concatenate([x[numbers], rest]))
+        x -= (self._coupling @ coupled) @ self._columns
+        rest[:] = coupled[len(numbers) :]
+
+
+@dataclass(frozen=True)
+class BorderedTangent:
+    """A band matrix with a border, which other solvers than that of time steps take as a sparse matrix."""
+
+    band: BandTangent
+    border: Border
+
+    def factorised(self, rotated: Rotated) -> Factorised:
+        """Return the factors. Raises LinAlgError."""
+        whole, multipliers = SparseTangent(self._whole()), self.border.multipliers
+        return (SaddleTangent(whole, multipliers) if multipliers else whole).factorised(rotated)
+
+    def solve(self, right: np.ndarray, rotated: Rotated) -> np.ndarray:
+        """Return x with A x = right. Raises LinAlgError."""
+        return self.factorised(rotated).solve(right)
+
+    def sparse(self, rotated: Rotated) -> csr_array:
+        """Return the matrix (n + k, n + k) with the normals of inclined rollers rotated to x and constrained there."""
+        return SparseTangent(self._whole()).sparse(rotated)
+
+    def _whole(self) -> csc_array:
+        numbers, multipliers, entries = self.border
+        size = len(self.band.rows)
+        own = np.concatenate([numbers, np.arange(size, size + multipliers)])
+        row, column = (places.ravel() for places in np.meshgrid(own, own, indexing="ij"))
+        shape = size + multipliers, size + multipliers
+        band = coo_array(self.band.sparse(UNROTATED))
+        inner = coo_array((band.data, (band.row, band.col)), shape=shape)
+        return csc_array(inner + coo_array((entries.ravel(), (row, column)), shape=shape))

@@ -1,0 +1,125 @@
+"""Bands with a border: connectors on chains in motions, against the same equations as a sparse matrix."""
+
+import numpy as np
+import pytest
+from connectors import KINDS, Anchor, PointMass, Rest, RigidLink, SpringDamper, beam, cantilever, crossbar
+
+import beamfem as bf
+from beamfem.assembly import layout
+from beamfem.assembly.equations import linearise
+from beamfem.assembly.system import System, system_of
+from beamfem.linalg.bordered import BorderedFactors, BorderedTangent, border_of
+from beamfem.linalg.lapack import LinAlgError
+from beamfem.linalg.tangent import UNROTATED, BandTangent
+
+
+def of_all_kinds():
+    for element in KINDS:
+        own = beam(element)
+        gravity = [bf.Gravity((3.0, -9.81))]
+        yield cantilever(own, gravity, [PointMass(own.end, 1.0), SpringDamper(own.at(0.5), own.end, 1e4, 3.0)])
+        yield cantilever(own, gravity, [Rest(own.end, -1e-3, 1e5, 0.3), Anchor(own.at(0.25), (1e3, 1e4, 10.0))])
+        yield bf.Model([own], [bf.Pin(own.start)], gravity, connectors=[RigidLink(own.at(0.5), own.end)])
+    yield crossbar(RigidLink, 0.3)[1]
+    yield crossbar(lambda a, b: SpringDamper(a, b, 1e4, 10.0))[1]
+
+
+@pytest.mark.parametrize("number", range(3 * len(KINDS) + 2))
+def test_a_motion_is_that_of_the_sparse_matrix(number, monkeypatch):
+    def run():
+        model = list(of_all_kinds())[number]
+        motion = bf.simulate(model, 0.1, 2e-3, integrator=bf.GeneralizedAlpha(0.8))
+        return motion, system_of(model, static=False).unknowns
+
+    bordered, unknowns = run()
+    assert unknowns.pattern is None
+    monkeypatch.setattr(layout, "_WIDEST_BORDER", -1)
+    sparse, unknowns = run()
+    assert unknowns.pattern is not None
+    coordinates = slice(bordered.model.coordinates)
+    assert bordered.p == pytest.approx(sparse.p, rel=1e-5, abs=1e-7)  # multipliers [N] as well
+    for name, tolerance in (("p", 1e-9), ("v", 1e-7)):
+        one, other = (getattr(motion, name)[:, coordinates] for motion in (bordered, sparse))
+        assert np.abs(other - other[0]).max() > 1e-3
+        assert one == pytest.approx(other, abs=tolerance * np.abs(other).max())
+
+
+@pytest.mark.parametrize("number", range(3 * len(KINDS) + 2))
+def test_its_tangent_is_that_of_the_sparse_matrix(number, monkeypatch, rng):
+    found = []
+    for widest in (48, -1):
+        monkeypatch.setattr(layout, "_WIDEST_BORDER", widest)
+        system = System(list(of_all_kinds())[number], static=False)
+        moved = system.reference + 1e-2 * np.random.default_rng(0).standard_normal(len(system.reference))
+        _, tangent = linearise(system, moved, 0.0 * moved, 0.0 * moved, 0.0, (1.0, 2.0, 3.0))
+        whole = np.zeros((len(moved),) * 2)
+        whole[np.ix_(system.free_dofs, system.free_dofs)] = tangent.sparse(UNROTATED).toarray()
+        right = rng.standard_normal(len(system.free_dofs)) if not found else found[0][1][system.free_dofs]
+        full, x = np.zeros(len(moved)), np.zeros(len(moved))
+        full[system.free_dofs] = right
+        x[system.free_dofs] = tangent.solve(right, UNROTATED)
+        assert isinstance(tangent, BorderedTangent) == (widest > 0)
+        found.append((whole, full, x, tangent.factorised(UNROTATED).negative_pivots))
+    one, other = found
+    assert one[0] == pytest.approx(other[0], rel=1e-13, abs=1e-13 * np.abs(other[0]).max())
+    assert one[2] == pytest.approx(other[2], rel=1e-6, abs=1e-7 * np.abs(other[2]).max())
+    assert one[3] == other[3]
+
+
+@pytest.mark.parametrize("multipliers", [0, 2])
+def test_factors_with_a_border_solve_the_whole_matrix(multipliers, rng):
+    size, half = 12, 2
+    whole = np.zeros((size + multipliers, size + multipliers))
+    rows = rng.standard_normal((size, 2 * half + 1))
+    rows[:, half] += 8.0
+    whole[:size, :size] = BandTangent(rows, np.empty((2, 0))).sparse(UNROTATED).toarray()
+    band = whole[:size, :size].copy()
+    coupled = [np.array([0, 7, -1, 11]), np.array([3, 7, *range(size, size + multipliers)])]
+    matrices = [rng.standard_normal((len(own), len(own))) for own in coupled]
+    matrices[1][2:, 2:] = 0.0
+    for own, matrix in zip(coupled, matrices, strict=True):
+        mask = own >= 0
+        whole[np.ix_(own[mask], own[mask])] += matrix[np.ix_(mask, mask)]
+
+    def solve(x):
+        x[:] = np.linalg.solve(band, x)
+
+    factors = BorderedFactors(size, border_of(size, multipliers, coupled, matrices), solve)
+    right = rng.standard_normal(size + multipliers)
+    x = right.copy()
+    factors.solve(x)
+    assert whole @ x == pytest.approx(right, abs=1e-12)
+
+
+def test_conditions_that_repeat_each_other_are_singular():
+    twice = [np.array([0, 2]), np.array([0, 3])]
+    row = [np.array([[0.0, 1.0], [1.0, 0.0]])] * 2
+    with pytest.raises(LinAlgError):
+        BorderedFactors(2, border_of(2, 2, twice, row), lambda x: None)
+
+
+def test_an_error_in_a_force_ends_the_motion_with_the_states_before():
+    class Failing(PointMass):
+        def force(self, at):
+            if 0.0101 < np.real(at.time) < 0.0119:
+                raise ZeroDivisionError("no force there")
+            return super().force(at)
+
+    own = beam(KINDS[1])
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], [Failing(own.end, 1.0)])
+    with pytest.raises(
+        bf.InputError, match=r"force of Failing.*cannot be computed: ZeroDivisionError: no force"
+    ) as caught:
+        bf.simulate(model, 0.05, 1e-3)
+    known = bf.simulate(cantilever(own, [bf.Gravity((0.0, -9.81))], [PointMass(own.end, 1.0)]), 0.01, 1e-3)
+    assert caught.value.solution.p == pytest.approx(known.p[: len(caught.value.solution)], abs=1e-14)
+    assert bf.simulate(model, 0.01, 1e-3).p == pytest.approx(known.p, abs=1e-14)
+
+
+def test_many_connectors_make_the_matrix_sparse():
+    own = beam(bf.CRBF(2), elements=30)
+    masses = [PointMass(own.at(k / 30), 0.1) for k in range(1, 31)]
+    model = cantilever(own, [bf.Gravity((0.0, -9.81))], masses)
+    bf.simulate(model, 0.01, 1e-3)
+    system = system_of(model, static=False)
+    assert system.unknowns.pattern is not None

@@ -65,8 +65,8 @@ from beamfem.results.status import Status
 from beamfem.section import Circle, Layer, Layered, Rectangle, RememberingLaw, Section, SectionLaw, Tube
 from beamfem.solve.modes.modes import Modes, solve_modes
 from beamfem.solve.motion.dynamics import simulate
+from beamfem.solve.motion.equations_of_motion import EquationsOfMotion, Integrator
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme
-from beamfem.solve.motion.own_step import EquationsOfMotion, Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.paths.trace import trace_equilibrium
 from beamfem.solve.stability.buckling import Buckling, solve_buckling

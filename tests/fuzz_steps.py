@@ -6,7 +6,7 @@ import numpy as np
 
 import beamfem as bf
 from beamfem.assembly.system import system_of
-from beamfem.solve.motion.own_step import EquationsOfMotion
+from beamfem.solve.motion.equations_of_motion import EquationsOfMotion
 
 _ROWS = 8
 _LEFT = 1e-8  # of the model, or [rad]: ten times the tolerance of a step

@@ -18,8 +18,8 @@ from beamfem.errors import InputError
 from beamfem.model.model import Model
 from beamfem.solve.modes.modes import solve_modes
 from beamfem.solve.motion.dynamics import simulate
+from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme
-from beamfem.solve.motion.own_step import Integrator
 from beamfem.solve.newton.iteration import Newton
 from beamfem.solve.stability.buckling import solve_buckling
 from beamfem.solve.statics.load_steps import SAME, Snap

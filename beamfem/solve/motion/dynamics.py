@@ -15,12 +15,12 @@ from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics, Status
 from beamfem.results.turns import first_turns
 from beamfem.solve.motion.conditions import require_met
+from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.impact import impact
 from beamfem.solve.motion.initial_velocity import start_velocity
 from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme, is_scheme, require_rule
 from beamfem.solve.motion.march import Last, Record, initial_acceleration, march, new_statistics
 from beamfem.solve.motion.onto_supports import put_onto_supports, require_on_supports
-from beamfem.solve.motion.own_step import Integrator
 from beamfem.solve.motion.prescribed_motion import prescribed_motion
 from beamfem.solve.motion.time_steps import SIDE, stretches
 from beamfem.solve.motion.unresolved import name_unresolved

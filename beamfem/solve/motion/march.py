@@ -19,10 +19,10 @@ from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.compiled_steps import CompiledSteps, acceleration
 from beamfem.solve.motion.conditions import constrained_acceleration
+from beamfem.solve.motion.equations_of_motion import Integrator
 from beamfem.solve.motion.integrators import Scheme, is_scheme
-from beamfem.solve.motion.own_step import Integrator, OwnStep
+from beamfem.solve.motion.own_steps import OwnSteps
 from beamfem.solve.motion.saving import Saving
-from beamfem.solve.motion.single_steps import SingleSteps
 from beamfem.solve.motion.time_steps import Stretch
 
 _CHUNK_SECONDS = 0.25
@@ -143,10 +143,10 @@ def _kept(record: Record, done: int, part: Stretch) -> np.ndarray | None:
 @contextmanager
 def _steps(
     system: System, integrator: Scheme | Integrator, part: Stretch, statistics: np.ndarray
-) -> Iterator[CompiledSteps | SingleSteps]:
+) -> Iterator[CompiledSteps | OwnSteps]:
     """Provide the object that takes the steps of a stretch."""
     if not is_scheme(integrator):
-        yield SingleSteps(system, OwnStep(system, cast("Integrator", integrator), part.loads_from, statistics))
+        yield OwnSteps(system, cast("Integrator", integrator), part.loads_from, statistics[:1])
         return
     with motion_workspace(system) as space:
         yield CompiledSteps(system, space, integrator.rule(part.step), statistics)

@@ -1,4 +1,4 @@
-"""User-defined time integrators: the equations that they solve, and marching with them."""
+"""User-defined time integrators, and the equations that they solve."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,12 +11,11 @@ from scipy.sparse import block_array, block_diag, csc_array, csr_array, dia_arra
 from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.brief import brief
-from beamfem.errors import ConvergenceError, InputError
+from beamfem.errors import ConvergenceError
 from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, turning
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
-from beamfem.validation import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +72,7 @@ class EquationsOfMotion:
             The residual; of a condition its own unit, and of a coordinate that a support moves [m, rad].
         """
         unbalanced = residual(self.system, p, v, a, time, time - self.begin)
-        dofs, values = _driven(self.system, time)
+        dofs, values = driven(self.system, time)
         unbalanced[dofs] = p[dofs] - values
         return unbalanced[self.free]
 
@@ -193,51 +192,7 @@ class Integrator(Protocol):
         ...
 
 
-class OwnStep:
-    """A step of a user-defined integrator; why: the reason of a failure; dt [s]: duration of the last step."""
-
-    def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
-        self.system, self.integrator, self.time, self.counted = system, integrator, begin, statistics[:1]
-        moved = any(callable(item.value) for item in system.prescribed)
-        self.solved = System(system.model, static=False, released=True) if moved else system
-        self.dt, self.why = 0.0, ""
-
-    def take(self, state: np.ndarray, before: np.ndarray, prescribed: np.ndarray, time: float) -> bool:
-        """See `single_steps.Step`."""
-        p, v, a, _ = before.copy()
-        begin = State(p, v, a, self.time, self.system.model)
-        motion = EquationsOfMotion(self.solved, self.counted, self.time)
-        try:
-            reached = self.integrator.step(motion, begin, time)
-        except (ConvergenceError, LinAlgError) as error:
-            self.why = str(error)
-            return False
-        except Exception as error:
-            error.add_note(f"raised by step of {type(self.integrator).__name__}, in the step to {time:.6g} s")
-            raise
-        if not isinstance(reached, State) or reached.model is not self.system.model:
-            raise InputError(
-                f"step of {type(self.integrator).__name__} must return a State of the model, such as "
-                f"dataclasses.replace(begin, p=p, v=v, a=a, at=end), got {shown(reached)}"
-            )
-        found = np.array([reached.p, reached.v, reached.a])
-        if not np.isfinite(found).all():
-            self.why = f"step of {type(self.integrator).__name__} returned numbers that are not finite"
-            return False
-        at_rest = self.solved.prescribed_dofs
-        history, multipliers = self.system.history.numbers, self.system.connectors.multipliers
-        state[:3] = found
-        state[:3, at_rest] = prescribed[:, np.isin(self.system.prescribed_dofs, at_rest)]
-        dofs, values = _driven(self.solved, time)
-        state[0, dofs] = values
-        state[0, history] = before[0, history]
-        state[1:3, multipliers] = 0.0  # multipliers have no rates
-        state[3] = state[2]
-        self.dt, self.time = time - self.time, time
-        return True
-
-
-def _driven(system: System, time: float) -> tuple[np.ndarray, np.ndarray]:
+def driven(system: System, time: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers and values (m,) of the coordinates that supports move, if they count as unknown."""
     dofs = np.array([item.dof for item in system.driven], dtype=np.int64)
     return dofs, system.reference[dofs] + np.array([item.change(time, False) for item in system.driven], dtype=float)

@@ -66,11 +66,19 @@ def balance_of(system: System, p: np.ndarray, load_factor: float) -> Balance:
 
 
 def balance_with(system: System, p: np.ndarray, load_factor: float, unbalanced: np.ndarray, jacobian: float) -> Balance:
-    """Return the balance of a state whose residual (n,) and smallest r0' x d are known."""
+    """Return the balance of a state whose residual (n,) and smallest r0' x d are known.
+
+    Conditions of connectors are no forces: they are met as soon as corrections are small, since these contain all that
+    is left of them.
+    """
     # without reactions the largest load counts
     load = load_size(system, system.loads_at(load_factor))
-    largest = float(np.max(np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs], initial=0.0))
-    force = float(np.max(np.abs(unbalanced) * system.scale, initial=0.0))
+    forces = np.abs(unbalanced) * system.scale
+    free = np.abs(system.along_free(unbalanced)) * system.scale[system.free_dofs]
+    multipliers = system.connectors.multipliers
+    if len(multipliers):
+        forces[multipliers] = free[system.unknowns.free[multipliers]] = 0.0
+    largest, force = float(np.max(free, initial=0.0)), float(np.max(forces, initial=0.0))
     return Balance(p, unbalanced, largest, max(force, load), jacobian <= 0.0)
 
 

@@ -46,13 +46,16 @@ from beamfem.io.results import load
 from beamfem.keywords import check_classes as _check_classes
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
+from beamfem.model.body_load import BodyLoad
 from beamfem.model.contribution import At, Contribution, Remembering
 from beamfem.model.grading import graded
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.imposed_strains import Actuation, Temperature
 from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, PointLoad
+from beamfem.model.line_load import LineLoad
 from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
 from beamfem.model.model import Model
+from beamfem.model.point_load import PointLoad
 from beamfem.model.support import LineSupport, PointSupport
 from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 from beamfem.model.time_functions import Interpolated, Piecewise

@@ -199,7 +199,7 @@ class System:
         for load in self.model.gravity:
             result[:, :2] += np.array(load.vector) * factor(load, time, self.static)
         for line in self.model.line_loads:
-            if line.uniform and line.axes == "plane":
+            if line.even:
                 row = self.model.number_of(line.beam)
                 result[row, 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, self.static)
         return result

@@ -8,8 +8,8 @@ import numpy as np
 
 from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.model.beam import Beam, Point
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.joints import Joint
-from beamfem.model.load import ImposedStrain
 from beamfem.model.model import Model
 from beamfem.model.named import names
 from beamfem.model.sampled import Sampled, SampledAlong

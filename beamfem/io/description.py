@@ -106,9 +106,6 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
 
 def _with_own_values(load: Any, model: Model) -> Any:
     """Return a load along a beam with its functions as samples: those that were used, and more for drawing."""
-    if not isinstance(load, AlongBeam):
-        return load
-    original: Any = load
     saved: dict[str, Any] = {}
     for name in functions_along(load):
         mesh = model.mesh_of(load.beam.start)
@@ -118,7 +115,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
         saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
-    return replace(original, **saved)
+    return replace(load, **saved) if saved else load
 
 
 class _Writer:

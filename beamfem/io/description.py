@@ -12,11 +12,11 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
-from beamfem.io.own_parts import dataclasses_of, made, name_of
+from beamfem.io.own_parts import made, name_of
 from beamfem.material import Material
-from beamfem.model import imposed_strains, joints, loads, supports
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
+from beamfem.model.listed_parts import listed_parts
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import energy_points, length_points, stations
@@ -59,7 +59,7 @@ _CLASSES = {
         Interpolated,
         SampledAlong,
         Model,
-        *(kind for room in (loads, imposed_strains, supports, joints) for kind in dataclasses_of(room)),
+        *listed_parts(),
     )
 }
 _OF_TIME = "amplitude"  # the field of a user's part that is known to be a function of time

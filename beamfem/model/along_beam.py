@@ -19,6 +19,7 @@ class AlongBeam(ABC):
     """A load along a beam; `along`: names of the fields that may be functions of the arc length [m] from the start."""
 
     along: ClassVar[tuple[str, ...]] = ()
+    units: ClassVar[tuple[str, ...]] = ()  # of these fields, if stated
 
     beam: Beam
 

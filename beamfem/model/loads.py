@@ -1,7 +1,7 @@
 """The loads of the package: gravity, loads along beams, and loads at points."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -36,7 +36,7 @@ class Gravity(BodyLoad):
     array([770.1, 770.1])
     """
 
-    vector: tuple[float, float]
+    vector: tuple[float, float] = field(metadata={"unit": "m/s^2"})
     amplitude: Amplitude = None
     scale: bool = True
 
@@ -78,7 +78,7 @@ class DistributedLoad(LineLoad):
     along: ClassVar[tuple[str, ...]] = ("vector",)
 
     beam: Beam
-    vector: tuple[float, float] | Varying
+    vector: tuple[float, float] | Varying = field(metadata={"unit": "N/m"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False
@@ -176,7 +176,7 @@ class Pressure(LineLoad):
     axes: ClassVar[Literal["axis"]] = "axis"
 
     beam: Beam
-    value: float | Callable[[float], float]
+    value: float | Callable[[float], float] = field(metadata={"unit": "N/m"})
     amplitude: Amplitude = None
     scale: bool = True
 
@@ -251,7 +251,7 @@ class PointForce(PointLoad):
     """
 
     point: Point
-    vector: tuple[float, float]
+    vector: tuple[float, float] = field(metadata={"unit": "N"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False
@@ -291,7 +291,7 @@ class PointMoment(PointLoad):
     """
 
     point: Point
-    moment: float
+    moment: float = field(metadata={"unit": "N m"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False

@@ -1,6 +1,6 @@
 """What loads ask of states of a model: the directions of the axis there, and displacements from the reference."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Literal, Protocol
 
 import numpy as np
@@ -49,7 +49,7 @@ class Displaced(Protocol):
         ...
 
     @property
-    def first_moments(self) -> Sequence[np.ndarray]:
+    def first_moments(self) -> Iterable[np.ndarray]:
         """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
         ...
 

@@ -1,7 +1,8 @@
 """Displacements of a solution from the reference, by which loads do work."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -15,26 +16,29 @@ from beamfem.results.turns import rotations
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
+_Found = TypeVar("_Found")
+
 
 class Displacements:
     """The rows of a solution, with the members that the work of loads needs.
 
-    first: integral of the position over the mass of each beam (steps, 2) [kg m].
+    first: integral of the position over the mass of each beam (steps, 2) [kg m]. What was asked along a beam is kept
+    until another one is asked for, since that of all beams may be larger than the solution.
     """
 
     def __init__(self, solution: "Solution", first: Sequence[np.ndarray]) -> None:
         self.solution, self._first = solution, first
-        self._along: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
-        self._rotations: dict[int, dict[float, np.ndarray]] = {}
+        self._beam: Beam | None = None
+        self._kept: dict[str, Any] = {}
 
     def __len__(self) -> int:
         return len(self.solution)
 
-    @cached_property
-    def first_moments(self) -> list[np.ndarray]:
+    @property
+    def first_moments(self) -> Iterator[np.ndarray]:
         """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
-        pairs = zip(self.solution.model.meshes, self._first, strict=True)
-        return [first - _reference_moment(mesh) for mesh, first in pairs]
+        for mesh, first in zip(self.solution.model.meshes, self._first, strict=True):
+            yield first - _reference_moment(mesh)
 
     def displacement(self, point: Point) -> np.ndarray:
         """Return the displacement of a point (steps, 2) [m]."""
@@ -42,22 +46,41 @@ class Displacements:
 
     def rotation(self, point: Point) -> np.ndarray:
         """Return the rotation of the section at a point (steps,) [rad], evaluated once for all loads of its beam."""
-        if id(point.beam) not in self._rotations:
-            loaded = (load.place for load in self.solution.model.loads)
-            points = [own for own in loaded if isinstance(own, Point) and own.beam is point.beam]
-            fractions = [own.fraction for own in points]
-            self._rotations[id(point.beam)] = dict(zip(fractions, rotations(self.solution, points).T, strict=True))
-        return self._rotations[id(point.beam)][point.fraction]
+
+        def evaluated() -> dict[float, np.ndarray]:
+            points = self._loaded[id(point.beam)]
+            found = rotations(self.solution, points).T
+            return {own.fraction: angle for own, angle in zip(points, found, strict=True)}
+
+        return self._once(point.beam, "rotation", evaluated)[point.fraction]
 
     def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
-        if id(beam) not in self._along:
+
+        def evaluated() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             mesh = self.solution.model.mesh_of(beam.start)
             element, xi, weight = length_points(mesh)
             now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, self.solution.p), element, xi).r
-            moved = now - reference_position(mesh, element, xi)
-            self._along[id(beam)] = moved, weight, mesh.arc_length(element, xi)
-        return self._along[id(beam)]
+            return now - reference_position(mesh, element, xi), weight, mesh.arc_length(element, xi)
+
+        return self._once(beam, "along", evaluated)
+
+    def _once(self, beam: Beam, name: str, evaluated: Callable[[], _Found]) -> _Found:
+        if self._beam is not beam:
+            self._beam, self._kept = beam, {}
+        if name not in self._kept:
+            self._kept[name] = evaluated()
+        found: _Found = self._kept[name]
+        return found
+
+    @cached_property
+    def _loaded(self) -> dict[int, list[Point]]:
+        """The loaded points of each beam."""
+        result = defaultdict[int, list[Point]](list)
+        for load in self.solution.model.loads:
+            if isinstance(load.place, Point):
+                result[id(load.place.beam)].append(load.place)
+        return result
 
 
 def _reference_moment(mesh: BeamMesh) -> np.ndarray:

@@ -2,12 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamfem.brief import brief
+from beamfem.model.beam import Point
 from beamfem.model.load import Load, factor
+from beamfem.model.model import Model
 from beamfem.registry import offered
 from beamfem.results.connected import potential_of_connectors
 from beamfem.results.displacements import Displacements
@@ -79,10 +82,18 @@ def dissipated(solution: "Solution", by_sections: np.ndarray) -> np.ndarray:
 
 def _of_loads(solution: "Solution", displaced: Displacements) -> np.ndarray:
     result = np.zeros(len(solution))
-    for load in solution.model.loads:
+    for load in sorted(solution.model.loads, key=partial(_number_of_beam, solution.model)):
         if load.conservative:
             result -= _factors(solution, load) * load.work(displaced)
     return result
+
+
+def _number_of_beam(model: Model, load: Load) -> int:
+    """Return the number of the beam that a load acts on, -1 for all mass: displacements are kept for a beam."""
+    place = load.place
+    if place is None:
+        return -1
+    return model.number_of(place.beam if isinstance(place, Point) else place)
 
 
 def _factors(solution: "Solution", load: Load) -> np.ndarray:

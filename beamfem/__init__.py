@@ -31,12 +31,14 @@ if TYPE_CHECKING:
 # what is public, by theme; where it is: in `beamfem.public`
 _CONTENTS = {
     "Model": "Model Beam Point Material graded",
-    "Axes": """Line Arc Polyline Chain BSpline Parametric Curve
-elliptic_arc spline_through_hermite without_removable_knots""",
+    "Axes": (
+        "Line Arc Polyline Chain BSpline Parametric Curve\nelliptic_arc spline_through_hermite without_removable_knots"
+    ),
     "Sections": "Rectangle Circle Tube Section Layered Layer SectionLaw",
     "Elements": "ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element",
-    "Element parts": """Cubic Lagrange Gradients Rotation ShearFree
-ContinuumMechanics SplitContinuum ElasticLine Structural""",
+    "Element parts": (
+        "Cubic Lagrange Gradients Rotation ShearFree\nContinuumMechanics SplitContinuum ElasticLine Structural"
+    ),
     "Supports": "Clamp Pin Roller Spring Foundation Prescribed",
     "Joints": "Rigid Hinge",
     "Loads": "PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature",
@@ -47,12 +49,18 @@ ContinuumMechanics SplitContinuum ElasticLine Structural""",
     "Results": "Solution State Path PathState Bifurcation Modes Buckling Status",
     "Along beams": "SectionForces BeamStress Fields FieldOnBasis field_on_basis",
     "Studies": "sweep converge",
-    "User-defined": """PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
-Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion""",
-    "Errors": """BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
-LimitPointError FileError MissingPackageError""",
-    "Warnings": """UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning
-NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning""",
+    "User-defined": (
+        "PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint\n"
+        "Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion"
+    ),
+    "Errors": (
+        "BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError\n"
+        "LimitPointError FileError MissingPackageError"
+    ),
+    "Warnings": (
+        "UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning\n"
+        "NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning"
+    ),
 }
 __all__ = [name for names in _CONTENTS.values() for name in names.split()]
 __doc__ = f"{__doc__ or ''}\n" + "".join(
@@ -60,7 +68,6 @@ __doc__ = f"{__doc__ or ''}\n" + "".join(
     for theme, names in _CONTENTS.items()
     for number, line in enumerate(names.split("\n"))
 )
-
 
 imports_all("beamfem.public")
 

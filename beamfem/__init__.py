@@ -18,30 +18,6 @@ The examples of all docstrings continue this one, a steel cantilever with a forc
 -0.0305
 
 Contents; see help(bf.Beam), for example, for details.
-
-    Model             Model Beam Point Material graded
-    Axes              Line Arc Polyline Chain BSpline Parametric Curve
-                      elliptic_arc spline_through_hermite without_removable_knots
-    Sections          Rectangle Circle Tube Section Layered Layer SectionLaw
-    Elements          ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element
-    Element parts     Cubic Lagrange Gradients Rotation ShearFree
-                      ContinuumMechanics SplitContinuum ElasticLine Structural
-    Supports          Clamp Pin Roller Spring Foundation Prescribed
-    Joints            Rigid Hinge
-    Loads             PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature
-    Time functions    Interpolated Piecewise
-    From files        read_mesh LineMesh Frame read_dxf load
-    Solvers           solve_static trace_equilibrium solve_buckling solve_modes simulate
-    Solver settings   Newton GeneralizedAlpha RigidVelocity
-    Results           Solution State Path PathState Bifurcation Modes Buckling Status
-    Along beams       SectionForces BeamStress Fields FieldOnBasis field_on_basis
-    Studies           sweep converge
-    User-defined      PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint
-                      Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion
-    Errors            BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError
-                      LimitPointError FileError MissingPackageError
-    Warnings          UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning
-                      NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning
 """
 
 import sys
@@ -52,122 +28,46 @@ from beamfem.whole import imports_all, whole_package
 if TYPE_CHECKING:
     from beamfem.public import *
 
-__all__ = [
-    "ANCF",
-    "ANCFCRBF",
-    "CRBF",
-    "Actuation",
-    "Arc",
-    "At",
-    "BSpline",
-    "Beam",
-    "BeamStress",
-    "BeamfemError",
-    "Bifurcation",
-    "BilinearANCF",
-    "BilinearCRBF",
-    "BodyLoad",
-    "Buckling",
-    "Chain",
-    "ChangedCodeWarning",
-    "Circle",
-    "Clamp",
-    "ContinuumMechanics",
-    "Contribution",
-    "ConvergenceError",
-    "Cubic",
-    "Curve",
-    "DistributedLoad",
-    "ElasticLine",
-    "Element",
-    "EquationsOfMotion",
-    "FieldOnBasis",
-    "Fields",
-    "FileError",
-    "Foundation",
-    "Frame",
-    "FreeMotionError",
-    "GeneralizedAlpha",
-    "Gradients",
-    "Gravity",
-    "Hinge",
-    "ImposedStrain",
-    "InputError",
-    "Integrator",
-    "Interpolated",
-    "Joint",
-    "Lagrange",
-    "Layer",
-    "Layered",
-    "LimitPointError",
-    "Line",
-    "LineLoad",
-    "LineMesh",
-    "LineSupport",
-    "Material",
-    "MissingPackageError",
-    "Model",
-    "Modes",
-    "Newton",
-    "NotJoinedWarning",
-    "NotReadWarning",
-    "NotStoredWarning",
-    "Parametric",
-    "Path",
-    "PathState",
-    "Piecewise",
-    "Pin",
-    "Point",
-    "PointForce",
-    "PointLoad",
-    "PointMoment",
-    "PointSupport",
-    "Polyline",
-    "Prescribed",
-    "Pressure",
-    "Rectangle",
-    "Remembering",
-    "RememberingLaw",
-    "Rigid",
-    "RigidVelocity",
-    "Roller",
-    "Rotation",
-    "RoundOffWarning",
-    "Scheme",
-    "Section",
-    "SectionForces",
-    "SectionLaw",
-    "SeveralTurnsWarning",
-    "ShearFree",
-    "ShearRigid",
-    "Solution",
-    "SplitContinuum",
-    "Spring",
-    "State",
-    "Status",
-    "Structural",
-    "Temperature",
-    "Tube",
-    "UnknownPointError",
-    "UnknownStressWarning",
-    "UnstableWarning",
-    "converge",
-    "elliptic_arc",
-    "field_on_basis",
-    "graded",
-    "load",
-    "read_dxf",
-    "read_mesh",
-    "simulate",
-    "solve_buckling",
-    "solve_modes",
-    "solve_static",
-    "spline_through_hermite",
-    "sweep",
-    "trace_equilibrium",
-    "without_removable_knots",
-]
-
+# what is public, by theme; where it is: in `beamfem.public`
+_CONTENTS = {
+    "Model": "Model Beam Point Material graded",
+    "Axes": (
+        "Line Arc Polyline Chain BSpline Parametric Curve\nelliptic_arc spline_through_hermite without_removable_knots"
+    ),
+    "Sections": "Rectangle Circle Tube Section Layered Layer SectionLaw",
+    "Elements": "ANCF CRBF ANCFCRBF BilinearANCF BilinearCRBF ShearRigid Element",
+    "Element parts": (
+        "Cubic Lagrange Gradients Rotation ShearFree\nContinuumMechanics SplitContinuum ElasticLine Structural"
+    ),
+    "Supports": "Clamp Pin Roller Spring Foundation Prescribed",
+    "Joints": "Rigid Hinge",
+    "Loads": "PointForce PointMoment DistributedLoad Pressure Gravity Actuation Temperature",
+    "Time functions": "Interpolated Piecewise",
+    "From files": "read_mesh LineMesh Frame read_dxf load",
+    "Solvers": "solve_static trace_equilibrium solve_buckling solve_modes simulate",
+    "Solver settings": "Newton GeneralizedAlpha RigidVelocity",
+    "Results": "Solution State Path PathState Bifurcation Modes Buckling Status",
+    "Along beams": "SectionForces BeamStress Fields FieldOnBasis field_on_basis",
+    "Studies": "sweep converge",
+    "User-defined": (
+        "PointLoad LineLoad BodyLoad ImposedStrain PointSupport LineSupport Joint\n"
+        "Contribution At Remembering RememberingLaw Scheme Integrator EquationsOfMotion"
+    ),
+    "Errors": (
+        "BeamfemError InputError UnknownPointError FreeMotionError ConvergenceError\n"
+        "LimitPointError FileError MissingPackageError"
+    ),
+    "Warnings": (
+        "UnstableWarning RoundOffWarning SeveralTurnsWarning UnknownStressWarning\n"
+        "NotJoinedWarning NotReadWarning NotStoredWarning ChangedCodeWarning"
+    ),
+}
+__all__ = [name for names in _CONTENTS.values() for name in names.split()]
+__doc__ = f"{__doc__ or ''}\n" + "".join(
+    f"    {theme if number == 0 else '':<18}{line}\n"
+    for theme, names in _CONTENTS.items()
+    for number, line in enumerate(names.split("\n"))
+)
 
 imports_all("beamfem.public")
 

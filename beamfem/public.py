@@ -1,77 +1,107 @@
 """What users see of the package, and where it is: `beamfem` gets it from here when it is first asked for."""
 
 from beamfem import view as view  # offers plot() and the like on results, and imports what draws at the first call
-from beamfem.assembly.rigid_velocity import RigidVelocity
+from beamfem.assembly.rigid_velocity import RigidVelocity as RigidVelocity
 from beamfem.convergence.result import Convergence as _Convergence
-from beamfem.convergence.study import converge
-from beamfem.curves import (
-    Arc,
-    BSpline,
-    Chain,
-    Curve,
-    Line,
-    Parametric,
-    Polyline,
-    elliptic_arc,
-    spline_through_hermite,
-    without_removable_knots,
-)
-from beamfem.element.coordinates import Gradients, Rotation, ShearFree
-from beamfem.element.element import Element
-from beamfem.element.fields import Cubic, Lagrange
-from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
-from beamfem.element.presets import ANCF, ANCFCRBF, CRBF, BilinearANCF, BilinearCRBF, ShearRigid
-from beamfem.errors import (
-    BeamfemError,
-    ChangedCodeWarning,
-    ConvergenceError,
-    FileError,
-    FreeMotionError,
-    InputError,
-    LimitPointError,
-    MissingPackageError,
-    NotJoinedWarning,
-    NotReadWarning,
-    NotStoredWarning,
-    RoundOffWarning,
-    SeveralTurnsWarning,
-    UnknownPointError,
-    UnknownStressWarning,
-    UnstableWarning,
-)
-from beamfem.io.cad import read_dxf
-from beamfem.io.frame import Frame
-from beamfem.io.mesh import LineMesh, read_mesh
-from beamfem.io.results import load
+from beamfem.convergence.study import converge as converge
+from beamfem.curves import Arc as Arc
+from beamfem.curves import BSpline as BSpline
+from beamfem.curves import Chain as Chain
+from beamfem.curves import Curve as Curve
+from beamfem.curves import Line as Line
+from beamfem.curves import Parametric as Parametric
+from beamfem.curves import Polyline as Polyline
+from beamfem.curves import elliptic_arc as elliptic_arc
+from beamfem.curves import spline_through_hermite as spline_through_hermite
+from beamfem.curves import without_removable_knots as without_removable_knots
+from beamfem.element.coordinates import Gradients as Gradients
+from beamfem.element.coordinates import Rotation as Rotation
+from beamfem.element.coordinates import ShearFree as ShearFree
+from beamfem.element.element import Element as Element
+from beamfem.element.fields import Cubic as Cubic
+from beamfem.element.fields import Lagrange as Lagrange
+from beamfem.element.forces import ContinuumMechanics as ContinuumMechanics
+from beamfem.element.forces import ElasticLine as ElasticLine
+from beamfem.element.forces import SplitContinuum as SplitContinuum
+from beamfem.element.forces import Structural as Structural
+from beamfem.element.presets import ANCF as ANCF
+from beamfem.element.presets import ANCFCRBF as ANCFCRBF
+from beamfem.element.presets import CRBF as CRBF
+from beamfem.element.presets import BilinearANCF as BilinearANCF
+from beamfem.element.presets import BilinearCRBF as BilinearCRBF
+from beamfem.element.presets import ShearRigid as ShearRigid
+from beamfem.errors import BeamfemError as BeamfemError
+from beamfem.errors import ChangedCodeWarning as ChangedCodeWarning
+from beamfem.errors import ConvergenceError as ConvergenceError
+from beamfem.errors import FileError as FileError
+from beamfem.errors import FreeMotionError as FreeMotionError
+from beamfem.errors import InputError as InputError
+from beamfem.errors import LimitPointError as LimitPointError
+from beamfem.errors import MissingPackageError as MissingPackageError
+from beamfem.errors import NotJoinedWarning as NotJoinedWarning
+from beamfem.errors import NotReadWarning as NotReadWarning
+from beamfem.errors import NotStoredWarning as NotStoredWarning
+from beamfem.errors import RoundOffWarning as RoundOffWarning
+from beamfem.errors import SeveralTurnsWarning as SeveralTurnsWarning
+from beamfem.errors import UnknownPointError as UnknownPointError
+from beamfem.errors import UnknownStressWarning as UnknownStressWarning
+from beamfem.errors import UnstableWarning as UnstableWarning
+from beamfem.io.cad import read_dxf as read_dxf
+from beamfem.io.frame import Frame as Frame
+from beamfem.io.mesh import LineMesh as LineMesh
+from beamfem.io.mesh import read_mesh as read_mesh
+from beamfem.io.results import load as load
 from beamfem.keywords import check_classes as _check_classes
-from beamfem.material import Material
-from beamfem.model.beam import Beam, Point
-from beamfem.model.contribution import At, Contribution, Remembering
-from beamfem.model.grading import graded
-from beamfem.model.imposed_strains import Actuation, Temperature
-from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, PointLoad
-from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
-from beamfem.model.model import Model
-from beamfem.model.support import LineSupport, PointSupport
-from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
-from beamfem.model.time_functions import Interpolated, Piecewise
-from beamfem.results.beam_stress import BeamStress
-from beamfem.results.on_basis import FieldOnBasis, field_on_basis
-from beamfem.results.path import Bifurcation, Path, PathState
-from beamfem.results.postprocess import Fields, SectionForces
-from beamfem.results.solution import Solution, State
-from beamfem.results.status import Status
-from beamfem.section import Circle, Layer, Layered, Rectangle, RememberingLaw, Section, SectionLaw, Tube
-from beamfem.solve.modes.modes import Modes, solve_modes
-from beamfem.solve.motion.dynamics import simulate
-from beamfem.solve.motion.equations_of_motion import EquationsOfMotion, Integrator
-from beamfem.solve.motion.integrators import GeneralizedAlpha, Scheme
-from beamfem.solve.newton.iteration import Newton
-from beamfem.solve.paths.trace import trace_equilibrium
-from beamfem.solve.stability.buckling import Buckling, solve_buckling
-from beamfem.solve.statics.statics import solve_static
+from beamfem.material import Material as Material
+from beamfem.model.beam import Beam as Beam
+from beamfem.model.beam import Point as Point
+from beamfem.model.body_load import BodyLoad as BodyLoad
+from beamfem.model.contribution import At as At
+from beamfem.model.contribution import Contribution as Contribution
+from beamfem.model.contribution import Remembering as Remembering
+from beamfem.model.grading import graded as graded
+from beamfem.model.imposed_strain import ImposedStrain as ImposedStrain
+from beamfem.model.joints import Joint as Joint
+from beamfem.model.line_load import LineLoad as LineLoad
+from beamfem.model.model import Model as Model
+from beamfem.model.parts import *
+from beamfem.model.point_load import PointLoad as PointLoad
+from beamfem.model.support import LineSupport as LineSupport
+from beamfem.model.support import PointSupport as PointSupport
+from beamfem.model.time_functions import Interpolated as Interpolated
+from beamfem.model.time_functions import Piecewise as Piecewise
+from beamfem.results.beam_stress import BeamStress as BeamStress
+from beamfem.results.on_basis import FieldOnBasis as FieldOnBasis
+from beamfem.results.on_basis import field_on_basis as field_on_basis
+from beamfem.results.path import Bifurcation as Bifurcation
+from beamfem.results.path import Path as Path
+from beamfem.results.path import PathState as PathState
+from beamfem.results.postprocess import Fields as Fields
+from beamfem.results.postprocess import SectionForces as SectionForces
+from beamfem.results.solution import Solution as Solution
+from beamfem.results.solution import State as State
+from beamfem.results.status import Status as Status
+from beamfem.section import Circle as Circle
+from beamfem.section import Layer as Layer
+from beamfem.section import Layered as Layered
+from beamfem.section import Rectangle as Rectangle
+from beamfem.section import RememberingLaw as RememberingLaw
+from beamfem.section import Section as Section
+from beamfem.section import SectionLaw as SectionLaw
+from beamfem.section import Tube as Tube
+from beamfem.solve.modes.modes import Modes as Modes
+from beamfem.solve.modes.modes import solve_modes as solve_modes
+from beamfem.solve.motion.dynamics import simulate as simulate
+from beamfem.solve.motion.equations_of_motion import EquationsOfMotion as EquationsOfMotion
+from beamfem.solve.motion.equations_of_motion import Integrator as Integrator
+from beamfem.solve.motion.integrators import GeneralizedAlpha as GeneralizedAlpha
+from beamfem.solve.motion.integrators import Scheme as Scheme
+from beamfem.solve.newton.iteration import Newton as Newton
+from beamfem.solve.paths.trace import trace_equilibrium as trace_equilibrium
+from beamfem.solve.stability.buckling import Buckling as Buckling
+from beamfem.solve.stability.buckling import solve_buckling as solve_buckling
+from beamfem.solve.statics.statics import solve_static as solve_static
 from beamfem.sweeps.sweep import Sweep as _Sweep
-from beamfem.sweeps.sweep import sweep
+from beamfem.sweeps.sweep import sweep as sweep
 
 _check_classes(list(vars().values()))

@@ -95,6 +95,15 @@ def test_lengths_of_the_parts_in_extending_are_those_of_their_code():
         assert [part.end_lineno - part.lineno + 1 for part in parts] == [int(lines)], name
 
 
+def test_lengths_of_parts_in_the_package_are_those_of_their_code():
+    rows = re.findall(
+        r"^\| [^|]* \| `(\w+)` \| (\d+) \| \d files, ", (ROOT / "docs" / "extending.md").read_text(), re.M
+    )
+    tree = ast.parse((ROOT / "tests" / "trial_parts.py").read_text())
+    lengths = {part.name: part.end_lineno - part.lineno + 1 for part in tree.body if isinstance(part, ast.ClassDef)}
+    assert {name: int(lines) for name, lines in rows} == lengths
+
+
 def test_reference_lists_every_public_name():
     listed = "".join(path.read_text() for path in (ROOT / "docs" / "reference").glob("*.md"))
     missing = [name for name in bf.__all__ if not re.search(rf":: {name}\b", listed)]

@@ -8,9 +8,11 @@ from beamfem.element.element import Element, kept_with_elements
 from beamfem.element.fields import d_slots, r_slots
 from beamfem.kernels.block import PointLoads
 from beamfem.model.beam import Beam
-from beamfem.model.load import LineLoad, PointLoad, factor
+from beamfem.model.line_load import LineLoad
+from beamfem.model.load import factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.point_load import PointLoad
 from beamfem.model.reference import jacobians, length_points, reference_axis, scales
 from beamfem.model.returned import forces_of
 from beamfem.once import cached_property
@@ -96,7 +98,7 @@ def build_actions(model: Model, block: int) -> Actions:
 
 def _lines(model: Model) -> list[LineLoad]:
     """Return the loads along beams that act at points of elements: all but uniform ones in the axes of the plane."""
-    return [load for load in model.line_loads if not (load.uniform and load.axes == "plane")]
+    return [load for load in model.line_loads if not load.even]
 
 
 def _mesh(model: Model, beam: Beam, block: int) -> BeamMesh | None:

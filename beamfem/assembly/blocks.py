@@ -13,7 +13,7 @@ from beamfem.element.element import Element, kept_with_elements
 from beamfem.element.law_points import law_points
 from beamfem.kernels.block import NO_HISTORY, Block
 from beamfem.model.classes import Classes, likenesses
-from beamfem.model.load import ImposedStrain
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 _FEW = 2000  # elements; results for larger blocks are not cached

@@ -6,7 +6,7 @@ import numpy as np
 
 from beamfem.kernels.block import Imposed
 from beamfem.model.free_strains import free_strains
-from beamfem.model.load import ImposedStrain
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 
 

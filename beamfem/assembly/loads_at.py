@@ -47,6 +47,6 @@ def body_loads(model: Model, time: float, static: bool) -> np.ndarray:
     for load in model.gravity:
         result[:, :2] += np.array(load.vector) * factor(load, time, static)
     for line in model.line_loads:
-        if line.uniform and line.axes == "plane":
+        if line.even:
             result[model.number_of(line.beam), 2:] += forces_of(line, np.zeros(1))[0] * factor(line, time, static)
     return result

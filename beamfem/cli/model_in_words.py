@@ -8,27 +8,12 @@ import numpy as np
 
 from beamfem.io.in_words import material_in_words, section_in_words
 from beamfem.model.beam import Beam, Point
+from beamfem.model.field_units import field_units
 from beamfem.model.joints import Joint
-from beamfem.model.load import ImposedStrain
 from beamfem.model.model import Model
 from beamfem.model.named import names
 from beamfem.model.sampled import Sampled, SampledAlong
 from beamfem.results.status import counted
-
-# SI units of the numbers of supports and loads, by class and field
-_UNITS = {
-    ("Prescribed", "ux"): "m",
-    ("Prescribed", "uy"): "m",
-    ("Prescribed", "rotation"): "rad",
-    ("Spring", "stiffness"): "N/m",
-    ("Spring", "rotational"): "N m/rad",
-    ("Foundation", "stiffness"): "N/m^2",
-    ("Gravity", "vector"): "m/s^2",
-    ("DistributedLoad", "vector"): "N/m",
-    ("Pressure", "value"): "N/m",
-    ("PointForce", "vector"): "N",
-    ("PointMoment", "moment"): "N m",
-}
 
 
 def beam_lines(model: Model) -> list[str]:
@@ -46,16 +31,16 @@ def beam_lines(model: Model) -> list[str]:
 
 def part_line(item: Any, model: Model) -> str:
     """Return a support, joint, connector or load in a line, with its places and what differs from its defaults."""
-    words = []
+    words, told = [], tuple[str, ...]()
     if isinstance(item, Joint):
-        (x, y), metre = item.a.reference, model.unit("m")
+        (x, y), told = item.a.reference, ("a", "b")
         places = " and ".join(_place(point, model) for point in (item.a, item.b))
-        return f"{type(item).__name__}: {places}, at ({x:g}, {y:g}) {metre}"
+        words.append(f"{places}, at ({x:g}, {y:g}) {model.unit('m')}")
     for field in fields(item):
         value = getattr(item, field.name)
-        if not isinstance(value, np.ndarray) and (value is None or value == field.default):
-            continue
-        words.append(_field(item, field.name, value, model))
+        is_default = not isinstance(value, np.ndarray) and (value is None or value == field.default)
+        if field.name not in told and not is_default:
+            words.append(_field(item, field.name, value, model))
     return f"{type(item).__name__}: {', '.join(words)}"
 
 
@@ -70,7 +55,7 @@ def _field(item: Any, name: str, value: Any, model: Model) -> str:
         return f"{name} a function, saved at {counted(len(value.at), 'value')}"
     if isinstance(value, bool):
         return name if value else f"{name} false"
-    unit = _unit(item, name)
+    unit = field_units(item).get(name)
     return f"{name} {_number(value)}" + (f" {model.unit(unit)}" if unit else "")
 
 
@@ -85,12 +70,6 @@ def _place(point: Point, model: Model) -> str:
     name = names(model.beams)[model.number_of(point.beam)]
     ends = {0.0: "start", 1.0: "end"}
     return f"{name}.{ends.get(point.fraction, f'at({point.fraction:g})')}"
-
-
-def _unit(item: Any, name: str) -> str:
-    if isinstance(item, ImposedStrain) and name in item.along:
-        return item.units[item.along.index(name)]
-    return _UNITS.get((type(item).__name__, name), "")
 
 
 def _number(value: Any) -> str:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.io.cells import VERTEX, Content, by_precision, legend_of_beams
-from beamfem.io.vertices import ROLES, vertices
+from beamfem.io.vertices import COMPONENTS, ROLES, vertices
 from beamfem.model.model import Model
 from beamfem.model.reference import reference_position
 from beamfem.once import cached_property
@@ -13,9 +13,6 @@ from beamfem.results import postprocess
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
-
-# values of a vertex by name, and how many components each has
-_COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
 
 
 class Boundary:
@@ -74,7 +71,7 @@ class Boundary:
     def names(self) -> list[str]:
         """The fields that there are."""
         present = {name for group in self.groups for name in group.fields}
-        return ["displacement", *(name for name in _COMPONENTS if name in present)]
+        return ["displacement", *(name for name in COMPONENTS if name in present)]
 
     def arrays(self, solution: "Solution", rows: slice) -> dict[str, np.ndarray]:
         """Return points and fields (steps, points) and (steps, points, 3) of some rows; what nothing has is left out.
@@ -86,14 +83,14 @@ class Boundary:
         result = {"points": position, "displacement": position - self._reference}
         if self.content.geometry == "reference":
             result["points"] = np.repeat(self._reference[None], len(part), axis=0)
-        names = [name for name in chosen if name in _COMPONENTS]
+        names = [name for name in chosen if name in COMPONENTS]
         values = [group.values(part) for group in self.groups] if names else []
         for name in names:
             result[name] = self._table(name, values, len(part))
         return by_precision({name: result[name] for name in ("points", *chosen)}, self.content)
 
     def _table(self, name: str, values: list[dict[str, np.ndarray]], steps: int) -> np.ndarray:
-        components = _COMPONENTS[name]
+        components = COMPONENTS[name]
         sizes = zip(values, self._sizes, strict=True)
         parts = [fields[name] if name in fields else np.zeros((steps, size, components)) for fields, size in sizes]
         table = np.concatenate(parts, axis=1)

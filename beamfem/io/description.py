@@ -12,11 +12,11 @@ from beamfem.element.element import Element
 from beamfem.element.fields import Cubic, Lagrange
 from beamfem.element.forces import ContinuumMechanics, ElasticLine, SplitContinuum, Structural
 from beamfem.errors import InputError
-from beamfem.io.own_parts import dataclasses_of, made, name_of
+from beamfem.io.own_parts import made, name_of
 from beamfem.material import Material
-from beamfem.model import imposed_strains, joints, loads, supports
 from beamfem.model.along_beam import AlongBeam, functions_along, jumps_along, kinks_along
 from beamfem.model.beam import Beam, Point
+from beamfem.model.listed_parts import listed_parts
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.reference import energy_points, length_points, stations
@@ -59,7 +59,7 @@ _CLASSES = {
         Interpolated,
         SampledAlong,
         Model,
-        *(kind for room in (loads, imposed_strains, supports, joints) for kind in dataclasses_of(room)),
+        *listed_parts(),
     )
 }
 _OF_TIME = "amplitude"  # the field of a user's part that is known to be a function of time
@@ -106,9 +106,6 @@ def _with_values(beam: Beam, mesh: BeamMesh) -> Beam:
 
 def _with_own_values(load: Any, model: Model) -> Any:
     """Return a load along a beam with its functions as samples: those that were used, and more for drawing."""
-    if not isinstance(load, AlongBeam):
-        return load
-    original: Any = load
     saved: dict[str, Any] = {}
     for name in functions_along(load):
         mesh = model.mesh_of(load.beam.start)
@@ -118,7 +115,7 @@ def _with_own_values(load: Any, model: Model) -> Any:
         at = np.unique(np.concatenate([*points, drawn, [0.5 * load.beam.curve.length]]))
         values = tuple(tuple(value) if np.ndim(value) else value for value in load.values_of(name, at).tolist())
         saved[name] = SampledAlong(tuple(at.tolist()), values, kinks_along(load, name))
-    return replace(original, **saved)
+    return replace(load, **saved) if saved else load
 
 
 class _Writer:

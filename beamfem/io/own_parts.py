@@ -2,7 +2,6 @@
 
 import sys
 from dataclasses import fields, is_dataclass
-from types import ModuleType
 from typing import Any
 
 from beamfem.errors import InputError
@@ -52,12 +51,6 @@ def made(name: str, members: dict[str, Any]) -> Any:
         return kind(**members)
     except TypeError as error:
         raise InputError(f"the class {name} is no longer that which the file was saved with: {error}") from error
-
-
-def dataclasses_of(module: ModuleType) -> list[type]:
-    """Return the dataclasses that a module defines."""
-    classes = (kind for kind in vars(module).values() if isinstance(kind, type) and kind.__module__ == module.__name__)
-    return [kind for kind in classes if is_dataclass(kind)]
 
 
 def find(name: str) -> Any:

@@ -1,27 +1,30 @@
 """Places at which supports, loads and connectors act on beams, and what they do there in the rows of a solution."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamfem.element.coordinates import across
 from beamfem.model.beam import Beam, Point
 from beamfem.model.contribution import Contribution
-from beamfem.model.load import BodyLoad, LineLoad, Load, PointLoad, factor
+from beamfem.model.load import Load, factor
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
+from beamfem.model.placed import in_plane
 from beamfem.model.reference import length_points, reference_position
-from beamfem.model.returned import forces_of
 from beamfem.model.support import DIRECTIONS, LineSupport, PointSupport
 from beamfem.results import postprocess
 from beamfem.results.loading import loading
 from beamfem.results.reactions import reaction_of
+from beamfem.results.stations import StationsOfRows
+from beamfem.validation import require_known
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
 
+# values of a vertex by name, and how many components each has
+COMPONENTS = {"force": 3, "moment": 1, "line_force": 3, "acceleration": 3, "prescribed": 3, "stiffness": 3}
 ROLES = ("support", "load", "connector")
 _SUPPORT, _LOAD, _CONNECTOR = range(3)
 _ACTION = ("force", "moment")
@@ -122,55 +125,34 @@ def _loads(model: Model) -> Iterator[Vertices]:
     """Yield the vertices of the loads; strains that are imposed act nowhere from outside."""
     for load in model.loads:
         kind = type(load).__name__
-        match load:
-            case PointLoad():
-                yield Vertices(kind, _LOAD, _ACTION, *_at(model, load.point), _of_point_load(load))
-            case LineLoad():
-                place = _along(model, load.beam)
-                yield Vertices(kind, _LOAD, ("line_force",), *place, _of_line_load(load, *place))
-            case BodyLoad():
-                for beam in model.beams:
-                    yield Vertices(kind, _LOAD, ("acceleration",), *_at(model, beam.at(0.5)), _of_body_load(load))
+        for mesh, element, xi in _loaded(model, load.place):
+            acting = load.acting(mesh.arc_length(element, xi))
+            for name in acting:
+                require_known(f"acting of {kind} has the unknown quantity {name!r}", name, COMPONENTS)
+            if acting:
+                place = mesh, element, xi
+                yield Vertices(kind, _LOAD, tuple(acting), *place, _of_load(load, acting, *place))
 
 
-def _factors(load: Load, part: "Solution") -> np.ndarray:
-    system, at = loading(part)
-    return np.array([factor(load, float(time), system.static) for time in at])
+def _loaded(model: Model, place: Beam | Point | None) -> list[tuple[BeamMesh, np.ndarray, np.ndarray]]:
+    """Return where a load acts: at a point, along a beam, or for all mass in the middle of every beam."""
+    if place is None:
+        return [_at(model, beam.at(0.5)) for beam in model.beams]
+    return [_at(model, place) if isinstance(place, Point) else _along(model, place)]
 
 
-def _of_point_load(load: PointLoad) -> Callable[["Solution"], _Values]:
-    def values(part: "Solution") -> _Values:
-        table = _factors(load, part)[:, None] * np.array(load.value)
-        force = table[:, :2]
-        if load.follower:
-            angle = part.rotation(load.point)[:, None]
-            force = np.cos(angle) * force + np.sin(angle) * across(force)
-        return {"force": flat(force[:, None]), "moment": table[:, None, 2:]}
-
-    return values
-
-
-def _of_line_load(
-    load: LineLoad, mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
+def _of_load(
+    load: Load, acting: Mapping[str, np.ndarray], mesh: BeamMesh, element: np.ndarray, xi: np.ndarray
 ) -> Callable[["Solution"], _Values]:
-    forces = forces_of(load, mesh.arc_length(element, xi))
-
     def values(part: "Solution") -> _Values:
-        table = _factors(load, part)[:, None, None] * forces
-        now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi)
-        if load.axes == "section":
-            angle = postprocess.turning(mesh, part.p, now, element, xi)[..., None]
-            table = np.cos(angle) * table + np.sin(angle) * across(table)
-        elif load.axes == "axis":
-            table = table[..., :1] * now.r_s + table[..., 1:] * across(now.r_s)
-        return {"line_force": flat(table)}
-
-    return values
-
-
-def _of_body_load(load: BodyLoad) -> Callable[["Solution"], _Values]:
-    def values(part: "Solution") -> _Values:
-        return {"acceleration": flat(_factors(load, part)[:, None, None] * np.array(load.vector))}
+        system, times = loading(part)
+        factors = np.array([factor(load, float(time), system.static) for time in times])[:, None, None]
+        stations = StationsOfRows(part, mesh, element, xi)
+        sized = {name: factors * numbers for name, numbers in acting.items()}
+        return {
+            name: flat(in_plane(numbers, load.axes, stations)) if numbers.shape[-1] == 2 else numbers
+            for name, numbers in sized.items()
+        }
 
     return values
 

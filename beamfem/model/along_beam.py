@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -11,11 +11,15 @@ from beamfem.model.beam import Beam
 from beamfem.model.jumps import find_jumps
 from beamfem.validation import function_of_one, shown
 
+if TYPE_CHECKING:
+    from beamfem.model.load import Load
+
 
 class AlongBeam(ABC):
     """A load along a beam; `along`: names of the fields that may be functions of the arc length [m] from the start."""
 
     along: ClassVar[tuple[str, ...]] = ()
+    units: ClassVar[tuple[str, ...]] = ()  # of these fields, if stated
 
     beam: Beam
 
@@ -27,8 +31,8 @@ class AlongBeam(ABC):
         """
 
 
-def functions_along(load: AlongBeam) -> dict[str, Callable[[float], Any]]:
-    """Return the fields of a load that are functions of the arc length."""
+def functions_along(load: "AlongBeam | Load") -> dict[str, Callable[[float], Any]]:
+    """Return the fields of a load that are functions of the arc length, none for a load at a point or on all mass."""
     fields = {name: getattr(load, name) for name in load.along}
     return {name: value for name, value in fields.items() if callable(value)}
 
@@ -65,4 +69,9 @@ def check_along(load: AlongBeam) -> None:
     require_names(load)
     for name, function in functions_along(load).items():
         function_of_one(f"{name} of {kind}", function, "arc length")
-        load.values_of(name, np.array([0.0, 0.5, 1.0]) * load.beam.curve.length)
+        load.values_of(name, ends_and_middle(load.beam))
+
+
+def ends_and_middle(beam: Beam) -> np.ndarray:
+    """Return the arc lengths (3,) [m] at which values that vary along a beam are checked."""
+    return np.array([0.0, 0.5, 1.0]) * beam.curve.length

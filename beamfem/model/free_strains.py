@@ -7,7 +7,7 @@ import numpy as np
 from beamfem.element.coordinates import Gradients
 from beamfem.model.along_beam import jumps_along
 from beamfem.model.grid import Grid
-from beamfem.model.load import ImposedStrain
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.reference import energy_points, reference_axis
 from beamfem.model.returned import free_strain_of
 

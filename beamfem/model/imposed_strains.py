@@ -6,10 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamfem.element.coordinates import ShearFree
 from beamfem.errors import InputError
+from beamfem.model.along_beam import ends_and_middle
 from beamfem.model.beam import Beam
-from beamfem.model.load import Amplitude, ImposedStrain
+from beamfem.model.imposed_strain import ImposedStrain, require_followed
+from beamfem.model.load import Amplitude
 from beamfem.section.thermal import expands_evenly, thermal_strain
 
 Along = float | Callable[[float], float]
@@ -124,7 +125,7 @@ class Temperature(ImposedStrain):
     def __post_init__(self) -> None:
         super().__post_init__()
         beam = self.beam
-        sections = [beam.section_at(s) for s in _places(beam).tolist()]
+        sections = [beam.section_at(s) for s in ends_and_middle(beam).tolist()]
         if not any(thermal_strain(section, beam.material).any() for section in sections):
             raise InputError(
                 "Temperature changes nothing: give a material of its beam a coefficient of thermal expansion, "
@@ -151,20 +152,3 @@ class Temperature(ImposedStrain):
     def heat(self, arc_length: np.ndarray) -> np.ndarray:
         """Return the change of temperature [K] and its gradient [K/m] (n, 2), see `ImposedStrain.heat`."""
         return np.column_stack([self.values_of(name, arc_length) for name in self.along])
-
-
-def _places(beam: Beam) -> np.ndarray:
-    """Return the arc lengths (3,) [m] at which values that vary along the beam are checked."""
-    return np.array([0.0, 0.5, 1.0]) * beam.curve.length
-
-
-def require_followed(load: ImposedStrain) -> None:
-    """Raise InputError if the nodal coordinates cannot represent the imposed strains."""
-    coordinates, name = load.beam.element.coordinates, load.beam.element.name
-    if not isinstance(coordinates, ShearFree):
-        return
-    stretch, shear, *_ = load.free_strain(_places(load.beam)).T
-    if shear.any():
-        raise InputError(f"{type(load).__name__}: nodes of {name} do not shear; take another element")
-    if stretch.any() and not coordinates.stretchable:
-        raise InputError(f"{type(load).__name__}: nodes of {name} do not stretch; let them")

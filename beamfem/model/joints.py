@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from beamfem.model.beam import Point, require_point_of
-from beamfem.model.shapes import Ring
+from beamfem.model.shapes import JointShape, Ring
+from beamfem.validation import flag
 
 
 class Joint:
@@ -28,9 +29,15 @@ class Joint:
         require_point_of(self, "a")
         require_point_of(self, "b")
 
-    def shapes(self) -> tuple[Ring, ...]:
+    def shapes(self) -> tuple[JointShape, ...]:
         """Return the shapes to draw: a ring if the joint is a hinge, otherwise none."""
         return () if self.keeps_angle else (Ring(self.a),)
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined joint."""
+        require_point_of(self, "a")
+        require_point_of(self, "b")
+        flag(f"keeps_angle of {type(self).__name__}", self.keeps_angle)
 
 
 @dataclass(frozen=True, slots=True)

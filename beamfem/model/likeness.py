@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from beamfem.alike import lasting
 from beamfem.element.element import lasts
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import BodyLoad, LineLoad, Load, PointLoad
 from beamfem.model.made_of import is_plain
 
 if TYPE_CHECKING:
@@ -51,17 +50,8 @@ def _likeness(model: "Model") -> Hashable | None:
     if elements + len(parts) > _MOST_ELEMENTS or not all(map(is_plain, map(type, parts))):
         return None
     numbers = {id(beam): number for number, beam in enumerate(beams)}
-    described += [_described(load, numbers) for load in model.loads]
+    described += [_by_value(load.besides_size, numbers) for load in model.loads]
     return (*described, *(_by_value(part, numbers) for part in (*model.supports, *model.joints)))
-
-
-def _described(load: Load, numbers: dict[int, int]) -> Hashable:
-    """Return what a load does besides its size, which is not among what models share."""
-    if isinstance(load, PointLoad):
-        return _by_value(load.point, numbers), load.follower
-    if isinstance(load, BodyLoad) or (isinstance(load, LineLoad) and load.uniform and load.axes == "plane"):
-        return None
-    return _by_value(load, numbers)
 
 
 def _by_value(item: Any, numbers: dict[int, int]) -> Hashable:
@@ -70,6 +60,8 @@ def _by_value(item: Any, numbers: dict[int, int]) -> Hashable:
         return numbers[id(item)]
     if isinstance(item, Point):
         return numbers[id(item.beam)], item.fraction
+    if isinstance(item, tuple):
+        return tuple(_by_value(part, numbers) for part in item)
     if is_dataclass(item):
         return type(item), *(_by_value(getattr(item, name), numbers) for name in item.__dataclass_fields__)
     if callable(item):  # may return something else by the time the next model is made

@@ -1,13 +1,16 @@
 """The loads of the package: gravity, loads along beams, and loads at points."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from beamfem.model.beam import Beam, Point
-from beamfem.model.load import Amplitude, BodyLoad, LineLoad, PointLoad
+from beamfem.model.body_load import BodyLoad
+from beamfem.model.line_load import LineLoad
+from beamfem.model.load import Amplitude
+from beamfem.model.point_load import PointLoad
 from beamfem.validation import called, convert, finite, flag, squared, vector
 
 Varying = Callable[[float], Sequence[float]]
@@ -33,7 +36,7 @@ class Gravity(BodyLoad):
     array([770.1, 770.1])
     """
 
-    vector: tuple[float, float]
+    vector: tuple[float, float] = field(metadata={"unit": "m/s^2"})
     amplitude: Amplitude = None
     scale: bool = True
 
@@ -75,7 +78,7 @@ class DistributedLoad(LineLoad):
     along: ClassVar[tuple[str, ...]] = ("vector",)
 
     beam: Beam
-    vector: tuple[float, float] | Varying
+    vector: tuple[float, float] | Varying = field(metadata={"unit": "N/m"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False
@@ -173,7 +176,7 @@ class Pressure(LineLoad):
     axes: ClassVar[Literal["axis"]] = "axis"
 
     beam: Beam
-    value: float | Callable[[float], float]
+    value: float | Callable[[float], float] = field(metadata={"unit": "N/m"})
     amplitude: Amplitude = None
     scale: bool = True
 
@@ -248,7 +251,7 @@ class PointForce(PointLoad):
     """
 
     point: Point
-    vector: tuple[float, float]
+    vector: tuple[float, float] = field(metadata={"unit": "N"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False
@@ -288,7 +291,7 @@ class PointMoment(PointLoad):
     """
 
     point: Point
-    moment: float
+    moment: float = field(metadata={"unit": "N m"})
     amplitude: Amplitude = None
     scale: bool = True
     follower: bool = False

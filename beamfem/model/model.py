@@ -6,24 +6,27 @@ from typing import Any
 
 import numpy as np
 
-from beamfem.alike import by_value
+from beamfem.alike import by_value, of_package
 from beamfem.curves.curve import GAP
 from beamfem.element.element import Element
 from beamfem.errors import InputError, UnknownPointError
 from beamfem.model.beam import Beam, Point, reference_positions
+from beamfem.model.body_load import BodyLoad
 from beamfem.model.contribution import Contribution, require_connector
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.joints import Joint
 from beamfem.model.likeness import shared_by_likes
-from beamfem.model.load import BodyLoad, ImposedStrain, LineLoad, Load, PointLoad
+from beamfem.model.line_load import LineLoad
+from beamfem.model.load import Load
 from beamfem.model.made_of import MadeOf, made_of
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.meshes import NumberedMeshes, numbered_meshes
 from beamfem.model.misplaced import beam_like, listed, refused, touching
 from beamfem.model.model_outputs import ModelOutputs
+from beamfem.model.model_parts import ModelParts
 from beamfem.model.named import require_different_names
-from beamfem.model.part_checks import require_part
+from beamfem.model.point_load import PointLoad
 from beamfem.model.support import LineSupport, PointSupport, Support
-from beamfem.model.supports_along import SupportsAlong
 from beamfem.once import cached_property, shared_property
 from beamfem.registry import offered
 from beamfem.units import Units, units_of
@@ -39,7 +42,7 @@ _KINDS: dict[str, tuple[type, ...]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Model(ModelOutputs):
+class Model(ModelParts, ModelOutputs):
     """Beams with supports, loads and joints, meshed and numbered.
 
     Supports, joints, point loads, connectors and kinks of loads along beams place a mesh node at their point.
@@ -108,7 +111,9 @@ class Model(ModelOutputs):
         require_different_names(self.beams)
         parts: tuple[Support | Load, ...] = (*self.supports, *self.loads)
         for part in (*parts, *self.joints):
-            require_part(part)
+            part_kind: Any = type(part)
+            if not of_package(part_kind):
+                part.require_valid()
         for item in parts:
             self._require(item, item.place)
         for joint in self.joints:
@@ -298,39 +303,9 @@ class Model(ModelOutputs):
         return self.meshes[self._numbers[id(point.beam)]]
 
     @cached_property
-    def gravity(self) -> tuple[BodyLoad, ...]:
-        """The loads that are accelerations of all mass."""
-        return tuple(load for load in self.loads if isinstance(load, BodyLoad))
-
-    @cached_property
-    def line_loads(self) -> tuple[LineLoad, ...]:
-        """The loads that are forces along beams."""
-        return tuple(load for load in self.loads if isinstance(load, LineLoad))
-
-    @cached_property
     def imposing(self) -> tuple[tuple[int, ImposedStrain], ...]:
         """The loads that impose strains, each with the number of its beam."""
         return tuple((self._numbers[id(load.beam)], load) for load in self.loads if isinstance(load, ImposedStrain))
-
-    @cached_property
-    def point_loads(self) -> tuple[PointLoad, ...]:
-        """The loads that are forces and moments at points."""
-        return tuple(load for load in self.loads if isinstance(load, PointLoad))
-
-    @cached_property
-    def point_supports(self) -> tuple[PointSupport, ...]:
-        """The supports at points."""
-        return tuple(support for support in self.supports if isinstance(support, PointSupport))
-
-    @cached_property
-    def supports_along(self) -> SupportsAlong:
-        """The supports at points in the order of their beams' fractions."""
-        return SupportsAlong(self.point_supports)
-
-    @cached_property
-    def line_supports(self) -> tuple[LineSupport, ...]:
-        """The supports along beams."""
-        return tuple(support for support in self.supports if isinstance(support, LineSupport))
 
     def _repr_html_(self) -> str:
         return offered(Model._repr_html_)(self)

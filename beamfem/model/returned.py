@@ -9,7 +9,8 @@ from beamfem.errors import InputError
 from beamfem.validation import called, number_table
 
 if TYPE_CHECKING:
-    from beamfem.model.load import ImposedStrain, LineLoad
+    from beamfem.model.imposed_strain import ImposedStrain
+    from beamfem.model.line_load import LineLoad
 
 
 def forces_of(load: "LineLoad", arc_length: np.ndarray) -> np.ndarray:

@@ -1,29 +1,16 @@
 """Shapes of loads, supports and joints, which pictures and files draw in different ways."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 
-from beamfem.element.coordinates import across
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point
+from beamfem.validation import shown
 
-
-class Placed(Protocol):
-    """A state of a model, with the members that shapes need."""
-
-    def rotation(self, point: Point) -> float:
-        """Return the rotation of a section from the reference [rad]."""
-        ...
-
-    def slope(self, point: Point) -> np.ndarray:
-        """Return r0' (2,) [-] at a point."""
-        ...
-
-    def stations(self, beam: Beam) -> np.ndarray:
-        """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
-        ...
+_Shape = TypeVar("_Shape")
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +90,14 @@ class Ring:
 
 LoadShape = Force | Moment | ForcesAlong | Acceleration | Strains
 SupportShape = Constraint | Springs | SpringsAlong
+JointShape = Ring
 
 
-def rotated(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 2) rotated by angles (n,) [rad]."""
-    return np.asarray(np.cos(angles)[:, None] * vectors + np.sin(angles)[:, None] * across(vectors))
+def drawn(part: Any, shapes: Iterable[_Shape], known: Any) -> tuple[_Shape, ...]:
+    """Return the shapes of a part. Raises InputError for an object that is none of the known shapes."""
+    result = tuple(shapes)
+    for shape in result:
+        if not isinstance(shape, known):
+            names = ", ".join(kind.__name__ for kind in get_args(known) or (known,))
+            raise InputError(f"shapes of {type(part).__name__} must return shapes ({names}), got {shown(shape)}")
+    return result

@@ -2,14 +2,18 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
+from beamfem.errors import InputError
 from beamfem.model.beam import Beam, Point, require_beam, require_point_of
 from beamfem.model.shapes import Constraint, Springs, SpringsAlong, SupportShape
+from beamfem.validation import called, finite, function_of_one, positive, require_known, shown, squared, vector
 
 DIRECTIONS = ("ux", "uy", "rotation")
 Value = float | Callable[[float], float]
+_UNIT = 1e-9  # largest deviation of the length of a unit vector from 1
 
 
 class Support(ABC):
@@ -23,6 +27,10 @@ class Support(ABC):
     @abstractmethod
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
+
+    @abstractmethod
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
 
 
 class PointSupport(Support):
@@ -83,6 +91,26 @@ class PointSupport(Support):
             shapes = (*shapes, Springs(self.point, (kx, ky), rotational))
         return shapes
 
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
+        kind = type(self).__name__
+        require_point_of(self)
+        prescribed = _by_direction(f"prescribed of {kind}", self.prescribed, (*DIRECTIONS, "normal"))
+        springs = _by_direction(f"springs of {kind}", self.springs, DIRECTIONS)
+        if not prescribed and not springs:
+            raise InputError(f"{kind} does nothing: let prescribed() or springs() of it return something by direction")
+        for direction, value in prescribed.items():
+            what = f"{direction} prescribed by {kind}"
+            if direction == "normal" and (callable(value) or finite(what, value) != 0.0):
+                raise InputError(f"{what} must be 0.0, got {shown(value)}: only ux, uy and rotation can be moved")
+            if callable(value):
+                function_of_one(what, value, "time")
+            else:
+                squared(finite)(what, value)
+        for direction, stiffness in springs.items():
+            squared(positive)(f"stiffness of {kind} in {direction}", stiffness)
+        _require_direction(self, "normal" in prescribed)
+
 
 class LineSupport(Support):
     """Springs along a beam to the ground.
@@ -109,3 +137,33 @@ class LineSupport(Support):
     def shapes(self) -> tuple[SupportShape, ...]:
         """Return the shapes to draw."""
         return (SpringsAlong(self.beam, self.stiffness),)
+
+    def require_valid(self) -> None:
+        """Raise InputError for invalid members of a user-defined support."""
+        kind = type(self).__name__
+        require_beam(kind, getattr(self, "beam", None))
+        stiffness = squared(vector)(f"stiffness of {kind}", getattr(self, "stiffness", None))
+        if min(stiffness) < 0.0 or max(stiffness) == 0.0:
+            raise InputError(f"the stiffness of a {kind} must not be negative, and somewhere positive, got {stiffness}")
+
+
+def _require_direction(support: PointSupport, needed: bool) -> None:
+    what = f"direction of {type(support).__name__}"
+    direction = called(what, lambda: support.direction)
+    if direction is None and needed:
+        raise InputError(f'{what} must be a unit vector, since "normal" is prescribed along it, got None')
+    if direction is not None:
+        if not needed:
+            raise InputError(f'{what} is given, but prescribed() returns no "normal" along it')
+        size = np.hypot(*vector(what, direction))
+        if abs(size - 1.0) > _UNIT:
+            raise InputError(f"{what} must be a unit vector, got {shown(direction)} of length {size:g}")
+
+
+def _by_direction(what: str, function: Callable[[], Any], known: tuple[str, ...]) -> Mapping[str, Any]:
+    values = called(what, function)
+    if not isinstance(values, Mapping):
+        raise InputError(f'{what} must return a dict by direction, such as {{"ux": 0.0}}, got {shown(values)}')
+    for direction in values:
+        require_known(f"{what} has the unknown direction {shown(direction)}", direction, known)
+    return values

@@ -1,6 +1,6 @@
 """The supports of the package."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -129,9 +129,9 @@ class Prescribed(PointSupport):
     """
 
     point: Point
-    ux: Value | None = None
-    uy: Value | None = None
-    rotation: Value | None = None
+    ux: Value | None = field(default=None, metadata={"unit": "m"})
+    uy: Value | None = field(default=None, metadata={"unit": "m"})
+    rotation: Value | None = field(default=None, metadata={"unit": "rad"})
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -173,8 +173,8 @@ class Spring(PointSupport):
     """
 
     point: Point
-    stiffness: tuple[float, float] = (0.0, 0.0)
-    rotational: float = 0.0
+    stiffness: tuple[float, float] = field(default=(0.0, 0.0), metadata={"unit": "N/m"})
+    rotational: float = field(default=0.0, metadata={"unit": "N m/rad"})
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -212,7 +212,7 @@ class Foundation(LineSupport):
     """
 
     beam: Beam
-    stiffness: tuple[float, float]
+    stiffness: tuple[float, float] = field(metadata={"unit": "N/m^2"})
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -7,13 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from beamfem.alike import of_package
 from beamfem.assembly.system import system_of
 from beamfem.brief import brief
 from beamfem.curves import Chain, Curve, spline_through_hermite
 from beamfem.element.coordinates import across
 from beamfem.errors import InputError
-from beamfem.model.along_beam import AlongBeam, functions_along
+from beamfem.model.along_beam import functions_along
 from beamfem.model.beam import Beam, Point
+from beamfem.model.load import Load
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.remade import require_remade
@@ -78,8 +80,9 @@ def with_imperfection(model: Model, modes: Any, size: float, mode: int = 0) -> M
         for mesh, rates in zip(model.meshes, moved, strict=True)
     }
     beams = [crooked[id(beam)].beam for beam in model.beams]
-    parts = (model.supports, model.loads, model.joints, model.connectors)
-    supports, loads, joints, connectors = ([_placed(item, crooked) for item in part] for part in parts)
+    parts = (model.supports, model.joints, model.connectors)
+    supports, joints, connectors = ([_placed(item, crooked) for item in part] for part in parts)
+    loads = [_placed_load(load, crooked) for load in model.loads]
     for connector in connectors:
         if any(id(point.beam) in crooked for point in connector.points):
             raise InputError(
@@ -168,7 +171,7 @@ def _along(function: Any, old: np.ndarray, new: np.ndarray) -> Moved:
 
 
 def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
-    """Return a support, load, joint or connector at the same points of the imperfect beams."""
+    """Return a support, joint or connector, or what a part refers to, at the same points of the imperfect beams."""
     if isinstance(item, Beam):
         return crooked[id(item)].beam
     if isinstance(item, Point):
@@ -179,10 +182,22 @@ def _placed(item: Any, crooked: dict[int, _Crooked]) -> Any:
         return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
     if not is_dataclass(item) or isinstance(item, type):
         return item
-    if not type(item).__module__.startswith("beamfem."):
-        require_remade(f"a {type(item).__name__} cannot be placed on imperfect beams", item)
-    changes = {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}
-    if isinstance(item, AlongBeam):
+    return replace(item, **_placed_fields(item, crooked))
+
+
+def _placed_load(load: Load, crooked: dict[int, _Crooked]) -> Any:
+    """Return a load at the same points, with its functions of the arc length."""
+    item: Any = load
+    changes = _placed_fields(item, crooked)
+    for name, function in functions_along(load).items():
         moved = crooked[id(item.beam)]
-        changes |= {name: _along(function, moved.old, moved.new) for name, function in functions_along(item).items()}
+        changes[name] = _along(function, moved.old, moved.new)
     return replace(item, **changes)
+
+
+def _placed_fields(item: Any, crooked: dict[int, _Crooked]) -> dict[str, Any]:
+    """Return the fields of a part at the same points. Raises InputError if it cannot be made anew from them."""
+    kind: Any = type(item)
+    if not of_package(kind):
+        require_remade(f"a {type(item).__name__} cannot be placed on imperfect beams", item)
+    return {field.name: _placed(getattr(item, field.name), crooked) for field in fields(item) if field.init}

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamfem.model.along_beam import jumps_along
+from beamfem.model.imposed_strain import ImposedStrain
 from beamfem.model.joined_mesh import JoinedMesh
-from beamfem.model.load import ImposedStrain
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.model import Model
 from beamfem.model.returned import heat_of

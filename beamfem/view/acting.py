@@ -1,6 +1,6 @@
 """Loads in a drawing: forces and moments as arrows, distributed forces as rows of them, gravity in a corner."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
@@ -41,11 +41,13 @@ def draw_loads(axes: Any, solution: "Solution", rows: np.ndarray) -> list[Any]:
                 case Moment():
                     _moment(stamps, placed.position(shape.point), shape.moment)
                 case ForcesAlong():
-                    drawn += _distributed(axes, placed.along(shape), shape)
+                    drawn += _distributed(axes, placed.positions(shape), shape)
                 case Acceleration():
                     drawn += _gravity(axes, shape.vector)
                 case Strains():
                     strains.append((shape, int(rows[best])))
+                case _:
+                    assert_never(shape)
     drawn += draw_imposed(axes, solution, strains, FORCE)
     return [*_forces(axes, forces), *drawn, *stamps.draw(axes, 18.0, 5.0)]
 

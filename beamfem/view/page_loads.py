@@ -1,12 +1,12 @@
 """Loads of the rows of a page: where arrows stand, and how long they are on the screen."""
 
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 
-from beamfem.model.along_beam import AlongBeam
+from beamfem.model.beam import Beam
 from beamfem.model.load import factor
-from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment
+from beamfem.model.shapes import Acceleration, Force, ForcesAlong, Moment, Strains
 from beamfem.results.loading import loading
 from beamfem.view.placed import PlacedRow
 from beamfem.view.shapes import Shapes
@@ -47,7 +47,7 @@ def loads_of(shapes: Shapes) -> list[dict[str, Any]]:
 
 def _chosen(shapes: Shapes, rows: list[int]) -> list[int]:
     loads = shapes.solution.model.loads
-    arrows = sum(55 if isinstance(load, AlongBeam) else 5 for load in loads)
+    arrows = sum(55 if isinstance(load.place, Beam) else 5 for load in loads)
     return rows if arrows * len(rows) <= _MOST else rows[-1:] if arrows <= _MOST else []
 
 
@@ -60,11 +60,17 @@ def _row(shapes: Shapes, row: int, at: float, static: bool) -> dict[str, list[An
                 case Force():
                     result["points"].append((placed.position(shape.point), shape.vector, placed.touches(shape)))
                 case ForcesAlong():
-                    result["lines"].append((placed.along(shape), shape.vectors))
-                case Moment() if shape.moment != 0.0:
-                    result["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
-                case Acceleration() if shape.vector.any():
-                    result["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
+                    result["lines"].append((placed.positions(shape), shape.vectors))
+                case Moment():
+                    if shape.moment != 0.0:
+                        result["moments"].append([*_short(placed.position(shape.point)), float(np.sign(shape.moment))])
+                case Acceleration():
+                    if shape.vector.any():
+                        result["gravity"] = _short(shape.vector / np.linalg.norm(shape.vector) * _LONGEST)
+                case Strains():
+                    pass  # pages have arrows only
+                case _:
+                    assert_never(shape)
     return result
 
 

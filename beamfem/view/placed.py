@@ -6,8 +6,8 @@ import numpy as np
 
 from beamfem.model.beam import Beam, Point
 from beamfem.model.reference import length_points
-from beamfem.model.shapes import Force, ForcesAlong, LoadShape
-from beamfem.results.nodal import axis_at
+from beamfem.model.shapes import Force, ForcesAlong, LoadShape, drawn
+from beamfem.results.stations import StationsOfRows
 from beamfem.view.frames import one_row
 
 if TYPE_CHECKING:
@@ -25,15 +25,18 @@ class PlacedRow:
         """Return the position of a point (2,) [m]."""
         return self.only.position(point)[0]
 
-    def rotation(self, point: Point) -> float:
-        """Return the rotation of a section from the reference [rad]."""
-        return float(self.only.rotation(point)[0])
+    def at(self, point: Point) -> StationsOfRows:
+        """Return the state at a point."""
+        return self._stations(point.beam, [point.fraction])
 
-    def slope(self, point: Point) -> np.ndarray:
-        """Return r0' (2,) [-] at a point."""
-        mesh = self.only.model.mesh_of(point)
-        element, xi = (np.array([place]) for place in mesh.locate(point.fraction))
-        return axis_at(mesh, self.only.p, element, xi).r_s[0, 0]
+    def along(self, beam: Beam, arc_length: np.ndarray) -> StationsOfRows:
+        """Return the state at arc lengths (n,) [m] of a beam."""
+        return self._stations(beam, (arc_length / beam.curve.length).tolist())
+
+    def _stations(self, beam: Beam, fractions: list[float]) -> StationsOfRows:
+        mesh = self.only.model.mesh_of(beam.start)
+        element, xi = map(np.array, zip(*map(mesh.locate, fractions), strict=True))
+        return StationsOfRows(self.only, mesh, element, xi)
 
     def stations(self, beam: Beam) -> np.ndarray:
         """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
@@ -41,10 +44,10 @@ class PlacedRow:
         return mesh.arc_length(*length_points(mesh)[:2])
 
     def shapes(self, load: "Load", weight: float) -> tuple[LoadShape, ...]:
-        """Return the shapes of a load, times a weight."""
-        return load.shapes(weight, self)
+        """Return the shapes of a load, times a weight. Raises InputError for an unknown shape."""
+        return drawn(load, load.shapes(weight, self), LoadShape)
 
-    def along(self, forces: ForcesAlong) -> np.ndarray:
+    def positions(self, forces: ForcesAlong) -> np.ndarray:
         """Return the positions of forces along a beam (n, 2) [m]."""
         length = forces.beam.curve.length
         return np.array([self.position(forces.beam.at(fraction)) for fraction in forces.arc_length / length])
@@ -54,6 +57,6 @@ class PlacedRow:
         fraction = force.point.fraction
         if 0.0 < fraction < 1.0:
             return True
-        slope = self.slope(force.point)
+        slope = self.at(force.point).slope[0, 0]
         outward = slope if fraction == 1.0 else -slope
         return bool(force.vector @ outward < -0.3 * np.linalg.norm(force.vector) * np.linalg.norm(slope))

@@ -1,11 +1,11 @@
 """Supports and joints in a drawing, as engineers draw them; a symbol has the same size in every picture."""
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 
-from beamfem.model.shapes import Constraint, Springs, SpringsAlong
+from beamfem.model.shapes import Constraint, JointShape, Springs, SpringsAlong, SupportShape, drawn
 from beamfem.view import symbols
 from beamfem.view.frames import one_row
 
@@ -77,7 +77,7 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
     only = one_row(solution, row)
     stamps = Stamps()
     for support in solution.model.supports:
-        for shape in support.shapes():
+        for shape in drawn(support, support.shapes(), SupportShape):
             match shape:
                 case SpringsAlong():
                     _springs_along(stamps, shape)
@@ -87,6 +87,8 @@ def supports_of(solution: "Solution", row: int, centre: np.ndarray) -> Stamps:
                     _constraint(stamps, shape, only.position(shape.point)[0], centre)
                 case Constraint():
                     _stamp(stamps, symbols.ROLLER, only.position(shape.point)[0], -np.asarray(shape.normal))
+                case _:
+                    assert_never(shape)
     return stamps
 
 
@@ -109,7 +111,7 @@ def _draw_connectors(axes: Any, solution: "Solution", row: int) -> list[Any]:
 def joints_of(solution: "Solution", row: int) -> Stamps:
     """Return the hinges of a model in a row as circles."""
     stamps = Stamps()
-    rings = [shape for joint in solution.model.joints for shape in joint.shapes()]
+    rings = [shape for joint in solution.model.joints for shape in drawn(joint, joint.shapes(), JointShape)]
     if rings:
         only = one_row(solution, row)
         for ring in rings:

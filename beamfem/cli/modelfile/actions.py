@@ -11,6 +11,7 @@ from beamfem.cli.modelfile.beams import called
 from beamfem.cli.modelfile.elements import elements
 from beamfem.cli.modelfile.frames import frame
 from beamfem.cli.modelfile.functions import Components
+from beamfem.cli.modelfile.kinds import kinds_of, readers_of
 from beamfem.cli.modelfile.named import Named, value_by
 from beamfem.cli.modelfile.own_parts import build_own, build_own_or_kind
 from beamfem.cli.modelfile.places import Moved, Places
@@ -19,31 +20,14 @@ from beamfem.errors import InputError
 from beamfem.io.frame import Frame
 from beamfem.material import Material
 from beamfem.model.beam import Beam, Point
-from beamfem.model.imposed_strains import Actuation, Temperature
-from beamfem.model.joints import Hinge, Joint, Rigid
-from beamfem.model.loads import DistributedLoad, Gravity, PointForce, PointMoment, Pressure
+from beamfem.model.joints import Joint
+from beamfem.model.load import Amplitude
+from beamfem.model.loads import Varying
 from beamfem.model.model import Model
 from beamfem.model.support import Support
-from beamfem.model.supports import Clamp, Foundation, Pin, Prescribed, Roller, Spring
 
-SUPPORTS: Kinds = {
-    "clamp": Clamp,
-    "pin": Pin,
-    "roller": Roller,
-    "prescribed": Prescribed,
-    "spring": Spring,
-    "foundation": Foundation,
-}
-LOADS: Kinds = {
-    "gravity": Gravity,
-    "force": PointForce,
-    "moment": PointMoment,
-    "distributed": DistributedLoad,
-    "pressure": Pressure,
-    "actuation": Actuation,
-    "temperature": Temperature,
-}
-JOINTS: Kinds = {"rigid": Rigid, "hinge": Hinge}
+SUPPORTS, LOADS, JOINTS = map(kinds_of, ("supports", "loads", "joints"))
+CONNECTORS = kinds_of("connectors")
 
 
 @dataclass(frozen=True)
@@ -101,11 +85,12 @@ def model(root: Table, known: Structure, function: Named, moving: bool) -> Model
             return given
         return Components(tuple(value(part, place) for part, place in table.items(key)))
 
-    readers: dict[str, Reader] = {"beam": places.beam, "a": places.point, "b": places.point, "amplitude": function}
-    readers |= {"point": places.point, "vector": vector}
-    readers |= dict.fromkeys(("ux", "uy", "rotation", "value", *Actuation.along, *Temperature.along), value)
-
     types: dict[Any, Reader] = {Point: places.point, Beam: places.beam, Material: known.material, Callable: value}
+    of_package = types | {Amplitude: function, tuple[float, float] | Varying: vector}
+
+    def part(table: Table, kinds: Kinds) -> Any:
+        readers = readers_of(kinds, table.values.get("kind"), of_package)
+        return build_own_or_kind(table, kinds, readers, types)
 
     def tried(table: Table, item: Any, trial: Callable[[Any], Model]) -> Any:
         try:
@@ -116,15 +101,18 @@ def model(root: Table, known: Structure, function: Named, moving: bool) -> Model
 
     def items(key: str, kinds: Kinds, trial: Callable[[Any], Model]) -> list[Any]:
         tables = [one for table in root.tables(key) for one in _each_place(table, kinds, places)]
-        return [tried(table, build_own_or_kind(table, kinds, readers, types), trial) for table in tables]
+        return [tried(table, part(table, kinds), trial) for table in tables]
 
     supports = items("supports", SUPPORTS, lambda item: Model(all_beams, supports=[item]))
     loads = items("loads", LOADS, lambda item: Model(all_beams, loads=[item]))
     joints = items("joints", JOINTS, lambda item: Model(all_beams, joints=[item]))
-    connectors = [
-        tried(table, build_own(table, types), lambda item: Model(all_beams, connectors=[item]))
-        for table in root.named("connectors").values()
-    ]
+
+    def connector(table: Table) -> Any:
+        of_kind = "kind" in table.values and CONNECTORS
+        item = part(table, CONNECTORS) if of_kind else build_own(table, types)
+        return tried(table, item, lambda item: Model(all_beams, connectors=[item]))
+
+    connectors = [connector(table) for table in root.named("connectors").values()]
     whole = Model(all_beams, supports, loads, [*inner, *joints], connectors)
     if "units" in root.values:
         units = root.text("units")

@@ -67,7 +67,16 @@ def _hints(maker: Callable[..., Any]) -> dict[str, Any]:
 
 def _reader(hint: Any, types: Types) -> Reader | None:
     """Return the reader of values of a type, or None if they are taken unchanged."""
-    parts = typing.get_args(hint) if typing.get_origin(hint) in (typing.Union, UnionType) else (hint,)
+    if reader := typed_reader(hint, types):
+        return reader
+    return _tuple if any(part is tuple or typing.get_origin(part) is tuple for part in _union(hint)) else None
+
+
+def typed_reader(hint: Any, types: Types) -> Reader | None:
+    """Return the reader of a type or of one of the types of a union, or None if there is none."""
+    if hint in types:
+        return types[hint]
+    parts = _union(hint)
     if Callable in types and any(_is_function(part) for part in parts):
         return types[Callable]
     for part in parts:
@@ -76,7 +85,11 @@ def _reader(hint: Any, types: Types) -> Reader | None:
         items = {item for item in typing.get_args(part) if item is not Ellipsis}
         if len(items) == 1 and items <= set(types):
             return _list_of(types[items.pop()])
-    return _tuple if any(part is tuple or typing.get_origin(part) is tuple for part in parts) else None
+    return None
+
+
+def _union(hint: Any) -> tuple[Any, ...]:
+    return typing.get_args(hint) if typing.get_origin(hint) in (typing.Union, UnionType) else (hint,)
 
 
 def _is_function(hint: Any) -> bool:

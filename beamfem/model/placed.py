@@ -1,0 +1,80 @@
+"""What loads ask of states of a model: the directions of the axis there, and displacements from the reference."""
+
+from collections.abc import Iterable
+from typing import Literal, Protocol
+
+import numpy as np
+
+from beamfem.element.coordinates import across
+from beamfem.model.beam import Beam, Point
+
+Axes = Literal["plane", "section", "axis"]
+
+
+class Stations(Protocol):
+    """Points (n,) of a beam in states of a model."""
+
+    @property
+    def rotation(self) -> np.ndarray:
+        """Rotations of the sections from the reference (steps, n) [rad]."""
+        ...
+
+    @property
+    def slope(self) -> np.ndarray:
+        """Derivatives r0' (steps, n, 2) [-]."""
+        ...
+
+
+class Placed(Protocol):
+    """A state of a model, with the members that shapes need."""
+
+    def at(self, point: Point) -> Stations:
+        """Return the state at a point."""
+        ...
+
+    def along(self, beam: Beam, arc_length: np.ndarray) -> Stations:
+        """Return the state at arc lengths (n,) [m] of a beam."""
+        ...
+
+    def stations(self, beam: Beam) -> np.ndarray:
+        """Return the arc lengths (n,) [m] at which loads along a beam are integrated."""
+        ...
+
+
+class Displaced(Protocol):
+    """States of a model, with the displacements from the reference by which loads do work."""
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        ...
+
+    @property
+    def first_moments(self) -> Iterable[np.ndarray]:
+        """Integral of the displacement over the mass of each beam (steps, 2) [kg m]."""
+        ...
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """Return the displacement of a point (steps, 2) [m]."""
+        ...
+
+    def rotation(self, point: Point) -> np.ndarray:
+        """Return the rotation of the section at a point (steps,) [rad]."""
+        ...
+
+    def along(self, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return displacements (steps, n, 2) [m] at points along a beam, and their weights and arc lengths (n,) [m]."""
+        ...
+
+
+def in_plane(vectors: np.ndarray, axes: Axes, at: Stations) -> np.ndarray:
+    """Return vectors (steps, n, 2) along the axes of a load in x and y.
+
+    axes: "plane": x and y; "section": rotated with the section from the reference; "axis": along r0' and normal to it.
+    """
+    if axes == "section":
+        angle = at.rotation[..., None]
+        return np.asarray(np.cos(angle) * vectors + np.sin(angle) * across(vectors))
+    if axes == "axis":
+        slope = at.slope
+        return np.asarray(vectors[..., :1] * slope + vectors[..., 1:] * across(slope))
+    return vectors

@@ -53,6 +53,19 @@ def test_a_discrete_gradient_keeps_the_energy():
     assert 0.0 < errors[0] < 1.2 * errors[1] < 1e-3
 
 
+def test_a_discrete_gradient_keeps_the_energy_of_springs():
+    """Springs at points whose sections do not rotate with a connector, so that the mass stays constant."""
+    beam = bf.Beam(bf.Line((0, 0), (1, 0)), 1, bf.ANCF(), SECTION, RUBBER)
+    springs = [bf.Spring(beam.start, stiffness=(3e3, 2e3)), bf.Spring(beam.end, stiffness=(30.0, 0.0))]
+    model = bf.Model([beam], springs, [bf.Gravity((0.0, -9.81))])
+    own, known = (bf.simulate(model, 0.2, 4e-3, integrator=own) for own in (EnergyMomentum(), bf.GeneralizedAlpha(1.0)))
+    drift, other = (np.ptp(found.energy().total) / np.ptp(found.energy().kinetic) for found in (own, known))
+    assert np.ptp(known.energy().potential) > 1.0
+    assert drift < 1e-11
+    assert other > 1e-6
+    assert own.position(beam.end)[-1] == pytest.approx(known.position(beam.end)[-1], abs=3e-3)
+
+
 @pytest.mark.parametrize(("step", "every"), [(1e-4, 10), (5e-5, 20), (2.5e-5, 40)])
 def test_inclined_rollers_dashpots_and_kinks_of_loads_are_taken(step, every):
     """Short steps stay with those of order 3: extrapolated by seven differences they drifted by 2e-4, the more the

@@ -233,6 +233,6 @@ def _needs(kinds: tuple[int, ...], sizes: Sizes, loads: bool) -> Needs:
 
 
 def _runs(node_kind: np.ndarray) -> np.ndarray:
-    """Return kind, first node and number of nodes (runs, 3) of each run of consecutive nodes of one kind."""
+    """Return kind, first node and number of nodes (runs, run fields) of each run of consecutive nodes of one kind."""
     first = np.flatnonzero(np.diff(node_kind, prepend=-1))
     return np.column_stack([node_kind[first], first, np.diff(first, append=len(node_kind))])

@@ -9,7 +9,7 @@ from beamfem.assembly.arena import Arena
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import tiles_of
 from beamfem.assembly.turning import runs_of
-from beamfem.kernels import record
+from beamfem.kernels import motion_record, record
 from beamfem.kernels.extrapolation import difference_rows, padded
 from beamfem.kernels.pointers import address_of
 
@@ -50,8 +50,8 @@ class MotionWorkspace:
                 record.INVERSE_SCALE: (padded(size),),
                 record.KEPT: (2, nodes),
                 record.TURNS: (2, nodes),
-                record.RULE: (6,),
-                record.LIMITS: (5,),
+                record.RULE: (motion_record.RULE_FIELDS,),
+                record.LIMITS: (motion_record.LIMIT_FIELDS,),
             }
         )
         self.arrays, addresses = room.arrays, room.addresses

@@ -35,7 +35,7 @@ def turning_vectors(blocks: Sequence[Block], free: np.ndarray, inclined: np.ndar
 
 
 def runs_of(pairs: np.ndarray) -> np.ndarray:
-    """Return runs (runs, 5) of vectors: equation numbers of x and y, node, step, and how many vectors.
+    """Return runs (runs, pair fields) of vectors, see `kernels.record.PAIR_X`.
 
     pairs (np, 4): equation numbers of x and y, node and number of the nodal vector of each. From one vector of a run to
     the next, the node increases by one, and the equation numbers increase by the step.

@@ -41,9 +41,9 @@ def form_matrices(group, system, count, x, nodal, stride):
         at(x, pair * ROW),
         at(x, k * ROW),
     )
-    ck, linear = factors[0], size - turned
+    ck, linear = factors[r.WEIGHT_P], size - turned
     if b[r.DAMPED] != 0 and s[r.RATED] != 0:  # `linear_law.add_viscous` has applied ck and cv at the points
-        ck = 1.0 if ck != 0.0 or factors[1] != 0.0 else 0.0
+        ck = 1.0 if ck != 0.0 or factors[r.WEIGHT_V] != 0.0 else 0.0
     transform, director = at(nodal, b[r.TRANSFORM] * ROW), reals(b[r.DIRECTOR])
     if ck != 0.0:
         for m in range(nodes):
@@ -101,7 +101,12 @@ def form_matrices(group, system, count, x, nodal, stride):
             for n in range(nodes):
                 to = at(convective, n * gathered * ROW)
                 _add_scaled(
-                    call[r.ADD_SCALED], turned * turning, count, factors[2], at(transform, n * gathered * ROW), to
+                    call[r.ADD_SCALED],
+                    turned * turning,
+                    count,
+                    factors[r.WEIGHT_A],
+                    at(transform, n * gathered * ROW),
+                    to,
                 )
         _add_mass(
             call[r.ADD_MASS],
@@ -111,7 +116,7 @@ def form_matrices(group, system, count, x, nodal, stride):
             turning,
             count,
             gathered,
-            factors[2],
+            factors[r.WEIGHT_A],
             at(t, b[r.MASS] * ROW),
             transform,
             convective,

@@ -31,7 +31,7 @@ def add_elements(group, system):
     size, slots_ = 2 * vectors, nodes * vectors
     measures, moving, tangent, predicted = b[r.MEASURES], s[r.MOVING], s[r.TANGENT], s[r.PREDICTED]
     gathered, damped = b[r.CURVATURE], b[r.DAMPED] != 0 and s[r.RATED] != 0
-    ck, cv = reals(s[r.FACTORS])[0], reals(s[r.FACTORS])[1] if damped else 0.0
+    ck, cv = reals(s[r.FACTORS])[r.WEIGHT_P], reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
     stiff = tangent != 0 and (ck != 0.0 or cv != 0.0)
     changed = 1 if tangent != 0 and moving != 0 else 0  # what the mass adds, the chunks must not keep
     if damped:

@@ -39,7 +39,7 @@ def add_group(s, system, number):
 @inlined
 def add_springs(s, first, end):
     """Add the forces of some springs to the ground to the residual and, if needed, their stiffness to the matrix."""
-    p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[0]
+    p, dof, factor = reals(s[r.COORDINATES_P]), wholes(s[r.SPRING_DOF]), reals(s[r.FACTORS])[r.WEIGHT_P]
     residual, matrix, stiffness, rest, place = (
         reals(s[r.RESIDUAL]),
         reals(s[r.MATRIX]),
@@ -128,7 +128,7 @@ def predict_resultants(group, system, placed):
     )
     s, size, slots, stress = wholes(system), 2 * vectors, nodes * vectors, reals(b[r.STRESS])
     damped = b[r.DAMPED] != 0 and s[r.RATED] != 0
-    cv = reals(s[r.FACTORS])[1] if damped else 0.0
+    cv = reals(s[r.FACTORS])[r.WEIGHT_V] if damped else 0.0
     rows = b[r.CURVATURE] if damped else 2 * size
     if placed == 0 or b[r.SHARED] != 0:
         _three(call[r.PLACE_NODES], group, system, 0)

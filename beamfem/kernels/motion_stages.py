@@ -1,6 +1,7 @@
 """Stages of a time step: each does a part of a model, whose bounds stand in a table; see `record` for its fields."""
 
 from beamfem.kernels import extrapolation, model_passes, motion_steps, rollers
+from beamfem.kernels import motion_record as m
 from beamfem.kernels import record as r
 from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.extrapolation import FAST
@@ -29,7 +30,7 @@ def predict(part, system, solver, calls):
         bounds[r.END_COORDINATE],
         s[r.SIZE],
         b[r.PRESCRIBED],
-        rule[5],
+        rule[m.ORDER],
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
         reals(b[r.DIFFERENCES]),
@@ -124,10 +125,10 @@ def solve(part, system, solver, calls):
 def correct_range(s, b, own):
     """Add corrections to the state; own (4,): the range of coordinates, and that of the unknowns among them."""
     return motion_steps.correct_part(
-        own[0],
-        own[1],
-        own[2],
-        own[3],
+        own[r.FIRST_COORDINATE],
+        own[r.END_COORDINATE],
+        own[r.FIRST_UNKNOWN],
+        own[r.END_UNKNOWN],
         s[r.SIZE],
         b[r.FIRST_FREE],
         reals(b[r.STATE]),
@@ -150,7 +151,7 @@ def correct(part, system, solver, calls):
 def complete(part, system, solver, calls):
     """End a step; return the largest change of p'', relative to its scale. The last part chooses the order."""
     s, b = wholes(system), wholes(solver)
-    bounds, n, rule, orders = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), at(reals(b[r.STATISTICS]), 6)
+    bounds, n, rule, statistics = bounds_of(b, part), s[r.SIZE], reals(b[r.RULE]), reals(b[r.STATISTICS])
     state, before, differences, scale = (
         reals(b[r.STATE]),
         reals(b[r.BEFORE]),
@@ -169,8 +170,8 @@ def complete(part, system, solver, calls):
         scale,
         wholes(b[r.PRESCRIBED_DOFS]),
         rule,
-        orders,
+        statistics,
     )
     if part == b[r.PARTS] - 1:
-        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, orders)
+        extrapolation.best_order(b[r.PARTS], n, state, before, differences, scale, rule, statistics)
     return change

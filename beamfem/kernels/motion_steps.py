@@ -6,7 +6,22 @@ from beamfem.kernels.compiling import inlined, routine
 from beamfem.kernels.extrapolation import FAST, larger_of
 from beamfem.kernels.lanes import WIDTH, as_rows, larger, largest, zeros
 from beamfem.kernels.pointers import at, reals, small_code, wholes
-from beamfem.kernels.record import CHUNKS, LANES, NODE_ROWS, NODES, ROW, VECTORS
+from beamfem.kernels.record import (
+    CHUNKS,
+    LANES,
+    NODE_ROWS,
+    NODES,
+    PAIR_COUNT,
+    PAIR_FIELDS,
+    PAIR_NODE,
+    PAIR_STEP,
+    PAIR_X,
+    PAIR_Y,
+    ROW,
+    VECTORS,
+    WEIGHT_A,
+    WEIGHT_V,
+)
 
 # of the tolerance: largest estimated error if the tangent is not that of the last iterate
 _REMAINDER = 1e-5
@@ -21,6 +36,7 @@ FAR = 0.01  # of the model: after a larger correction, elements are checked for 
 _LARGEST = 1e3  # of the model: a larger correction means divergence
 # how an iteration goes on: it has converged or diverged, or needs a new tangent
 CONVERGED, DIVERGED, RENEW = 1, -1, 2
+RATIO, RATIO_BEFORE = range(2)  # of successive corrections
 _GROWTH = 2.0  # largest ratio of successive corrections of Newton's method from the second on; above, it diverges
 
 
@@ -40,7 +56,7 @@ def correct_part(
     change,
 ):
     """Do what `correct` does for the coordinates from `first` to `end` and the unknowns among them."""
-    to_velocity, to_acceleration, size, rest = coefficients[1], coefficients[2], zeros(), 0.0
+    to_velocity, to_acceleration, size, rest = coefficients[WEIGHT_V], coefficients[WEIGHT_A], zeros(), 0.0
     begin, source, offset = first, change, 0
     if first_free >= 0:
         begin, end = first_unknown + first_free, end_unknown + first_free
@@ -98,13 +114,13 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
             if size > 0.5 * last:
                 # no longer decreasing: either this is round-off, or the kept tangent cannot reduce the remaining error
                 return CONVERGED if size <= noise[0] else RENEW
-        rate[1] = rate[0] if iteration > 2 else SMALLEST_RATE
-        rate[0] = size / last if last > 0.0 else 0.0
+        rate[RATIO_BEFORE] = rate[RATIO] if iteration > 2 else SMALLEST_RATE
+        rate[RATIO] = size / last if last > 0.0 else 0.0
     if full != 0:
         if size <= tolerance:
             return CONVERGED
         return DIVERGED if iteration > 2 and size > _GROWTH * last else 0
-    worst = rate[0] if iteration == 1 else max(rate[0], rate[1])
+    worst = rate[RATIO] if iteration == 1 else max(rate[RATIO], rate[RATIO_BEFORE])
     small = worst * size <= (1.0 - worst) * min(_REMAINDER * tolerance, _NEGLECTED * changed)
     if worst < 1.0 and small:
         return RENEW if far != 0 and own == 0 else CONVERGED
@@ -160,15 +176,15 @@ def turn_pairs(runs, sense, table, stride, turns, right):
     """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
     A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
-    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, 5): see
+    rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, pair fields): see
     `turning.runs_of`; turns (2, stride): see `turns_since`.
     """
     small_code()
     for run in range(runs):
-        own = at(table, 5 * run)
-        step, apart, vector = own[3], own[1] - own[0], at(right, own[0])
-        cosine, sine = at(turns, own[2]), at(turns, stride + own[2])
-        for i in range(own[4]):
+        own = at(table, PAIR_FIELDS * run)
+        step, apart, vector = own[PAIR_STEP], own[PAIR_Y] - own[PAIR_X], at(right, own[PAIR_X])
+        cosine, sine = at(turns, own[PAIR_NODE]), at(turns, stride + own[PAIR_NODE])
+        for i in range(own[PAIR_COUNT]):
             c, s = cosine[i], sense * sine[i]
             x, y = vector[i * step], vector[i * step + apart]
             vector[i * step], vector[i * step + apart] = c * x - s * y, s * x + c * y

@@ -26,6 +26,13 @@ def _clear_forces(b, chunks):
                 forces[row] = 0.0
 
 
+@inlined
+def _of_run(runs, run):
+    """Return the kind of the nodes of a run, the first node and the end."""
+    own = at(runs, r.RUN_FIELDS * run)
+    return own[r.RUN_KIND], own[r.RUN_FIRST], own[r.RUN_FIRST] + own[r.RUN_LENGTH]
+
+
 @routine("iii")
 def place_nodes(group, system, moving):
     """Fill the chunks of a group with nodal vectors and B, and set nodal forces to zero.
@@ -50,7 +57,7 @@ def place_nodes(group, system, moving):
     turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
     _clear_forces(b, chunks)
     for run in range(b[r.RUN_COUNT]):
-        kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
+        kind, first, end = _of_run(runs, run)
         linear = size
         if kind == ROTATION:
             linear = size - 2
@@ -104,7 +111,9 @@ def place_nodes(group, system, moving):
                     to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
                     put(polar, count, last, at(result, (2 * parts + part * polar) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
-                    _convect(call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[0], factors[1], x)
+                    _convect(
+                        call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[r.WEIGHT_P], factors[r.WEIGHT_V], x
+                    )
                     for part in range(parts):
                         to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
                         put(polar, count, last, at(result, part * polar * ROW), to)
@@ -150,11 +159,11 @@ def finish_nodes(group, system):
             residual,
         )
         first += count
-    factor = reals(s[r.FACTORS])[0]
+    factor = reals(s[r.FACTORS])[r.WEIGHT_P]
     if s[r.TANGENT] == 0 or factor == 0.0:
         return
     for run in range(b[r.RUN_COUNT]):
-        kind, first, end = runs[3 * run], runs[3 * run + 1], runs[3 * run + 1] + runs[3 * run + 2]
+        kind, first, end = _of_run(runs, run)
         if kind in (GRADIENTS, ROTATED_GRADIENTS):
             continue
         linear = size - 2 if kind == ROTATION else size - 4

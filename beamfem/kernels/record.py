@@ -37,7 +37,7 @@ BEAM = 22  # address (elements,)
 PLACE = 23  # address (nodes of an element, elements): offset of the node's first entry in the chunks
 DOF = 24  # address (coordinates of a node, nodes)
 FRAME = 25  # address (3, nodes)
-RUNS = 26  # address (runs, 3): kind of node, first node, number of nodes
+RUNS = 26  # address (runs, run fields): nodes of one kind, see RUN_KIND
 RUN_COUNT = 27
 NUMBER = 28  # address (nodes of an element * coordinates of a node, elements): number among the unknowns, or -1
 SLOT = 29  # address (elements, coordinates, coordinates): positions in the data of a sparse matrix
@@ -85,6 +85,9 @@ FIRST_OF_STATE = 67  # number of the coordinate from which those of the group ar
 FIRST_OF_MATRIX = 68  # number of the entry of a band from which its entries are counted
 BLOCK_FIELDS = 69
 
+RUN_KIND, RUN_FIRST, RUN_LENGTH = range(3)
+RUN_FIELDS = 3
+
 # ------------------------------------------------------------------ a model in a state
 GROUPS = 0
 GROUP_RECORDS = 1  # address of a table of addresses
@@ -97,7 +100,7 @@ RESIDUAL = 7
 SIZE = 8
 MATRIX = 9
 ENTRIES = 10
-FACTORS = 11  # ck, cv, ca: weights of p, p' and p'' in the tangent; then the time step from the committed history
+FACTORS = 11  # see WEIGHT_P
 TANGENT = 12
 PREDICTED = 13  # whether the geometric part of the tangent uses the resultants in `STRESS`
 MOVING = 14
@@ -109,6 +112,9 @@ SPRING_REST = 19
 SPRING_PLACE = 20
 RATED = 21  # whether strain rates matter
 SYSTEM_FIELDS = 22
+
+WEIGHT_P, WEIGHT_V, WEIGHT_A = range(3)  # ck, cv, ca: weights of p, p' and p'' in the tangent
+SINCE_COMMITTED = 3  # [s] from the committed history
 FACTOR_COUNT = 4
 
 # ------------------------------------------------------------------ compiled functions, by their number in `ROUTINES`
@@ -166,8 +172,8 @@ ROWS = 6  # address (unknown, 2 half + 1)
 RIGHT = 7  # address (unknown,)
 STEP = 8  # address (n,), for motions (n + 2,): with the last two rates of convergence
 SCALE = 9  # address (n,)
-LIMITS = 10
-FOUND = 11
+LIMITS = 10  # see `newton_record`, for motions `motion_record`
+FOUND = 11  # see `newton_record`
 PRESCRIBED_STEP = 12
 PRESCRIBED_FORCE = 13
 PRESCRIBED = 14
@@ -176,10 +182,10 @@ STATE = 16  # address (4, n): p, p', p'' and the auxiliary acceleration
 BEFORE = 17
 DIFFERENCES = 18  # see `extrapolation.difference_rows`
 INVERSE_SCALE = 19  # address (padded(n),)
-RULE = 20
-STATISTICS = 21
+RULE = 20  # see `motion_record`
+STATISTICS = 21  # see `motion_record`
 RUNS_OF_PAIRS = 22  # of vectors that rotate with their section
-PAIR_TABLE = 23  # (runs, 5): see `turning.runs_of`
+PAIR_TABLE = 23  # (runs, pair fields): see `turning.runs_of`
 KEPT = 24  # (2, node stride)
 TURNS = 25  # (2, node stride)
 STEPS = 26
@@ -217,6 +223,13 @@ SOLVER_FIELDS = 54
 FIRST_COORDINATE, END_COORDINATE, FIRST_UNKNOWN, END_UNKNOWN = range(4)
 FIRST_TILE, END_TILE = range(4, 6)  # in the order in which the part processes them
 BOUND_FIELDS = 6
+
+# ------------------------------------------------------------------ runs of vectors that rotate with their section
+PAIR_X, PAIR_Y = range(2)  # equation numbers of the first
+PAIR_NODE = 2  # of the first, and one more for each of the next
+PAIR_STEP = 3  # from one equation number to the next
+PAIR_COUNT = 4
+PAIR_FIELDS = 5
 
 # ------------------------------------------------------------------ a tile: a group of a long chain
 TILE_GROUP = 0

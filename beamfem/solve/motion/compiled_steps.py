@@ -6,6 +6,7 @@ from beamfem.assembly.motion_workspace import MotionWorkspace
 from beamfem.assembly.system import System
 from beamfem.kernels import record
 from beamfem.kernels.march import march, solve_once
+from beamfem.kernels.motion_record import TIME_STEP
 from beamfem.kernels.pointers import address_of
 from beamfem.linalg.tangent import SMALLEST_PIVOT
 from beamfem.solve.motion.limits import BAND, SPARSE, not_converged
@@ -19,15 +20,16 @@ _INERTIA = 0.0, 0.0, 1.0  # weights of p, p', p'' in the tangent
 class CompiledSteps:
     """Marches through time steps; keeps tangent and differences of the acceleration between calls.
 
-    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics (10,): see `kernels.march.march`.
+    space: its own workspace; rule: step, alpha_m, alpha_f, gamma, beta; statistics: see
+    `kernels.motion_record`.
     """
 
     def __init__(self, system: System, space: MotionWorkspace, rule: np.ndarray, statistics: np.ndarray) -> None:
-        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[0])
+        self._system, self._space, self._statistics, self._step = system, space, statistics, float(rule[TIME_STEP])
         sparse = system.unknowns.pattern is not None
         self._limits = SPARSE if sparse else BAND
         h, alpha_m, alpha_f, gamma, beta = rule
-        space.arrays[record.RULE][:5], space.arrays[record.LIMITS][:] = rule, self._limits
+        space.arrays[record.RULE][: len(rule)], space.arrays[record.LIMITS][:] = rule, self._limits
         space.arrays[record.DIFFERENCES][:] = 0.0
         space.assembler.weigh((1.0, gamma / (h * beta), (1.0 - alpha_m) / (h * h * beta * (1.0 - alpha_f))), self._step)
         space.assembler.require("tangent", "prediction")

@@ -8,6 +8,7 @@ from beamfem.assembly.compiled import tell_of_compilation
 from beamfem.assembly.rigid_velocity import RigidVelocity
 from beamfem.assembly.system import System
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.keywords import keywords_checked
 from beamfem.model.model import Model
 from beamfem.model.turns import turning_pairs
@@ -152,6 +153,6 @@ def _solution(
     for name in unresolved:
         ended += f"; the {name} varies within steps, which do not resolve it"
     status = Status.COMPLETED if done == len(times) - 1 else Status.STOPPED
-    summary = Statistics(int(record.statistics[0]), done, 0, ended, status)
+    summary = Statistics(int(record.statistics[ITERATIONS]), done, 0, ended, status)
     p, v, a = states.swapaxes(0, 1)
     return Solution(system.model, False, times[kept_steps], p, v, a, summary, turned=turned)

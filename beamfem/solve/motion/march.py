@@ -15,6 +15,7 @@ from beamfem.assembly.motion_workspace import motion_workspace
 from beamfem.assembly.system import System
 from beamfem.assembly.tiles import is_long
 from beamfem.assembly.viscosity import viscous_tangent
+from beamfem.kernels.motion_record import ALPHA_M, GAMMA, OF_EQUAL_STEPS, TIME_STEP, MotionStatistics
 from beamfem.linalg.tangent import UNROTATED, SparseTangent, Tangent
 from beamfem.progress import progress
 from beamfem.solve.motion.compiled_steps import CompiledSteps, acceleration
@@ -33,7 +34,7 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics (10,): see `kernels.march.march`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    statistics: see `kernels.motion_record`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
     the stored states.
     """
 
@@ -46,7 +47,7 @@ class Record:
 
 def new_statistics() -> np.ndarray:
     """Return the statistics of a motion that has not begun."""
-    return np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    return np.array(MotionStatistics())
 
 
 @dataclass
@@ -87,7 +88,7 @@ def march(
     prescribed (m + 1, 3, nh): see `prescribed_motion`, at the ends of all steps; last: updated after each step. Return
     where and why it failed, or None.
     """
-    statistics = record.statistics
+    statistics, begun_anew = record.statistics, new_statistics()
     done, row, failed = 0, 0, None
     damped = any(block.damping.any() for block in system.blocks) or bool(system.connectors.items)
     # see initial_acceleration; laws with history know rates by differences only
@@ -102,7 +103,7 @@ def march(
                 if is_scheme(integrator):
                     _keep_momentum(integrator.rule(parts[number - 1].step), state)
                 _begin_anew(system, part, state, _kept(record, done, part))
-                statistics[[4, 6, 7, 8, 9]] = -1.0, 0.0, 0.0, 0.0, 0.0
+                statistics[OF_EQUAL_STEPS] = begun_anew[OF_EQUAL_STEPS]
             if relaxed:
                 state[2] = state[3] = initial_acceleration(system, state, part.loads_from, part.step)
             load_times = np.append(part.times[1:-1], part.loads_to)
@@ -165,7 +166,7 @@ def _keep_momentum(rule: np.ndarray, state: np.ndarray) -> None:
     arithmetic one in methods of second order. With this correction the same holds across stretches, and momentum is
     conserved.
     """
-    state[1] += rule[0] * (1.0 - rule[1] - rule[3]) * (state[3] - state[2])
+    state[1] += rule[TIME_STEP] * (1.0 - rule[ALPHA_M] - rule[GAMMA]) * (state[3] - state[2])
 
 
 def _begin_anew(system: System, part: Stretch, state: np.ndarray, kept: np.ndarray | None) -> None:

@@ -12,6 +12,7 @@ from beamfem.assembly.equations import linearise, residual
 from beamfem.assembly.system import System
 from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
+from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.linalg.superlu import superlu
 from beamfem.linalg.tangent import UNROTATED, turning
 from beamfem.results.solution import Solution, State
@@ -197,7 +198,7 @@ class OwnStep:
     """A step of a user-defined integrator; why: the reason of a failure; dt [s]: duration of the last step."""
 
     def __init__(self, system: System, integrator: Integrator, begin: float, statistics: np.ndarray) -> None:
-        self.system, self.integrator, self.time, self.counted = system, integrator, begin, statistics[:1]
+        self.system, self.integrator, self.time, self.statistics = system, integrator, begin, statistics
         moved = any(callable(item.value) for item in system.prescribed)
         self.solved = System(system.model, static=False, released=True) if moved else system
         self.dt, self.why = 0.0, ""
@@ -206,7 +207,7 @@ class OwnStep:
         """See `single_steps.Step`."""
         p, v, a, _ = before.copy()
         begin = State(p, v, a, self.time, self.system.model)
-        motion = EquationsOfMotion(self.solved, self.counted, self.time)
+        motion = EquationsOfMotion(self.solved, self.statistics[ITERATIONS : ITERATIONS + 1], self.time)
         try:
             reached = self.integrator.step(motion, begin, time)
         except (ConvergenceError, LinAlgError) as error:

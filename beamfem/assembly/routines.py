@@ -40,7 +40,7 @@ _TASKS: dict[str, dict[int, Routine]] = {
         record.COLLECT: gathering.collect,
         record.SCATTER: gathering.scatter,
         record.INTERPOLATE: field.interpolate,
-        record.SPREAD: field.spread,
+        record.DISTRIBUTE: field.distribute,
         record.ADD_INERTIA: inertia.add_inertia,
         record.COPY: nodes.copy,
         record.CLEAR: nodes.clear,

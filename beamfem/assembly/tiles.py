@@ -16,9 +16,9 @@ from beamfem.assembly.system import System
 from beamfem.assembly.turning import runs_of
 from beamfem.kernels import record
 from beamfem.kernels.band import KNOWN
-from beamfem.kernels.band_halves import whole_blocks
 from beamfem.kernels.block import Block, Layout, PointLoads, Springs
 from beamfem.kernels.pointers import address_of
+from beamfem.kernels.two_sided_parts import whole_blocks
 
 LONG = 20_000  # elements; the node data of longer chains does not fit into the cache
 _FEWEST = 4  # unknowns in half widths: two are left in the middle

@@ -10,7 +10,7 @@ from beamfem.kernels.pointers import at, caller, reals, small_code, wholes
 from beamfem.kernels.record import ROW
 
 _collect, _scatter = caller("iiiiii", "i"), caller("iiiiiniirr")
-_interpolate, _spread = caller("iiiiirrrrr"), caller("iiiirrrrr")
+_interpolate, _distribute = caller("iiiiirrrrr"), caller("iiiirrrrr")
 _measure, _law = caller("ir"), caller("iiiiiirrrr")
 _add_inertia = caller("iiiiiiirrrrrr")
 _form, _add, _copy = caller("iiirri"), caller("iiiir"), caller("iirr")
@@ -114,7 +114,9 @@ def add_elements(group, system):
                     q,
                 )
             _measure(call[r.FORCES], count, q)
-            _spread(call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f)
+            _distribute(
+                call[r.DISTRIBUTE], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), f
+            )
             if predicted != 0:
                 stress = reals(b[r.STRESS])
                 for i in range(count):
@@ -122,8 +124,8 @@ def add_elements(group, system):
                     for measure in range(measures):
                         q[(RESULTANT + measure) * ROW + i] = weight[i] * resultants[measure]
                 _measure(call[r.FORCES], count, q)
-                _spread(
-                    call[r.SPREAD], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g
+                _distribute(
+                    call[r.DISTRIBUTE], nodes, vectors, bends, count, slope, second, factor, at(q, POINT_FORCE * ROW), g
                 )
             if stiff and damped:
                 for row in range(measures):

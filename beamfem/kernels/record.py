@@ -122,7 +122,7 @@ FACTOR_COUNT = 4
     COLLECT,
     SCATTER,
     INTERPOLATE,
-    SPREAD,
+    DISTRIBUTE,
     COLUMNS,
     PRODUCTS,
     MIRROR,
@@ -214,7 +214,7 @@ PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
 TURNS_WANTED = 47  # whether it is asked how far sections have turned since the last tangent
 REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
 TILES = 49  # address (tiles, tile fields)
-ROWS_DOWN = 50  # rows eliminated downwards from the top, see `band_halves`
+ROWS_DOWN = 50  # rows eliminated downwards from the top, see `two_sided_parts`
 STEP_WANTED = 51  # whether corrections are needed before they are added to the state
 NODE_STRIDE = 52
 NOW = 53  # number of the step that is taken, of those of this call
@@ -240,7 +240,7 @@ NEW_COORDINATE, END_NEW_COORDINATE, NEW_UNKNOWN, END_NEW_UNKNOWN = range(2, 6)
 DONE_COORDINATE, END_DONE_COORDINATE, DONE_UNKNOWN, END_DONE_UNKNOWN, DONE_SPRING, END_DONE_SPRING = range(6, 12)
 # of its unknowns: as `RUNS_OF_PAIRS`, but counted from DONE_UNKNOWN and TILE_NODE
 TILE_RUNS_OF_PAIRS, TILE_PAIR_TABLE = range(12, 14)
-# rows, from the end of the part, that can be eliminated before this tile and with it, see `band_halves.whole_blocks`
+# rows, from the end of the part, that can be eliminated before this tile and with it: `two_sided_parts.whole_blocks`
 ROWS_BEFORE, ROWS_WITH = range(14, 16)
 TILE_FIELDS = 16
 

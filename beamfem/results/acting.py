@@ -13,8 +13,8 @@ from beamfem.element.fields import d_slots, r_slots
 from beamfem.model.mesh import BeamMesh
 from beamfem.model.reference import inertia_points, length_points, scales
 from beamfem.quadrature import gauss
+from beamfem.results.distributions import nearest, to_more_points
 from beamfem.results.loading import loading
-from beamfem.results.spread import nearest, to_more_points
 
 if TYPE_CHECKING:
     from beamfem.results.solution import Solution
@@ -101,7 +101,7 @@ def acting_on(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray, a
     parts = [
         _of_mass(rows, mesh, elements, e, acceleration),
         _along(rows, mesh, elements, e),
-        _spread(rows, mesh, elements, e),
+        _distributed(rows, mesh, elements, e),
     ]
     joined = {
         name: np.concatenate([getattr(part, name) for part in parts], axis=1 if name in ("force", "turning") else 0)
@@ -124,15 +124,15 @@ def at_more_points(acting: Acting, mesh: BeamMesh, elements: np.ndarray) -> Acti
         mask = acting.rule == rule
         index = acting.element[mask], nearest(gauss(rule)[0], acting.xi[mask])
         finer = to_more_points(rule, rule + extra)
-        spread = []
+        distributed = []
         for values in (acting.force[:, mask], acting.turning[:, mask]):
             summed = np.zeros((len(elements), rule, len(values), 2))
             np.add.at(summed, index, np.moveaxis(values, 1, 0))
-            spread.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
+            distributed.append(np.einsum("jn,ensc->sejc", finer, summed).reshape(len(values), -1, 2))
         element, xi = np.repeat(np.arange(len(elements)), len(finer)), np.tile(gauss(len(finer))[0], len(elements))
         # distributed moments come from inertia alone, which turns with d
         tables = _tables(mesh, elements[element], xi)
-        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *spread))
+        parts.append((element, xi, np.full(len(xi), len(finer)), *tables, *distributed))
     joined = zip(*parts, strict=True)
     return Acting(*(np.concatenate(values, axis=1 if values[0].ndim == 3 else 0) for values in joined))
 
@@ -164,12 +164,12 @@ def _along(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> A
     return Acting(element, xi, rule, position, direction, force, np.zeros_like(force))
 
 
-def _spread(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
+def _distributed(rows: Rows, mesh: BeamMesh, elements: np.ndarray, e: np.ndarray) -> Acting:
     """Return follower and varying loads along beams, and foundation springs, as evaluated by the kernels."""
     actions = rows.system.actions[mesh.block]
     points, own = actions.points, mesh.in_block(elements)
     order = np.argsort(own)
-    chosen = actions.spread_on(own[order])
+    chosen = actions.distributed_on(own[order])
     if not len(chosen):
         return _nothing(e)
     element = order[np.searchsorted(own, points.element[chosen], sorter=order)]

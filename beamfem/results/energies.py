@@ -108,11 +108,11 @@ def _of_loads(solution: "Solution") -> np.ndarray:
         angles = rotations(solution, [acting.point for acting in moments])
         for acting, angle in zip(moments, angles.T, strict=True):
             result -= _factors(solution, acting) * acting.value[2] * angle
-    spread: defaultdict[int, list[LineLoad]] = defaultdict(list)
+    distributed: defaultdict[int, list[LineLoad]] = defaultdict(list)
     for line in solution.model.line_loads:
         if line.conservative:
-            spread[id(line.beam)].append(line)
-    for lines in spread.values():
+            distributed[id(line.beam)].append(line)
+    for lines in distributed.values():
         moved, weight, arc = _along(solution, lines[0].beam)
         for line in lines:
             work = np.einsum("sqc,qc,q->s", moved, forces_of(line, arc), weight)

@@ -68,10 +68,10 @@ _TASKS: dict[str, dict[int, Routine]] = {
     "sparse": {record.ADD_TO_SPARSE: reduction.add_to_sparse},
     "angles": {record.TURN: nodes.turn},
     "rotated": {record.ROTATE: nodes.rotate},
-    "turning tangent": {record.COMBINE: stiffness.combine, record.ADD_CURVATURE: reduction.add_curvature},
+    "rotation tangent": {record.COMBINE: stiffness.combine, record.ADD_CURVATURE: reduction.add_curvature},
     "loads": {record.ADD_LOADS: point_loads.add_loads, record.LOAD_FORCES: point_loads.load_forces},
     "load tangent": {record.REDUCE: element_matrices.reduce_and_add},
-    "turning load tangent": {
+    "rotation load tangent": {
         record.REDUCE_COLUMNS: reduction.reduce_columns,
         record.REDUCE_ROWS: reduction.reduce_rows,
     },

@@ -54,7 +54,7 @@ def place_nodes(group, system, moving):
         at(reals(s[r.COORDINATES_V]), b[r.FIRST_OF_STATE]),
         at(reals(s[r.COORDINATES_A]), b[r.FIRST_OF_STATE]),
     )
-    turned, turning, factors = b[r.TURNED], b[r.TURNING], reals(s[r.FACTORS])
+    dependent, parameters, factors = b[r.DEPENDENT], b[r.PARAMETERS], reals(s[r.FACTORS])
     _clear_forces(b, chunks)
     for run in range(b[r.RUN_COUNT]):
         kind, first, end = _of_run(runs, run)
@@ -106,16 +106,16 @@ def place_nodes(group, system, moving):
                         at(chunk, (b[r.ACCELERATION] + linear) * ROW),
                     )
                 # where kinds of nodes are mixed, b of a node may be smaller: it takes the last rows and columns
-                corner = (turned - parts) * turning + linear - (size - turned)
+                corner = (dependent - parts) * parameters + linear - (size - dependent)
                 for part in range(parts):
-                    to = at(chunk, (b[r.TRANSFORM] + corner + part * turning) * ROW)
+                    to = at(chunk, (b[r.TRANSFORM] + corner + part * parameters) * ROW)
                     put(polar, count, last, at(result, (2 * parts + part * polar) * ROW), to)
                 if moving != 0 and s[r.TANGENT] != 0:
                     _convect(
                         call[r.PLACE_KIND + 3 * (kind - 1) + 1], count, factors[r.WEIGHT_P], factors[r.WEIGHT_V], x
                     )
                     for part in range(parts):
-                        to = at(chunk, (b[r.CONVECTIVE] + corner + part * turning) * ROW)
+                        to = at(chunk, (b[r.CONVECTIVE] + corner + part * parameters) * ROW)
                         put(polar, count, last, at(result, part * polar * ROW), to)
             first += count
 
@@ -134,11 +134,11 @@ def finish_nodes(group, system):
         reals(b[r.CHUNKS]),
         reals(b[r.SPACE]),
     )
-    p, residual, turned, turning = (
+    p, residual, dependent, parameters = (
         at(reals(s[r.COORDINATES_P]), b[r.FIRST_OF_STATE]),
         at(reals(s[r.RESIDUAL]), b[r.FIRST_OF_STATE]),
-        b[r.TURNED],
-        b[r.TURNING],
+        b[r.DEPENDENT],
+        b[r.PARAMETERS],
     )
     forces = b[r.PREDICTED_FORCE] if s[r.PREDICTED] != 0 else b[r.FORCE]
     first = 0
@@ -148,8 +148,8 @@ def finish_nodes(group, system):
             first,
             count,
             size,
-            turned,
-            turning,
+            dependent,
+            parameters,
             stride,
             dof,
             b[r.TRANSFORM],

@@ -66,7 +66,7 @@ _TASKS: dict[str, dict[int, Routine]] = {
     "imposed": {record.RELEASE: imposed_strains.release},
     "band": {record.ADD_TO_BAND: band_assembly.add_to_band},
     "sparse": {record.ADD_TO_SPARSE: reduction.add_to_sparse},
-    "angles": {record.TURN: nodes.turn},
+    "angles": {record.ROTATE_FRAME: nodes.rotate_frame},
     "rotated": {record.ROTATE: nodes.rotate},
     "rotation tangent": {record.COMBINE: stiffness.combine, record.ADD_CURVATURE: reduction.add_curvature},
     "loads": {record.ADD_LOADS: point_loads.add_loads, record.LOAD_FORCES: point_loads.load_forces},

@@ -92,9 +92,9 @@ def _of_statics(own: Band) -> dict[int, Routine]:
 def _of_motions() -> dict[int, Routine]:
     return {
         record.KEEP_DIRECTIONS: motion_steps.keep_directions,
-        record.TURNS_SINCE: motion_steps.turns_since,
-        record.TURN_PAIRS: motion_steps.turn_pairs,
-        record.COUNT_TURNS: motion_steps.count_turns,
+        record.ROTATIONS_SINCE: motion_steps.rotations_since,
+        record.ROTATE_PAIRS: motion_steps.rotate_pairs,
+        record.COUNT_ROTATIONS: motion_steps.count_rotations,
         record.PREDICT: motion_stages.predict,
         record.COMPLETE: motion_stages.complete,
     }

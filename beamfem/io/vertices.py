@@ -159,7 +159,7 @@ def _of_line_load(
         table = _factors(load, part)[:, None, None] * forces
         now = postprocess.axis(mesh, postprocess.nodal_vectors(mesh, part.p), element, xi)
         if load.axes == "section":
-            angle = postprocess.turning(mesh, part.p, now, element, xi)[..., None]
+            angle = postprocess.section_rotation(mesh, part.p, now, element, xi)[..., None]
             table = np.cos(angle) * table + np.sin(angle) * across(table)
         elif load.axes == "axis":
             table = table[..., :1] * now.r_s + table[..., 1:] * across(now.r_s)

@@ -54,7 +54,7 @@ def solve_once(system, solver, calls):
     `RIGHT`: the correction, which is not added to the state.
     """
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    s[r.TANGENT], s[r.PREDICTED], b[r.TURNS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
+    s[r.TANGENT], s[r.PREDICTED], b[r.ROTATIONS_WANTED], b[r.STEP_WANTED] = 1, 0, 1, 1
     pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
     pivots = max(pivots, _run(call[r.FACTORISE], system, solver, calls, b, call))
     _stage(call[r.SOLVE], 0, system, solver, calls)
@@ -92,11 +92,11 @@ def march(system, solver, calls):
         wholes(b[r.LOAD_VALUES]),
         wholes(b[r.NATURALS]),
     )
-    saved, every, turned_by, saved_turns = (
+    saved, every, rotated_by, saved_rotations = (
         reals(b[r.SAVED]),
         b[r.EVERY],
-        reals(b[r.TURNED_BY]),
-        reals(b[r.SAVED_TURNS]),
+        reals(b[r.ROTATED_BY]),
+        reals(b[r.SAVED_ROTATIONS]),
     )
     for step in range(b[r.STEPS]):
         s[r.BODY] = bodies + 8 * step * b[r.BODY_STRIDE]
@@ -118,7 +118,7 @@ def march(system, solver, calls):
         while iteration < limits[m.NEWTON_ITERATIONS]:
             renew = full != 0 or fresh
             s[r.TANGENT], s[r.PREDICTED] = renew, full != 0 and iteration > 0
-            b[r.TURNS_WANTED] = iteration == 0 or renew
+            b[r.ROTATIONS_WANTED] = iteration == 0 or renew
             pivots = _run(call[r.ASSEMBLE], system, solver, calls, b, call)
             if renew:
                 if b[r.ROLLERS] > 0:
@@ -186,12 +186,12 @@ def march(system, solver, calls):
                 state[i] = before[i]
             return step
         statistics[m.CHANGE] = _run(call[r.COMPLETE], system, solver, calls, b, call) / factors[r.WEIGHT_A]
-        _count(call[r.COUNT_TURNS], b[r.TURN_COUNT], wholes(b[r.TURN_TABLE]), before, state, turned_by)
+        _count(call[r.COUNT_ROTATIONS], b[r.ROTATION_COUNT], wholes(b[r.ROTATION_TABLE]), before, state, rotated_by)
         if (b[r.FIRST_STEP] + step) % every == 0:
             row = (b[r.FIRST_STEP] + step) // every
             to = at(saved, 3 * n * row)
             for i in range(3 * n):
                 to[i] = state[i]
-            for i in range(b[r.TURN_COUNT]):
-                saved_turns[row * b[r.TURN_COUNT] + i] = turned_by[i]
+            for i in range(b[r.ROTATION_COUNT]):
+                saved_rotations[row * b[r.ROTATION_COUNT] + i] = rotated_by[i]
     return b[r.STEPS]

@@ -9,7 +9,7 @@ from beamfem.kernels.lanes import WIDTH, as_rows
 from beamfem.kernels.pointers import at, caller, reals, slots, small_code, wholes
 
 _factor, _solve, _roll = caller("iisrr", "d"), caller("iirr"), caller("inrr")
-_turn_pairs, _keep, _turns = caller("idnirr"), caller("iiir"), caller("iiirr")
+_rotate_pairs, _keep, _rotations = caller("idnirr"), caller("iiir"), caller("iiirr")
 _stay_on_planes = inlined(rollers.stay_on_planes)
 
 
@@ -48,19 +48,19 @@ def predict(part, system, solver, calls):
 def assemble(part, system, solver, calls):
     """Fill the residual and, if needed, the matrix; return -1, as nothing is factorised yet.
 
-    With `TURNS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
+    With `ROTATIONS_WANTED`, also fill the rotations of sections since the last tangent; a new tangent stores their
     directions first.
     """
     small_code()
     s, b, call = wholes(system), wholes(solver), wholes(calls)
-    groups, kept, turns, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.TURNS]), 0
+    groups, kept, rotations, node = wholes(s[r.GROUP_RECORDS]), reals(b[r.KEPT]), reals(b[r.ROTATIONS]), 0
     model_passes.clear(s, 0, s[r.SIZE], 0, s[r.ENTRIES])
     for group in range(s[r.GROUPS]):
         model_passes.add_group(s, system, group)
-        if b[r.TURNS_WANTED] != 0:
+        if b[r.ROTATIONS_WANTED] != 0:
             if s[r.TANGENT] != 0:
                 _keep(call[r.KEEP_DIRECTIONS], groups[group], node, b[r.NODE_STRIDE], kept)
-            _turns(call[r.TURNS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, turns)
+            _rotations(call[r.ROTATIONS_SINCE], groups[group], node, b[r.NODE_STRIDE], kept, rotations)
         node += wholes(groups[group])[r.NODES]
     model_passes.add_springs(s, 0, s[r.SPRINGS])
     return -1.0
@@ -81,9 +81,9 @@ def factorise(part, system, solver, calls):
 
 
 @inlined
-def _turn_vectors(b, call, sense):
-    runs, table, turns = b[r.RUNS_OF_PAIRS], wholes(b[r.PAIR_TABLE]), reals(b[r.TURNS])
-    _turn_pairs(call[r.TURN_PAIRS], runs, sense, table, b[r.NODE_STRIDE], turns, reals(b[r.RIGHT]))
+def _rotate_vectors(b, call, sense):
+    runs, table, rotations = b[r.RUNS_OF_PAIRS], wholes(b[r.PAIR_TABLE]), reals(b[r.ROTATIONS])
+    _rotate_pairs(call[r.ROTATE_PAIRS], runs, sense, table, b[r.NODE_STRIDE], rotations, reals(b[r.RIGHT]))
 
 
 @inlined
@@ -113,9 +113,9 @@ def solve(part, system, solver, calls):
     fill_right(s, b, 0, unknown)
     if rollers > 0:
         _roll(call[r.ROTATE_IN], rollers, first_of, normal, right)
-    _turn_vectors(b, call, -1.0)
+    _rotate_vectors(b, call, -1.0)
     _solve(call[r.SOLVE_BOTH], unknown, b[r.HALF], reals(b[r.ROWS]), right)
-    _turn_vectors(b, call, 1.0)
+    _rotate_vectors(b, call, 1.0)
     if rollers > 0:
         _roll(call[r.ROTATE_BACK], rollers, first_of, normal, right)
     return 0.0

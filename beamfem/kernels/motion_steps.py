@@ -128,8 +128,8 @@ def check_convergence(iteration, full, own, far, size, last, changed, tolerance,
 
 
 @routine("inrrr")
-def count_turns(pairs, table, before, now, turned):
-    """Add the rotations of vectors between two states (n,) to `turned` (pairs,) [rad].
+def count_rotations(pairs, table, before, now, rotated_by):
+    """Add the rotations of vectors between two states (n,) to `rotated_by` (pairs,) [rad].
 
     table (pairs, 2): numbers of the coordinates x and y of each vector.
     """
@@ -137,7 +137,7 @@ def count_turns(pairs, table, before, now, turned):
     for i in range(pairs):
         x, y = table[2 * i], table[2 * i + 1]
         crossed = before[x] * now[y] - before[y] * now[x]
-        turned[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
+        rotated_by[i] += math.atan2(crossed, before[x] * now[x] + before[y] * now[y])
 
 
 @routine("iiir")
@@ -153,7 +153,7 @@ def keep_directions(group, first, stride, kept):
 
 
 @routine("iiirr", fastmath=FAST)
-def turns_since(group, first, stride, kept, turns):
+def rotations_since(group, first, stride, kept, rotations):
     """Fill the cosine and sine (2, stride) of the rotation of each node of a group since its d was kept.
 
     See `keep_directions`.
@@ -162,7 +162,7 @@ def turns_since(group, first, stride, kept, turns):
     chunks, size, nodes = reals(b[CHUNKS]), 2 * b[VECTORS], b[NODES]
     while begin < nodes:
         d = at(chunks, (begin // LANES * b[NODE_ROWS] + size - 2) * ROW)
-        offset, its = at(kept, first + begin), at(turns, first + begin)
+        offset, its = at(kept, first + begin), at(rotations, first + begin)
         for i in range(min(LANES, nodes - begin)):
             x, y, x0, y0 = d[i], d[ROW + i], offset[i], offset[stride + i]
             c, s = x * x0 + y * y0, y * x0 - x * y0
@@ -172,18 +172,18 @@ def turns_since(group, first, stride, kept, turns):
 
 
 @routine("idnirr", fastmath=FAST)
-def turn_pairs(runs, sense, table, stride, turns, right):
+def rotate_pairs(runs, sense, table, stride, rotations, right):
     """Rotate the vectors in a right-hand side (n,) by the rotations of their nodes, or back if `sense` is -1.
 
     A kept tangent K rotates with the sections: the present one is nearly R K R^T, and exactly so if the body has
     rotated as a whole; so the rotation of a pendulum or a rotor needs no new tangent. table (runs, pair fields): see
-    `turning.runs_of`; turns (2, stride): see `turns_since`.
+    `rotating_vectors.runs_of`; rotations (2, stride): see `rotations_since`.
     """
     small_code()
     for run in range(runs):
         own = at(table, PAIR_FIELDS * run)
         step, apart, vector = own[PAIR_STEP], own[PAIR_Y] - own[PAIR_X], at(right, own[PAIR_X])
-        cosine, sine = at(turns, own[PAIR_NODE]), at(turns, stride + own[PAIR_NODE])
+        cosine, sine = at(rotations, own[PAIR_NODE]), at(rotations, stride + own[PAIR_NODE])
         for i in range(own[PAIR_COUNT]):
             c, s = cosine[i], sense * sine[i]
             x, y = vector[i * step], vector[i * step + apart]

@@ -27,7 +27,7 @@ _FAST = {"contract", "reassoc", "nsz"}
 
 _balance, _predict, _jacobian = caller("i"), caller("iii"), caller("i", "d")
 _factor, _solve = caller("iiiisrrr", "d"), caller("iiirr")
-_constrain, _turn, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
+_constrain, _rotate, _take = caller("iiirnr"), caller("inrr"), caller("irrr", "d")
 
 
 @inlined
@@ -117,7 +117,7 @@ def iterate(system, solver, calls):
                 right[i] = -residual[free[i]] - (prescribed_force[free[i]] if first else 0.0)
         if rollers > 0:
             _constrain(call[r.CONSTRAIN_NORMALS], unknown, half, rollers, rows, first_of, normal)
-            _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
+            _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
         if not _factor(call[r.FACTOR], unknown, unknown, half, 1, reach, rows, right, step) > limits[PIVOT_RATIO]:
             return 0
         negative = _negative(unknown, step)
@@ -133,7 +133,7 @@ def iterate(system, solver, calls):
                     linear[i] = p[i]
         _solve(call[r.SOLVE_UPPER], unknown, unknown, half, rows, right)
         if rollers > 0:
-            _turn(call[r.ROTATE_BACK], rollers, first_of, normal, right)
+            _rotate(call[r.ROTATE_BACK], rollers, first_of, normal, right)
         for i in range(n):
             step[i] = prescribed_step[i] if first else 0.0
         if in_a_row >= 0:
@@ -168,7 +168,7 @@ def iterate(system, solver, calls):
     for i in range(unknown):
         right[i], step[i] = residual[free[i]], scale[free[i]]
     if rollers > 0:
-        _turn(call[r.ROTATE_IN], rollers, first_of, normal, right)
+        _rotate(call[r.ROTATE_IN], rollers, first_of, normal, right)
     found[UNBALANCED] = _largest_product(unknown, right, step)
     found[JACOBIAN] = 1.0
     for group in range(s[r.GROUPS]):

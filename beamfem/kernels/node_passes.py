@@ -9,7 +9,7 @@ from beamfem.kernels.pointers import at, caller, reals, slots, small_code, whole
 from beamfem.kernels.record import LANES, ROW
 from beamfem.kernels.reduction import add_node_forces
 
-_turn, _rotate = caller("irrrrr"), caller("irrr")
+_rotate_frame, _rotate = caller("irrrrr"), caller("irrr")
 _clear, _place, _convect = caller("iir"), caller("ir"), caller("iddr")
 _add_curvature = caller("iiiiiiiinnnisrrd")
 
@@ -85,8 +85,8 @@ def place_nodes(group, system, moving):
                 else:
                     _clear(call[r.CLEAR], 2 * polar, count, at(x, polar * ROW))
                 directions = at(x, 3 * polar * ROW)
-                _turn(
-                    call[r.TURN],
+                _rotate_frame(
+                    call[r.ROTATE_FRAME],
                     count,
                     at(x, (polar - 1) * ROW),
                     at(frame, first),
@@ -175,8 +175,8 @@ def finish_nodes(group, system):
             chunk = at(chunks, first // LANES * b[r.NODE_ROWS] * ROW + lane)
             take(first, count, polar, stride, at(source, linear * stride), p, True, x)
             directions, parts = at(x, 3 * polar * ROW), size - linear
-            _turn(
-                call[r.TURN],
+            _rotate_frame(
+                call[r.ROTATE_FRAME],
                 count,
                 at(x, (polar - 1) * ROW),
                 at(frame, first),

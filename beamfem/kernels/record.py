@@ -133,7 +133,7 @@ FACTOR_COUNT = 4
     ADD_TO_BAND,
     ADD_TO_SPARSE,
     ADD_CURVATURE,
-    TURN,
+    ROTATE_FRAME,
     ROTATE,
     COPY,
     CLEAR,
@@ -185,9 +185,9 @@ INVERSE_SCALE = 19  # address (padded(n),)
 RULE = 20  # see `motion_record`
 STATISTICS = 21  # see `motion_record`
 RUNS_OF_PAIRS = 22  # of vectors that rotate with their section
-PAIR_TABLE = 23  # (runs, pair fields): see `turning.runs_of`
+PAIR_TABLE = 23  # (runs, pair fields): see `rotating_vectors.runs_of`
 KEPT = 24  # (2, node stride)
-TURNS = 25  # (2, node stride)
+ROTATIONS = 25  # (2, node stride)
 STEPS = 26
 PRESCRIBED_VALUES = 27  # (steps, 3, prescribed)
 BODIES = 28  # (steps or 1, beams, 4)
@@ -197,10 +197,10 @@ LOADS_VARY = 31
 SAVED = 32  # (rows, 3, n)
 FIRST_STEP = 33
 EVERY = 34
-TURN_COUNT = 35
-TURN_TABLE = 36  # (counted, 2)
-TURNED_BY = 37
-SAVED_TURNS = 38
+ROTATION_COUNT = 35
+ROTATION_TABLE = 36  # (counted, 2)
+ROTATED_BY = 37
+SAVED_ROTATIONS = 38
 LINEAR = 39  # address (n,)
 NATURALS = 40  # address of addresses, for each group (steps or 1, elements, points, measures), 0 if there are none
 NATURALS_VARY = 41
@@ -211,7 +211,7 @@ FIRST_FREE = 43  # number of the first unknown coordinate if all have consecutiv
 PARTS = 44  # 1, or 3: two halves and the part between them
 BOUNDS = 45  # address (1 or 3, bounds): of each part
 PRESCRIBED_NOW = 46  # address (3, prescribed): in this step
-TURNS_WANTED = 47  # whether it is asked how far sections have rotated since the last tangent
+ROTATIONS_WANTED = 47  # whether it is asked how far sections have rotated since the last tangent
 REACH = 48  # address (2, unknown) of 32 bits: see `band.elimination`, downwards and backwards
 TILES = 49  # address (tiles, tile fields)
 ROWS_DOWN = 50  # rows eliminated downwards from the top, see `two_sided_parts`
@@ -268,9 +268,9 @@ JOB_FIELDS = 16
     ROTATE_BACK,
     TAKE_STEP,
     KEEP_DIRECTIONS,
-    TURNS_SINCE,
-    TURN_PAIRS,
-    COUNT_TURNS,
+    ROTATIONS_SINCE,
+    ROTATE_PAIRS,
+    COUNT_ROTATIONS,
     # stages of a time step, see `motion_stages`
     PREDICT,
     ASSEMBLE,

@@ -74,9 +74,9 @@ class CompiledSteps:
         arrays = {
             record.PRESCRIBED_VALUES: prescribed,
             record.SAVED: saving.states,
-            record.TURN_TABLE: saving.pairs,
-            record.TURNED_BY: saving.turned,
-            record.SAVED_TURNS: saving.rows_turned,
+            record.ROTATION_TABLE: saving.pairs,
+            record.ROTATED_BY: saving.rotations,
+            record.SAVED_ROTATIONS: saving.saved_rotations,
             record.LOAD_VALUES: load_addresses,
             record.NATURALS: natural,
         }
@@ -91,7 +91,7 @@ class CompiledSteps:
             record.STEPS: len(prescribed),
             record.FIRST_STEP: saving.first,
             record.EVERY: saving.every,
-            record.TURN_COUNT: len(saving.pairs),
+            record.ROTATION_COUNT: len(saving.pairs),
         }
         for field, value in (numbers | {field: address_of(array) for field, array in arrays.items()}).items():
             solver[field] = value

@@ -34,7 +34,7 @@ _FIRST_CHUNK = 200_000  # coordinates times steps
 class Record:
     """Stored states (rows, 3, n) of every n-th whole step, and of the last one in the row after them.
 
-    statistics: see `kernels.motion_record`; pairs (m, 2): see `turns.turning_pairs`; turned (rows, m) [rad]: of
+    statistics: see `kernels.motion_record`; pairs (m, 2): see `turns.rotation_pairs`; rotations (rows, m) [rad]: of
     the stored states.
     """
 
@@ -42,7 +42,7 @@ class Record:
     every: int
     statistics: np.ndarray
     pairs: np.ndarray
-    turned: np.ndarray
+    rotations: np.ndarray
 
 
 def new_statistics() -> np.ndarray:
@@ -57,11 +57,11 @@ class Last:
     step: tuple[int, np.ndarray, np.ndarray]
     _spare: np.ndarray | None = None
 
-    def reach(self, done: int, state: np.ndarray, turned: np.ndarray) -> None:
+    def reach(self, done: int, state: np.ndarray, rotations: np.ndarray) -> None:
         """Record another step by a single assignment, so that the record is complete even after an interruption."""
         before, buffer = self.step[1], np.empty_like(state) if self._spare is None else self._spare
         buffer[:] = state
-        self.step = done, buffer, turned.copy()
+        self.step = done, buffer, rotations.copy()
         self._spare = before
 
 
@@ -95,8 +95,8 @@ def march(
     relaxed = is_scheme(integrator) and (bool(system.history.laws) or (damped and not _keeps_rates(integrator)))
     # a user-defined integrator may raise any exception; the states reached before are kept
     size = max(_FIRST_CHUNK // system.model.size, 1) if is_scheme(integrator) else 1
-    turned = record.turned[0].copy()
-    counting = record.pairs, turned, record.turned
+    rotations = record.rotations[0].copy()
+    counting = record.pairs, rotations, record.rotations
     with progress("time [s]", float(parts[-1].times[-1])) as report:
         for number, part in enumerate(parts):
             if number > 0:
@@ -122,7 +122,7 @@ def march(
                     if completed < chunk:
                         failed = Failure(float(part.times[begun]), float(part.times[begun + 1]), motion.why)
                     if part.whole and completed:
-                        last.reach(done, state[:3], turned)
+                        last.reach(done, state[:3], rotations)
                         report(float(part.times[begun]))
                     if part.whole and spent < _CHUNK_SECONDS and is_scheme(integrator):
                         size *= 4
@@ -130,9 +130,9 @@ def march(
                 break
             if part.ends_whole and not part.whole:
                 done += 1
-                last.reach(done, state[:3], turned)
+                last.reach(done, state[:3], rotations)
                 if done % record.every == 0:
-                    record.states[done // record.every], record.turned[done // record.every] = last.step[1:]
+                    record.states[done // record.every], record.rotations[done // record.every] = last.step[1:]
     return failed
 
 

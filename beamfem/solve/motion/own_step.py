@@ -14,7 +14,7 @@ from beamfem.brief import brief
 from beamfem.errors import ConvergenceError, InputError
 from beamfem.kernels.motion_record import ITERATIONS
 from beamfem.linalg.superlu import superlu
-from beamfem.linalg.tangent import UNROTATED, turning
+from beamfem.linalg.tangent import UNROTATED, rotation_to_normals
 from beamfem.results.solution import Solution, State
 from beamfem.results.status import Statistics
 from beamfem.validation import shown
@@ -156,14 +156,14 @@ class EquationsOfMotion:
         kept = np.ones(unknown, dtype=bool)
         kept[self.system.rotated[0]] = False
         kept = np.tile(kept, stages)
-        turn = csr_array(block_diag([turning(unknown, self.system.rotated)] * stages))
-        matrix = csr_array(turn @ block_array(blocks) @ turn.T)[kept][:, kept]
+        rotation = csr_array(block_diag([rotation_to_normals(unknown, self.system.rotated)] * stages))
+        matrix = csr_array(rotation @ block_array(blocks) @ rotation.T)[kept][:, kept]
         solution = np.zeros(right.size)
         try:
-            solution[kept] = superlu(csc_array(matrix)).solve((turn @ right.ravel())[kept])
+            solution[kept] = superlu(csc_array(matrix)).solve((rotation @ right.ravel())[kept])
         except LinAlgError as error:
             raise ConvergenceError("the tangent of a step is singular") from error
-        return np.asarray(turn.T @ solution).reshape(right.shape)
+        return np.asarray(rotation.T @ solution).reshape(right.shape)
 
 
 class Integrator(Protocol):
